@@ -1,0 +1,3 @@
+"""Steer a high-DoF assistive robot arm with a low-DoF input, by latent actions learned from demonstrations."""
+
+__version__ = "0.1.0"

@@ -1,0 +1,215 @@
+"""The vocabulary shared by every package: small frozen records of NumPy arrays.
+
+Symbols follow Losey et al., "Learning Latent Actions to Control Assistive Robots":
+state ``s`` (rad), action ``a`` (rad/s), latent action ``z``, input ``u``, context ``c``,
+belief ``b``, goal ``g``, end-effector pose ``x``.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One or many rigid poses ``x`` in the robot's base frame.
+
+    Attributes:
+        position: (..., 3), m.
+        rotation: (..., 3, 3), rotation matrices.
+    """
+
+    position: FloatArray
+    rotation: FloatArray
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A goal ``g`` that the person may want.
+
+    Attributes:
+        name: what a person would call it.
+        configuration: (n,), rad.
+        pose: the end-effector pose at ``configuration``.
+    """
+
+    name: str
+    configuration: FloatArray
+    pose: Pose
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One demonstration, sampled at increasing times.
+
+    Attributes:
+        state: (T, n), joint positions, rad.
+        timestamp: (T,), s from the episode's start.
+        action: (T, m), joint velocities, rad/s, or None where none were recorded.
+        task: what was done, in words.
+        extras: further features of the dataset by name (``belief``, ``input.u``, ...), each (T, k).
+    """
+
+    state: FloatArray
+    timestamp: FloatArray
+    action: FloatArray | None = None
+    task: str = ""
+    extras: Mapping[str, FloatArray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Demonstrations:
+    """The dataset ``D`` as it lies on disk: whole episodes of one robot.
+
+    Attributes:
+        episodes: the episodes, all with the same n.
+        rate_hz: nominal sampling rate.
+        joint_names: n names.
+        robot: name or model path of the robot, or "" where unknown.
+        goals: the discrete goals ``G``, empty where none are known.
+    """
+
+    episodes: tuple[Episode, ...]
+    rate_hz: float
+    joint_names: tuple[str, ...]
+    robot: str = ""
+    goals: tuple[Goal, ...] = ()
+
+    @property
+    def dof(self) -> int:
+        """Number of joints n."""
+        return len(self.joint_names)
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Context-action pairs ``(c, a)`` drawn from demonstrations.
+
+    The action is always taken from the states as they were demonstrated. State noise, where
+    asked for, is added to ``context`` afterwards, so that it can never be reconstructed from
+    the action: ``clean_context`` is the same context without it.
+
+    Attributes:
+        context: (N, c), what the decoder sees; its first n entries are the state, rad.
+        clean_context: (N, c), ``context`` before state noise.
+        action: (N, m), noise-free joint velocity, rad/s.
+        episode: (N,), index of the episode that each pair comes from.
+    """
+
+    context: FloatArray
+    clean_context: FloatArray
+    action: FloatArray
+    episode: IntArray
+
+
+@dataclass(frozen=True)
+class Context:
+    """What the robot knows when it decodes an input: ``c = (s, b)``.
+
+    Attributes:
+        state: (n,), joint positions ``s``, rad.
+        belief: (G,), probability over goals ``b``; empty where there are no goals.
+    """
+
+    state: FloatArray
+    belief: FloatArray
+
+
+@dataclass(frozen=True)
+class Input:
+    """What the person does with their interface at one moment.
+
+    Attributes:
+        u: (d,), each entry in [-1, 1].
+        switch_mode: the person asks for the controller's next mode.
+    """
+
+    u: FloatArray
+    switch_mode: bool = False
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A safety filter's refusal.
+
+    Attributes:
+        reason: one short sentence for the person.
+    """
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class Command:
+    """What leaves the safety filter for the robot.
+
+    Attributes:
+        velocity: (n,), rad/s, finite and within limits.
+        duration_s: the robot must stop by itself when no new command came for this long.
+        stop: why the arm is being stopped, or None.
+        limited_by: names of the filters that changed what was asked for.
+    """
+
+    velocity: FloatArray
+    duration_s: float
+    stop: Stop | None = None
+    limited_by: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class StepRecord:
+    """Everything that one pass through Algorithm 1 read and decided.
+
+    Attributes:
+        time_s: the loop's monotonic clock.
+        state: (n,), ``s``, rad.
+        input: (d,), ``u`` as it was used (zero where it was stale or refused).
+        latent: (d,), ``z``.
+        action_human: (m,), ``a_h``, rad/s.
+        action_assist: (m,), ``a_r``, rad/s.
+        alpha: arbitration in [0, 1] (equation 2).
+        belief: (G,), belief that this step used.
+        mode: index of the controller's mode.
+        command: what was sent.
+    """
+
+    time_s: float
+    state: FloatArray
+    input: FloatArray
+    latent: FloatArray
+    action_human: FloatArray
+    action_assist: FloatArray
+    alpha: float
+    belief: FloatArray
+    mode: int
+    command: Command
+
+
+@dataclass(frozen=True)
+class Row:
+    """One figure of any study, in the one format that every command prints as JSON.
+
+    Absent fields are None. ``measure`` names are snake_case, ``n`` is the number of runs.
+    """
+
+    study: str
+    measure: str
+    unit: str
+    mean: float | None
+    sd: float | None
+    n: int
+    task: str | None = None
+    model: str | None = None
+    condition: str | None = None
+    paper_mean: float | None = None
+    paper_sd: float | None = None
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping, ready for ``json.dumps``."""
+        return asdict(self)
