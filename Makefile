@@ -1,0 +1,45 @@
+# `make demo` and `make test` do all set-up by themselves: a fresh machine needs Python 3.11 and nothing else.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test test-all check format bench clean
+
+help: ## Show what can be made.
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+$(VENV)/installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) --editable .
+	@touch $@
+
+$(VENV)/installed-dev: $(VENV)/installed
+	$(PIP) --editable '.[dev]'
+	@touch $@
+
+demo: $(VENV)/installed ## Learn latent actions and drive a 7-DoF arm to three goals (minutes).
+	$(BIN)/latentarm demo --out demo
+
+check: $(VENV)/installed-dev ## Lint, formatting, types and import layers.
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+
+test: check ## Everything that must hold, in minutes.
+	$(BIN)/python -m pytest -m "not slow"
+
+test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of approaches.
+	$(BIN)/python -m pytest
+
+bench: $(VENV)/installed ## The online step and the batched fit, as ratios in one run.
+	$(BIN)/latentarm bench
+
+format: $(VENV)/installed-dev ## Format and fix what can be fixed by machine.
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+clean: ## Remove the environment and what the demo wrote.
+	rm -rf $(VENV) demo
