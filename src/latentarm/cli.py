@@ -1,0 +1,310 @@
+"""The command line: parses, calls, prints. Exit codes: 0 done, 1 not reached or failed, 2 the user's to mend."""
+
+import json as json_format
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import tyro
+from tyro.conf import Positional, arg
+from tyro.extras import SubcommandApp
+
+from latentarm.errors import UserError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from latentarm.types import Row
+
+ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl"]
+
+Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
+Seed = Annotated[int, arg(help="Seed of everything random.")]
+RobotName = Annotated[str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")]
+EndEffector = Annotated[
+    str | None, arg(help="Site, body or link of the model file that is the end-effector.", metavar="NAME")
+]
+Dataset = Annotated[Path, arg(metavar="DST", help="Folder of a native dataset.")]
+Run = Annotated[Path, arg(metavar="RUN", help="Folder that `latentarm train` wrote.")]
+
+app = SubcommandApp()
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Args:
+        arguments: the words after ``latentarm``; those of the process by default.
+
+    Returns:
+        The exit code.
+    """
+    try:
+        return app.cli(
+            prog="latentarm",
+            description="Steer a high-DoF assistive arm with a low-DoF input, by latent actions.",
+            args=arguments,
+            config=(tyro.conf.FlagCreatePairsOff,),
+        )
+    except UserError as error:
+        print(f"latentarm: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("latentarm: interrupted.", file=sys.stderr)
+        return 130
+
+
+@app.command
+def demo(
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for datasets, runs, table and figures.")] = Path("demo"),
+    drives: Annotated[int, arg(help="Simulated drives for each goal and condition.")] = 20,
+    seed: Seed = 0,
+    jobs: Annotated[int, arg(help="Processes that drive side by side; -1 is one per core.")] = -1,
+    json: Json = False,
+) -> int:
+    """Learn latent actions and drive a 7-DoF Panda to three goals, against mode switching.
+
+    For example: latentarm demo --out demo
+    """
+    from latentarm.experiments.demo import DemoConfig, run_demo
+    from latentarm.metrics.table import table
+
+    rows = run_demo(DemoConfig(out=out, drives=drives, seed=seed, jobs=jobs))
+    _show(rows, json, table(rows))
+    _say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
+    return 0
+
+
+@app.command(name="import")
+def import_demonstrations(
+    source: Annotated[Positional[Path], arg(metavar="SRC", help=".npz, .csv, .hdf5, or a LeRobot v3.0 folder.")],
+    destination: Annotated[Positional[Path], arg(metavar="DST", help="New folder for the dataset.")],
+    robot: RobotName = "panda",
+    end_effector: EndEffector = None,
+    json: Json = False,
+) -> int:
+    """Turn recorded demonstrations into a native dataset (LeRobotDataset v3.0).
+
+    For example: latentarm import panda_pour_coffee.npz pour
+    """
+    from latentarm.demonstrations.importing import import_to
+    from latentarm.experiments.inspection import summary_rows
+    from latentarm.robots.catalogue import load_robot
+
+    demonstrations = import_to(source, destination, load_robot(robot, end_effector))
+    _show(summary_rows(demonstrations), json, None)
+    _say(f"{len(demonstrations.episodes)} episodes of {demonstrations.dof} joints are in {destination}/.", json)
+    return 0
+
+
+@app.command
+def inspect(
+    dataset: Annotated[Positional[Path], arg(metavar="DST", help="Folder of a native dataset.")],
+    out: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder for the figure; beside the dataset by default.")
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Show a dataset: episodes, rates, ranges, and a figure of the joints.
+
+    For example: latentarm inspect pour
+    """
+    from latentarm.demonstrations.dataset import read_dataset
+    from latentarm.experiments.inspection import draw, summary_rows, summary_tables
+
+    demonstrations = read_dataset(dataset)
+    figure = draw(demonstrations, out or dataset.with_name(f"{dataset.name}-figures"))
+    _show(summary_rows(demonstrations), json, *summary_tables(demonstrations))
+    _say(f"The joints over time are drawn in {figure}.", json)
+    return 0
+
+
+@app.command
+def train(
+    demonstrations: Dataset,
+    model: Annotated[ModelName, arg(help="The latent action model.")] = "cvae",
+    latent_dim: Annotated[int, arg(help="d, the number of axes of the person's interface.")] = 2,
+    context: Annotated[
+        Literal["state", "state_belief"], arg(help="What the decoder sees: c = s, or c = (s, b).")
+    ] = "state",
+    seeds: Annotated[int, arg(help="Models trained side by side, from different seeds.")] = 5,
+    seed: Seed = 0,
+    window: Annotated[int, arg(help="An action leads to a state at most this many samples away.")] = 5,
+    state_noise_rad: Annotated[float, arg(help="SD of noise on the state that the decoder sees, rad.")] = 0.01,
+    held_out: Annotated[float, arg(help="Share of the episodes kept for evaluation.")] = 0.2,
+    epochs: Annotated[int, arg(help="At most this many passes over the pairs.")] = 60,
+    device: Annotated[str, arg(help="cpu, cuda, or auto.")] = "cpu",
+    out: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder of the run; runs/<dataset>-<model> by default.")
+    ] = None,
+    resume: Annotated[bool, arg(help="Go on with a training that was cut off.")] = False,
+    json: Json = False,
+) -> int:
+    """Learn a latent action model from a dataset.
+
+    For example: latentarm train --demonstrations pour --model cae --latent-dim 2 --seeds 5
+    """
+    from latentarm.experiments.training import TrainConfig, train_run
+
+    config = TrainConfig(
+        demonstrations=demonstrations,
+        model=model,
+        latent_dim=latent_dim,
+        context=context,
+        seeds=seeds,
+        seed=seed,
+        window=window,
+        state_noise_rad=state_noise_rad,
+        held_out=held_out,
+        epochs=epochs,
+        device=device,
+        out=out or Path("runs") / f"{demonstrations.resolve().name}-{model}",
+        resume=resume,
+        progress=not json,
+    )
+    rows = train_run(config)
+    from latentarm.metrics.table import table
+
+    _show(rows, json, table(rows))
+    _say(f"The run is {config.out}/; next: latentarm evaluate {config.out}", json)
+    return 0
+
+
+@app.command
+def evaluate(
+    run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")],
+    out: Annotated[Path | None, arg(metavar="DIR", help="Folder for metrics and figures; RUN by default.")] = None,
+    seed: Seed = 0,
+    json: Json = False,
+) -> int:
+    """Measure a trained model on its held-out episodes: the four properties, drift and reversal.
+
+    For example: latentarm evaluate runs/pour-cae
+    """
+    from latentarm.experiments.evaluating import evaluate_run
+    from latentarm.metrics.table import table
+
+    folder = out or run
+    rows = evaluate_run(run, folder, seed)
+    _show(rows, json, table(rows))
+    _say(f"metrics.json and figures are in {folder}/.", json)
+    return 0
+
+
+@app.command
+def drive(
+    run: Annotated[
+        Positional[Path | None], arg(metavar="RUN", help="A trained run; without one, mode switching drives.")
+    ] = None,
+    controller: Annotated[
+        Literal["latent", "latent_assist", "end_effector"] | None,
+        arg(help="Latent actions, with shared autonomy, or mode switching."),
+    ] = None,
+    task: Annotated[
+        Literal["table_top", "held_out", "reach"] | None,
+        arg(help="Three items on a table; ends of held-out episodes; or reachable poses. By the run by default."),
+    ] = None,
+    robot: Annotated[
+        str | None, arg(help="A robot's name or the path of an MJCF or URDF file; that of the run by default.")
+    ] = None,
+    end_effector: EndEffector = None,
+    drives: Annotated[int, arg(help="Drives for each goal.")] = 3,
+    beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24).")] = 1000.0,
+    time_limit_s: Annotated[float, arg(help="A drive that lasts longer has failed.")] = 60.0,
+    seed: Seed = 0,
+    record: Annotated[
+        Path | None, arg(metavar="DIR", help="Record the drives; exported there as a native dataset.")
+    ] = None,
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for drives.json and the figure.")] = Path("drives"),
+    json: Json = False,
+) -> int:
+    """Drive an arm in simulation with a simulated operator, through Algorithm 1 and its safety filters.
+
+    Exits with 1 when no drive reached its goal. For example: latentarm drive runs/pour-cae
+    """
+    from latentarm.experiments.driving import DriveConfig, drive_run
+    from latentarm.metrics.table import table
+
+    rows = drive_run(
+        DriveConfig(
+            run=run,
+            controller=controller or ("latent" if run else "end_effector"),
+            task=task,
+            robot=robot,
+            end_effector=end_effector,
+            drives=drives,
+            beta=beta,
+            time_limit_s=time_limit_s,
+            seed=seed,
+            record=record,
+            out=out,
+        )
+    )
+    _show(rows, json, table(rows))
+    _say(f"drives.json and the figure are in {out}/.", json)
+    return 0 if any(row.measure == "success_rate" and row.mean for row in rows) else 1
+
+
+@app.command
+def bench(
+    repeats: Annotated[int, arg(help="Timed online steps.")] = 20_000,
+    seed: Seed = 0,
+    json: Json = False,
+) -> int:
+    """Time the online step beside torch, and ten seeds in one fit beside ten fits in turn.
+
+    For example: latentarm bench --json
+    """
+    from latentarm.experiments.bench import run_bench
+    from latentarm.metrics.table import table
+
+    rows = run_bench(repeats=repeats, seed=seed, progress=not json)
+    _show(rows, json, table(rows))
+    return 0
+
+
+@app.command
+def robots(
+    robot: Annotated[
+        Positional[str | None], arg(metavar="ROBOT", help="One robot, by name or path; all known ones without.")
+    ] = None,
+    end_effector: EndEffector = None,
+    json: Json = False,
+) -> int:
+    """List the robots, or show one: joints, limits and end-effector.
+
+    For example: latentarm robots panda
+    """
+    from latentarm.experiments.robot_sheet import describe, sheets
+
+    if json:
+        print(json_format.dumps(describe(robot, end_effector), indent=2))
+    else:
+        _print(*sheets(robot, end_effector))
+    return 0
+
+
+def _show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType | None") -> None:
+    """Print rows as one JSON document, or the tables that show them."""
+    if json:
+        print(json_format.dumps([row.as_json() for row in rows], indent=2))
+    else:
+        _print(*(table for table in tables if table is not None))
+
+
+def _say(sentence: str, json: bool) -> None:
+    """Tell a person; with ``--json`` on standard error, so that standard output stays one document."""
+    print(sentence, file=sys.stderr if json else sys.stdout)
+
+
+def _print(*renderables: "RenderableType") -> None:
+    from rich.console import Console
+
+    console = Console()
+    for renderable in renderables:
+        console.print(renderable)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
