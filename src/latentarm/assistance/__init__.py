@@ -1,0 +1,1 @@
+"""Shared autonomy: what the person may want (belief), how to help, and how much."""

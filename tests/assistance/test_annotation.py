@@ -1,0 +1,54 @@
+import numpy as np
+import pytest
+
+from latentarm.assistance.annotation import annotate
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations, Episode, Goal, Pose
+
+NOWHERE = Pose(np.zeros(3), np.eye(3))
+GOALS = np.array([[1.5, 0.0, 0.0], [-1.5, 0.5, 0.0]])
+
+
+def demonstrations(states, goals=GOALS, rate_hz=20.0):
+    episode = Episode(state=states, timestamp=np.arange(len(states)) / rate_hz, extras={"kept": states})
+    named = tuple(Goal(f"goal {i}", g, NOWHERE) for i, g in enumerate(goals))
+    return Demonstrations((episode,), rate_hz, ("a", "b", "c"), goals=named)
+
+
+def reach(goal, rate_hz=20.0, seconds=4.0):
+    return np.linspace(0, 1, int(seconds * rate_hz) + 1)[:, None] * GOALS[goal]
+
+
+@pytest.mark.parametrize("goal", [0, 1])
+def test_the_belief_begins_unsure_and_ends_at_the_goal_that_was_reached(goal):
+    episode = annotate(demonstrations(reach(goal))).episodes[0]
+    belief = episode.extras["belief"]
+    assert belief.shape == (81, 2)
+    assert belief[0] == pytest.approx([0.5, 0.5])
+    assert belief[-1, goal] > 0.9
+    assert belief.sum(axis=1) == pytest.approx(1.0)
+    assert "kept" in episode.extras
+
+
+def test_the_belief_of_a_sample_rests_on_earlier_samples_only():
+    whole = annotate(demonstrations(reach(0))).episodes[0].extras["belief"]
+    half = annotate(demonstrations(reach(0)[:40])).episodes[0].extras["belief"]
+    assert np.array_equal(whole[:40], half)
+
+
+def test_the_sampling_rate_hardly_matters():
+    ends = [
+        annotate(demonstrations(reach(0, rate, 1.0), rate_hz=rate)).episodes[0].extras["belief"][-1]
+        for rate in (20.0, 100.0)
+    ]
+    assert ends[0] == pytest.approx(ends[1], abs=0.02)
+
+
+def test_standing_still_says_nothing():
+    belief = annotate(demonstrations(np.zeros((50, 3)))).episodes[0].extras["belief"]
+    assert belief == pytest.approx(0.5)
+
+
+def test_demonstrations_without_goals_are_refused():
+    with pytest.raises(UserError, match="no goals"):
+        annotate(demonstrations(reach(0), goals=GOALS[:0]))
