@@ -1,0 +1,93 @@
+"""Folders that appear whole or not at all, and that one program writes at a time."""
+
+import fcntl
+import os
+import shutil
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+from latentarm.errors import UserError
+from latentarm.files import sync_folder
+
+
+@contextmanager
+def locked(folder: Path) -> Generator[None]:
+    """Keep other writers out of ``folder``. The lock goes with the process, however it ends.
+
+    Raises:
+        UserError: another program is writing there, or the folder has gone.
+    """
+    try:
+        descriptor = os.open(folder, os.O_RDONLY)
+    except OSError as error:
+        raise UserError(f"{folder} cannot be opened: {error.strerror or error}.") from error
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            same = os.path.samestat(os.fstat(descriptor), folder.stat())
+        except OSError as error:
+            raise UserError(f"{folder} is being written by another program; wait for it.") from error
+        if not same:
+            raise UserError(f"{folder} is being written by another program; wait for it.")
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def check_vacant(destination: Path) -> None:
+    """Refuse a destination that holds anything already.
+
+    Raises:
+        UserError: it is a file, or a folder with something in it.
+    """
+    try:
+        if destination.is_dir():
+            if any(destination.iterdir()):
+                raise UserError(f"{destination} already exists and is not empty; choose another place.")
+        elif os.path.lexists(destination):
+            raise UserError(f"{destination} already exists and is not a folder; choose another place.")
+    except OSError as error:
+        raise UserError(f"{destination} cannot be written: {error.strerror or error}.") from error
+
+
+@contextmanager
+def staged_folder(destination: Path) -> Generator[Path]:
+    """Yield a folder beside ``destination``; on success rename it there.
+
+    On any error nothing is left behind. After a kill the staging folder ``.NAME.part`` stays, is
+    taken for nothing, and the next attempt at the same destination clears it.
+
+    Raises:
+        UserError: the destination is taken, or cannot be written.
+    """
+    destination = destination.resolve()
+    check_vacant(destination)
+    staging = destination.parent / f".{destination.name}.part"
+    try:
+        staging.mkdir(parents=True, exist_ok=True)
+        with locked(staging):
+            try:
+                _clear(staging)
+                yield staging
+                check_vacant(destination)
+                staging.replace(destination)
+                sync_folder(destination.parent)
+            finally:
+                shutil.rmtree(staging, ignore_errors=True)
+    except OSError as error:
+        raise UserError(f"{destination} cannot be written: {error.strerror or error}.") from error
+
+
+def remove_parts(folder: Path) -> None:
+    """Delete what killed writers left in ``folder``: temporary files that were never renamed."""
+    for part in folder.rglob(".*.part"):
+        part.unlink(missing_ok=True)
+
+
+def _clear(folder: Path) -> None:
+    for entry in folder.iterdir():
+        if entry.is_dir() and not entry.is_symlink():
+            shutil.rmtree(entry)
+        else:
+            entry.unlink()

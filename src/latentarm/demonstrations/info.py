@@ -1,0 +1,250 @@
+"""``meta/info.json`` of the LeRobotDataset v3.0 layout, typed.
+
+What the layout has no place for (the goals, and that actions are joint velocities) lies under the
+``latentarm`` key, which other readers of the layout leave alone.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, TypeVar, cast, final
+
+import numpy as np
+
+from latentarm.demonstrations.bounds import MAX_JSON_BYTES, check_bytes
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations, Goal, Pose
+
+CODEBASE_VERSION: Final = "v3.0"
+STATE: Final = "observation.state"
+ACTION: Final = "action"
+INFO_PATH: Final = Path("meta/info.json")
+CHUNK_FILES: Final = 1000
+DATA_FILE_MB: Final = 100
+VIDEO_FILE_MB: Final = 200
+DATA_PATTERN: Final = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
+EPISODES_PATTERN: Final = "meta/episodes/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
+INDEX_DTYPES: Final = {
+    "timestamp": "float32",
+    "frame_index": "int64",
+    "episode_index": "int64",
+    "index": "int64",
+    "task_index": "int64",
+}
+
+T = TypeVar("T")
+
+
+@final
+@dataclass(frozen=True)
+class Feature:
+    """One float32 vector recorded with every sample.
+
+    Attributes:
+        name: the layout's name, such as ``observation.state``.
+        width: its length.
+        names: a name for each entry, or None.
+    """
+
+    name: str
+    width: int
+    names: tuple[str, ...] | None = None
+
+
+@final
+@dataclass(frozen=True)
+class Info:
+    """What ``meta/info.json`` says. Its totals are the dataset's truth: rows beyond them do not exist.
+
+    Attributes:
+        episodes: number of whole episodes.
+        frames: number of samples in them.
+        tasks: number of distinct task texts.
+        rate_hz: nominal sampling rate.
+        robot: name of the robot, or "".
+        features: the float vectors; pictures, text and integers of other writers are left out.
+        goals: the discrete goals.
+        native: whether this package laid the dataset out (its actions are joint velocities then).
+        chunk_files: files in one chunk folder.
+        data_file_mb: size at which a data file is followed by the next.
+    """
+
+    episodes: int
+    frames: int
+    tasks: int
+    rate_hz: float
+    robot: str
+    features: tuple[Feature, ...]
+    goals: tuple[Goal, ...] = ()
+    native: bool = True
+    chunk_files: int = CHUNK_FILES
+    data_file_mb: int = DATA_FILE_MB
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, made up where the writer gave none."""
+        state = next(feature for feature in self.features if feature.name == STATE)
+        return state.names or default_joint_names(state.width)
+
+
+def default_joint_names(dof: int) -> tuple[str, ...]:
+    """Names for joints that came without."""
+    return tuple(f"joint_{joint + 1}" for joint in range(dof))
+
+
+def features_of(demonstrations: Demonstrations) -> tuple[Feature, ...]:
+    """The features that a dataset of these demonstrations has, in the order of its columns."""
+    names = demonstrations.joint_names
+    first = demonstrations.episodes[0]
+    action = () if first.action is None else (Feature(ACTION, len(names), names),)
+    extras = tuple(Feature(name, first.extras[name].shape[1]) for name in sorted(first.extras))
+    return (Feature(STATE, len(names), names), *action, *extras)
+
+
+def info_json(info: Info) -> str:
+    """The document, exactly as other writers of the layout lay it out, with the ``latentarm`` key added."""
+    features: dict[str, object] = {
+        feature.name: {
+            "dtype": "float32",
+            "shape": [feature.width],
+            "names": None if feature.names is None else list(feature.names),
+        }
+        for feature in info.features
+    }
+    features |= {name: {"dtype": dtype, "shape": [1], "names": None} for name, dtype in INDEX_DTYPES.items()}
+    whole = float(info.rate_hz).is_integer()
+    document = {
+        "codebase_version": CODEBASE_VERSION,
+        "robot_type": info.robot or None,
+        "total_episodes": info.episodes,
+        "total_frames": info.frames,
+        "total_tasks": info.tasks,
+        "chunks_size": info.chunk_files,
+        "data_files_size_in_mb": info.data_file_mb,
+        "video_files_size_in_mb": VIDEO_FILE_MB,
+        "fps": int(info.rate_hz) if whole else float(info.rate_hz),
+        "splits": {"train": f"0:{info.episodes}"},
+        "data_path": DATA_PATTERN,
+        "video_path": None,
+        "features": features,
+        "latentarm": {
+            "format": 1,
+            "action": "joint velocity, rad/s",
+            "goals": [
+                {
+                    "name": goal.name,
+                    "configuration": goal.configuration.tolist(),
+                    "position": goal.pose.position.tolist(),
+                    "rotation": goal.pose.rotation.tolist(),
+                }
+                for goal in info.goals
+            ],
+        },
+    }
+    return json.dumps(document, indent=4, ensure_ascii=False, allow_nan=False)
+
+
+def read_info(root: Path) -> Info:
+    """Read and check ``meta/info.json``.
+
+    Args:
+        root: the dataset's folder.
+
+    Raises:
+        UserError: there is none, it is another version's, or it does not say what it must.
+    """
+    path = root / INFO_PATH
+    if not path.is_file():
+        raise UserError(f"{root} is not a dataset: it has no {INFO_PATH}.")
+    check_bytes(path, MAX_JSON_BYTES)
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError, OSError) as error:
+        raise UserError(f"{path} is damaged: it is not a JSON document.") from error
+    if not isinstance(document, dict):
+        raise UserError(f"{path} is damaged: it is not a JSON object.")
+    mapping = cast(Mapping[str, Any], document)
+    version = _field(mapping, "codebase_version", str, path)
+    if not version.startswith("v3."):
+        raise UserError(
+            f"{path}: the dataset is of LeRobot layout {version}, not {CODEBASE_VERSION}; "
+            "convert it with LeRobot first."
+        )
+    ours = mapping.get("latentarm")
+    robot = mapping.get("robot_type")
+    features = _read_features(_field(mapping, "features", dict, path), path)
+    state = next((feature for feature in features if feature.name == STATE), None)
+    if state is None:
+        raise UserError(f"{path}: the dataset has no {STATE} of floats, so it holds no joint positions.")
+    rate = mapping.get("fps")
+    if isinstance(rate, bool) or not isinstance(rate, int | float):
+        raise UserError(f"{path}: the rate 'fps' is missing or not a number.")
+    return Info(
+        episodes=_count(mapping, "total_episodes", path),
+        frames=_count(mapping, "total_frames", path),
+        tasks=_count(mapping, "total_tasks", path),
+        rate_hz=float(rate),
+        robot=robot if isinstance(robot, str) else "",
+        features=features,
+        goals=_read_goals(ours, path),
+        native=isinstance(ours, dict),
+        chunk_files=max(_count(mapping, "chunks_size", path), 1),
+        data_file_mb=_count(mapping, "data_files_size_in_mb", path),
+    )
+
+
+def _field(mapping: Mapping[str, Any], key: str, kind: type[T], path: Path) -> T:
+    value = mapping.get(key)
+    if not isinstance(value, kind):
+        raise UserError(f"{path}: the entry '{key}' is missing or not what it should be.")
+    return value
+
+
+def _count(mapping: Mapping[str, Any], key: str, path: Path) -> int:
+    value = _field(mapping, key, int, path)
+    if value < 0:
+        raise UserError(f"{path}: the entry '{key}' is {value}; it cannot be below zero.")
+    return value
+
+
+def _read_features(mapping: Mapping[str, Any], path: Path) -> tuple[Feature, ...]:
+    """The one-dimensional float features, in the order of the document."""
+    features: list[Feature] = []
+    for name, spec in mapping.items():
+        if not isinstance(spec, dict):
+            raise UserError(f"{path}: the feature {name!r} is not described.")
+        shape = cast(Mapping[str, Any], spec).get("shape")
+        if name in INDEX_DTYPES or spec.get("dtype") not in {"float32", "float64"}:
+            continue
+        if isinstance(shape, list) and len(shape) == 1 and isinstance(shape[0], int) and shape[0] > 0:
+            features.append(Feature(name, shape[0], _entry_names(spec.get("names"), shape[0])))
+    return tuple(features)
+
+
+def _entry_names(names: object, width: int) -> tuple[str, ...] | None:
+    """Names of a feature's entries; some writers put the list into a mapping of one group."""
+    if isinstance(names, dict) and len(names) == 1:
+        names = next(iter(cast(dict[str, object], names).values()))
+    if isinstance(names, list) and len(names) == width and all(isinstance(name, str) for name in names):
+        return tuple(cast(Sequence[str], names))
+    return None
+
+
+def _read_goals(ours: object, path: Path) -> tuple[Goal, ...]:
+    if not isinstance(ours, dict):
+        return ()
+    try:
+        return tuple(
+            Goal(
+                name=str(entry["name"]),
+                configuration=np.asarray(entry["configuration"], dtype=np.float64),
+                pose=Pose(
+                    position=np.asarray(entry["position"], dtype=np.float64),
+                    rotation=np.asarray(entry["rotation"], dtype=np.float64),
+                ),
+            )
+            for entry in cast(Mapping[str, Any], ours).get("goals", [])
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise UserError(f"{path}: its goals are damaged.") from error

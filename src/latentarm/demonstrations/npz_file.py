@@ -1,0 +1,160 @@
+"""Importing NumPy archives (``.npz``) of plain arrays.
+
+Keys: ``q`` (N, n) joint positions, rad; ``episode_ends`` (E,) exclusive end of each episode;
+``rate_hz`` (). Optional: ``timestamp`` (N,) s, ``action`` (N, n) joint velocities meant as actions,
+rad/s, ``dq`` (N, n) measured velocities, ``tau`` (N, n) measured torques, and ``gripper_toggles``
+(G,) samples after which the gripper opened or closed. Measured velocities are noisy and are never
+taken for actions.
+"""
+
+import math
+import zipfile
+import zlib
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+from latentarm.demonstrations.bounds import check_values
+from latentarm.demonstrations.info import default_joint_names
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations, Episode, FloatArray, IntArray
+
+FEATURES: Final = {"dq": "observation.velocity", "tau": "observation.effort"}
+GRIPPER_FEATURE: Final = "observation.gripper_toggled"
+
+
+def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None) -> Demonstrations:
+    """Read demonstrations from a NumPy archive.
+
+    Args:
+        source: the file.
+        rate_hz: sampling rate, where the file says none or is wrong.
+        task: what was done; the file's name by default.
+
+    Raises:
+        UserError: the file is damaged, holds anything but plain arrays, or lacks a key.
+    """
+    arrays = _read_arrays(source)
+    for key in ("q", "episode_ends"):
+        if key not in arrays:
+            raise UserError(
+                f"{source} has no array '{key}'; it has {', '.join(sorted(arrays)) or 'none at all'}."
+            )
+    q = arrays["q"].astype(np.float64)
+    if q.ndim != 2:
+        raise UserError(f"{source}: the array 'q' has the shape {q.shape}, not (samples, joints).")
+    ends = _episode_ends(arrays["episode_ends"], len(q), source)
+    rate = _rate(arrays, source) if rate_hz is None else rate_hz
+    by_sample = {key: arrays[key].astype(np.float64) for key in ("action", *FEATURES) if key in arrays}
+    timestamp = arrays["timestamp"].astype(np.float64) if "timestamp" in arrays else None
+    for key, values in (by_sample if timestamp is None else by_sample | {"timestamp": timestamp}).items():
+        expected = q.shape[:1] if key == "timestamp" else q.shape
+        if values.shape != expected:
+            raise UserError(
+                f"{source}: the array '{key}' has the shape {values.shape}; "
+                f"with this 'q' it must be {expected}."
+            )
+    extras = {feature: by_sample[key] for key, feature in FEATURES.items() if key in by_sample}
+    if arrays.get("gripper_toggles", np.empty(0)).size:
+        extras[GRIPPER_FEATURE] = _gripper(arrays["gripper_toggles"], len(q), source)
+    episodes = tuple(
+        Episode(
+            state=q[start:end],
+            timestamp=np.arange(end - start) / rate
+            if timestamp is None
+            else timestamp[start:end] - timestamp[start],
+            action=by_sample["action"][start:end] if "action" in by_sample else None,
+            task=source.stem if task is None else task,
+            extras={name: values[start:end] for name, values in extras.items()},
+        )
+        for start, end in zip([0, *ends[:-1]], ends, strict=True)
+    )
+    return Demonstrations(episodes=episodes, rate_hz=rate, joint_names=default_joint_names(q.shape[1]))
+
+
+def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
+    """Every array of the archive, once all of them are known to be plain and of bearable size."""
+    try:
+        with zipfile.ZipFile(source) as archive:
+            members = [member for member in archive.infolist() if member.filename.endswith(".npy")]
+            count = sum(_declared_count(archive, member, source) for member in members)
+            check_values(source, "it", count)
+            arrays: dict[str, NDArray[np.generic]] = {}
+            for member in members:
+                with archive.open(member) as stream:
+                    arrays[member.filename.removesuffix(".npy")] = npy.read_array(stream, allow_pickle=False)
+            return arrays
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        EOFError,
+        ValueError,
+        OSError,
+        NotImplementedError,
+        RuntimeError,
+    ) as error:
+        raise UserError(
+            f"{source} is not a whole .npz file; it is truncated, damaged or encrypted."
+        ) from error
+
+
+def _declared_count(archive: zipfile.ZipFile, member: zipfile.ZipInfo, source: Path) -> int:
+    """Numbers that a member declares, checked against the bytes that it really has."""
+    key = member.filename.removesuffix(".npy")
+    with archive.open(member) as stream:
+        version = npy.read_magic(stream)
+        if version not in {(1, 0), (2, 0)}:
+            raise UserError(f"{source}: the array '{key}' is of an unknown format version.")
+        read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
+        shape, _, dtype = read_header(stream)
+        header_bytes = stream.tell()
+    if dtype.hasobject:
+        raise UserError(f"{source}: the array '{key}' holds pickled objects, which are never opened.")
+    if dtype.kind not in "fiu":
+        raise UserError(f"{source}: the array '{key}' holds {dtype}, not plain numbers.")
+    count = math.prod(shape)
+    if min(shape, default=0) < 0 or header_bytes + count * dtype.itemsize != member.file_size:
+        raise UserError(f"{source}: the array '{key}' declares the shape {shape} but does not hold as much.")
+    return count
+
+
+def _rate(arrays: dict[str, NDArray[np.generic]], source: Path) -> float:
+    if "rate_hz" not in arrays or arrays["rate_hz"].size != 1:
+        raise UserError(f"{source} has no single 'rate_hz'; say the sampling rate.")
+    rate = float(arrays["rate_hz"].astype(np.float64).ravel()[0])
+    if not (math.isfinite(rate) and rate > 0):
+        raise UserError(f"{source}: the sampling rate is {rate:g} Hz; it must be a finite number above zero.")
+    return rate
+
+
+def _episode_ends(values: NDArray[np.generic], samples: int, source: Path) -> list[int]:
+    if values.ndim != 1 or values.dtype.kind not in "iu":
+        raise UserError(f"{source}: 'episode_ends' must be a row of whole numbers.")
+    if values.size == 0:
+        raise UserError(f"{source}: there are no episodes in it.")
+    ends: list[int] = values.tolist()
+    for index, (start, end) in enumerate(zip([0, *ends[:-1]], ends, strict=True)):
+        if end == start:
+            raise UserError(f"{source}: episode {index} is empty: it ends at sample {end}, where it begins.")
+        if end < start:
+            raise UserError(
+                f"{source}: episode {index} ends at sample {end}, before it begins at sample {start}."
+            )
+    if ends[-1] != samples:
+        raise UserError(
+            f"{source}: 'episode_ends' ends at {ends[-1]}, but there are {samples} samples; one is truncated."
+        )
+    return ends
+
+
+def _gripper(toggles: NDArray[np.generic], samples: int, source: Path) -> FloatArray:
+    """(N, 1), one where the gripper has been toggled an odd number of times."""
+    index: IntArray = toggles.astype(np.int64)
+    if toggles.ndim != 1 or toggles.dtype.kind not in "iu" or index.min() < 0 or index.max() >= samples:
+        raise UserError(f"{source}: 'gripper_toggles' must be indices of its {samples} samples.")
+    changed = np.zeros((samples, 1))
+    changed[index] = 1.0
+    return changed

@@ -1,0 +1,130 @@
+"""Context-action pairs ``(c, a)`` drawn from demonstrations, for the decoder to learn from."""
+
+from typing import Final, Literal
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations, Episode, FloatArray, IntArray, Pairs
+
+STILL_RAD_S: Final = 0.01
+"""A joint slower than this stands still. The same figure ends a stop of the real arm."""
+
+
+def make_pairs(
+    demonstrations: Demonstrations,
+    window: int,
+    state_noise_rad: float,
+    context: Literal["state", "state_belief"],
+    rng: np.random.Generator,
+    actions: Literal["displacement", "recorded"] = "displacement",
+) -> Pairs:
+    """Draw every context-action pair that the demonstrations hold.
+
+    Without recorded actions, the action of sample t is the displacement to the state k samples
+    later, over the time between the two: ``a = (q[t+k] - q[t]) / |time[t+k] - time[t]|`` for k in
+    ±1..±window within the episode. Negative k runs the demonstration backwards: both directions of
+    a motion are worth having under a stick. Times are those of the samples, so that an uneven rate
+    does not bend the speeds.
+
+    Noise is added to a copy of the states after every action has been taken from the clean ones.
+    Were it added before, the action would hold the noise itself and a model would score by undoing
+    it.
+
+    Still samples before the first motion and after the last are left out: someone who waits with a
+    hand on the arm demonstrates nothing. Pauses within a motion stay.
+
+    Args:
+        demonstrations: whole, validated episodes.
+        window: how many samples ahead and back an action may look, at least 1.
+        state_noise_rad: standard deviation of the noise on the context's states, rad; 0 for none.
+        context: ``"state"`` for ``c = s``, ``"state_belief"`` for ``c = (s, b)``.
+        rng: source of the noise.
+        actions: ``"displacement"`` as above, or ``"recorded"`` for the actions in the episodes.
+
+    Returns:
+        The pairs, episode by episode. Context (N, n) or (N, n + G), action (N, n) in rad/s.
+
+    Raises:
+        UserError: a parameter makes no sense, a belief or a recorded action is asked for and
+            missing, or nothing moves.
+    """
+    if window < 1:
+        raise UserError(f"The pair window is {window} samples; it must be at least 1.")
+    if not (np.isfinite(state_noise_rad) and state_noise_rad >= 0):
+        raise UserError(
+            f"The state noise is {state_noise_rad:g} rad; it must be a finite number, zero or more."
+        )
+    contexts: list[FloatArray] = []
+    taken: list[FloatArray] = []
+    owner: list[IntArray] = []
+    for index, episode in enumerate(demonstrations.episodes):
+        moving = _moving(episode)
+        start, action = (
+            _recorded(episode, moving, index)
+            if actions == "recorded"
+            else _displaced(episode, moving, window)
+        )
+        contexts.append(_context(episode, index, context)[start])
+        taken.append(action)
+        owner.append(np.full(len(start), index, dtype=np.int64))
+    clean = np.concatenate(contexts)
+    if not len(clean):
+        raise UserError("The arm never moves in these demonstrations, so there is nothing to learn from.")
+    noisy = clean.copy()
+    noisy[:, : demonstrations.dof] += rng.normal(scale=state_noise_rad, size=(len(clean), demonstrations.dof))
+    return Pairs(
+        context=noisy, clean_context=clean, action=np.concatenate(taken), episode=np.concatenate(owner)
+    )
+
+
+def moving_range(state: FloatArray, timestamp: FloatArray) -> tuple[int, int]:
+    """First and last sample of an episode's motion, from the still arm before it to the one after.
+
+    Args:
+        state: (T, n), rad.
+        timestamp: (T,), s.
+
+    Returns:
+        Half-open range of samples; empty where no joint ever exceeds `STILL_RAD_S`.
+    """
+    speed = np.abs(np.diff(state, axis=0)).max(axis=1) / np.diff(timestamp)
+    steps = np.flatnonzero(speed > STILL_RAD_S)
+    return (int(steps[0]), int(steps[-1]) + 2) if len(steps) else (0, 0)
+
+
+def _moving(episode: Episode) -> slice:
+    return slice(*moving_range(episode.state, episode.timestamp))
+
+
+def _displaced(episode: Episode, moving: slice, window: int) -> tuple[IntArray, FloatArray]:
+    """Sample indices (P,) and the actions (P, n) that start there, ordered by sample, then by k."""
+    samples = np.arange(moving.start, moving.stop)
+    shift = np.concatenate([np.arange(-window, 0), np.arange(1, window + 1)])
+    start = np.repeat(samples, len(shift))
+    end = (samples[:, None] + shift).ravel()
+    inside = (end >= moving.start) & (end < moving.stop)
+    start, end = start[inside], end[inside]
+    elapsed = np.abs(episode.timestamp[end] - episode.timestamp[start])
+    return start, (episode.state[end] - episode.state[start]) / elapsed[:, None]
+
+
+def _recorded(episode: Episode, moving: slice, index: int) -> tuple[IntArray, FloatArray]:
+    """Sample indices (P,) and the actions (P, n) recorded there."""
+    if episode.action is None:
+        raise UserError(
+            f"Episode {index} has no recorded actions; take them from the states instead (displacement)."
+        )
+    return np.arange(moving.start, moving.stop), episode.action[moving]
+
+
+def _context(episode: Episode, index: int, kind: Literal["state", "state_belief"]) -> FloatArray:
+    """Context of every sample, (T, n) or (T, n + G)."""
+    if kind == "state":
+        return episode.state
+    belief = episode.extras.get("belief")
+    if belief is None:
+        raise UserError(
+            f"Episode {index} has no belief over goals; annotate the demonstrations or use context state."
+        )
+    return np.concatenate([episode.state, belief], axis=1)

@@ -1,0 +1,111 @@
+"""Reading the LeRobotDataset v3.0 layout, whoever wrote it: only what its totals vouch for."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from latentarm.demonstrations.bounds import check_values
+from latentarm.demonstrations.info import ACTION, DATA_PATTERN, STATE, Info
+from latentarm.demonstrations.tables import TASK_COLUMN, Table, float_column, integer_column, read_table
+from latentarm.errors import UserError
+from latentarm.types import Episode, FloatArray
+
+
+def read_tasks(root: Path) -> list[str]:
+    """Task texts in the order of their indices.
+
+    Raises:
+        UserError: the table of tasks is missing or damaged.
+    """
+    path = root / "meta/tasks.parquet"
+    table = read_table(path, ["task_index", TASK_COLUMN])
+    texts = table.column(TASK_COLUMN).to_pylist()
+    if integer_column(table, "task_index", path).tolist() != list(range(len(texts))):
+        raise UserError(f"{path} is damaged: its tasks are not numbered from zero.")
+    return [str(text) for text in texts]
+
+
+def committed_episodes(root: Path, info: Info) -> Table:
+    """The table of episodes without rows that a killed writer left.
+
+    Raises:
+        UserError: rows are missing or out of order.
+    """
+    folder = root / "meta/episodes"
+    paths = sorted(folder.glob("*/*.parquet"))
+    if not paths:
+        raise UserError(f"{folder} holds no table of episodes; the dataset is damaged.")
+    tables = [read_table(path) for path in paths]
+    required = {"episode_index", "tasks", "length", "data/chunk_index", "data/file_index"}
+    for path, table in zip(paths, tables, strict=True):
+        for name in sorted(required - set(table.column_names)):
+            raise UserError(f"{path} has no column {name}; the dataset is damaged.")
+    try:
+        rows = pa.concat_tables(tables, promote_options="default").slice(0, info.episodes)
+    except pa.ArrowException as error:
+        raise UserError(f"{folder} is damaged: its tables do not fit each other.") from error
+    if integer_column(rows, "episode_index", folder).tolist() != list(range(info.episodes)):
+        raise UserError(f"{folder} is damaged: it does not list the {info.episodes} episodes in order.")
+    return rows
+
+
+def read_episodes(root: Path, info: Info) -> tuple[Episode, ...]:
+    """Every committed episode with all its float features.
+
+    Args:
+        root: the dataset's folder.
+        info: what its ``meta/info.json`` says.
+
+    Raises:
+        UserError: a file is missing, damaged or too large, or an episode is not all there.
+    """
+    if info.episodes == 0:
+        return ()
+    check_values(root / "meta/info.json", "it", info.frames * sum(feature.width for feature in info.features))
+    rows = committed_episodes(root, info)
+    folder = root / "meta/episodes"
+    length, chunk, file = (
+        integer_column(rows, name, folder) for name in ("length", "data/chunk_index", "data/file_index")
+    )
+    if length.sum() != info.frames:
+        raise UserError(
+            f"{folder} is damaged: its episodes hold {length.sum()} samples and not {info.frames}."
+        )
+    tasks = ["; ".join(names or ()) for names in rows.column("tasks").to_pylist()]
+    episodes: list[Episode] = []
+    while len(episodes) < info.episodes:
+        first = len(episodes)
+        same = (chunk[first:] == chunk[first]) & (file[first:] == file[first])
+        stop = info.episodes if same.all() else first + int(np.argmin(same))
+        path = root / DATA_PATTERN.format(chunk_index=int(chunk[first]), file_index=int(file[first]))
+        episodes += _read_file(path, info, first, length[first:stop].tolist(), tasks[first:stop])
+    return tuple(episodes)
+
+
+def _read_file(
+    path: Path, info: Info, first: int, lengths: Sequence[int], tasks: Sequence[str]
+) -> list[Episode]:
+    """The episodes from ``first`` on that lie in one data file."""
+    widths = {feature.name: feature.width for feature in info.features} | {"timestamp": 1}
+    table = read_table(path, [*widths, "episode_index", "frame_index"])
+    index, frame = (integer_column(table, name, path) for name in ("episode_index", "frame_index"))
+    columns = {name: float_column(table, name, width, path) for name, width in widths.items()}
+    episodes: list[Episode] = []
+    for offset, (length, task) in enumerate(zip(lengths, tasks, strict=True)):
+        rows = np.flatnonzero(index == first + offset)
+        if not np.array_equal(frame[rows], np.arange(length)):
+            raise UserError(
+                f"{path}: episode {first + offset} should have {length} samples in order "
+                f"and has {len(rows)}; the dataset is damaged."
+            )
+        episodes.append(_episode({name: values[rows] for name, values in columns.items()}, task))
+    return episodes
+
+
+def _episode(columns: dict[str, FloatArray], task: str) -> Episode:
+    state, timestamp = columns.pop(STATE), columns.pop("timestamp")[:, 0]
+    return Episode(
+        state=state, timestamp=timestamp, action=columns.pop(ACTION, None), task=task, extras=columns
+    )

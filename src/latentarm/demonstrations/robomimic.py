@@ -1,0 +1,155 @@
+"""Importing HDF5 files in robomimic's layout (robosuite, LIBERO and others).
+
+States are ``data/demo_*/obs/robot0_joint_pos`` (robosuite; a second arm's ``robot1_joint_pos`` is
+appended) or ``data/demo_*/obs/joint_states`` (LIBERO), rad. There are no timestamps: they follow
+from the control frequency in the environment's arguments. Recorded actions in such files mostly
+are scaled end-effector displacements; they are kept only where the environment's arguments say
+that one arm was driven by a ``JOINT_VELOCITY`` controller, and are then scaled to rad/s.
+"""
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final, Literal, cast
+
+import h5py
+import numpy as np
+
+from latentarm.demonstrations.bounds import MAX_JSON_BYTES, check_values
+from latentarm.demonstrations.info import default_joint_names
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations, Episode, FloatArray
+
+STATE_KEYS: Final = ("robot0_joint_pos", "joint_states")
+SECOND_ARM_KEY: Final = "robot1_joint_pos"
+
+
+def read_robomimic(
+    source: Path,
+    rate_hz: float | None = None,
+    task: str | None = None,
+    actions: Literal["known", "joint_velocity"] = "known",
+) -> Demonstrations:
+    """Read demonstrations from a robomimic HDF5 file.
+
+    Args:
+        source: the file.
+        rate_hz: sampling rate, where the environment's arguments say none or are wrong.
+        task: what was done; the environment's name by default, else the file's.
+        actions: ``"known"`` keeps actions as described above; ``"joint_velocity"`` takes the
+            caller's word that the first n entries are joint velocities in rad/s.
+
+    Raises:
+        UserError: the file is damaged, or not of this layout.
+    """
+    try:
+        with h5py.File(source, "r") as file:
+            data = _group(file, "data", source)
+            arguments = _environment(data, source)
+            demos = (re.fullmatch(r"demo_(\d+)", str(name)) for name in data)
+            numbers = sorted(int(demo[1]) for demo in demos if demo)
+            if not numbers:
+                raise UserError(f"{source} has no demonstrations: there is no group data/demo_0.")
+            rate = _rate(arguments, source) if rate_hz is None else rate_hz
+            scale = 1.0 if actions == "joint_velocity" else _velocity_scale(arguments)
+            what = task or str(arguments.get("env_name", source.stem))
+            episodes = tuple(
+                _episode(_group(data, f"demo_{number}", source), index, rate, what, scale, source)
+                for index, number in enumerate(numbers)
+            )
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
+        raise UserError(f"{source} is not a whole HDF5 file; it is truncated or damaged.") from error
+    width = episodes[0].state.shape[1]
+    return Demonstrations(episodes=episodes, rate_hz=rate, joint_names=default_joint_names(width))
+
+
+def _group(parent: h5py.Group, name: str, source: Path) -> h5py.Group:
+    group = _member(parent, name)
+    if not isinstance(group, h5py.Group):
+        raise UserError(f"{source} has no group {_path(parent, name)}; it is not a robomimic file.")
+    return group
+
+
+def _member(parent: h5py.Group, name: str) -> object:
+    """A member that lies in this file itself: links could lead to any other file."""
+    return parent[name] if isinstance(parent.get(name, getlink=True), h5py.HardLink) else None
+
+
+def _path(parent: h5py.Group, name: str) -> str:
+    return f"{parent.name}/{name}".lstrip("/")
+
+
+def _array(parent: h5py.Group, name: str, source: Path) -> FloatArray | None:
+    """A plain dataset of numbers (T, k), or None where there is none."""
+    member = _member(parent, name)
+    if not isinstance(member, h5py.Dataset):
+        return None
+    if member.is_virtual or member.external or member.dtype.kind not in "fiu" or member.ndim != 2:
+        raise UserError(f"{source}: {_path(parent, name)} is not a plain table of numbers.")
+    check_values(source, _path(parent, name), math.prod(member.shape))
+    return np.asarray(member[()], dtype=np.float64)
+
+
+def _environment(data: h5py.Group, source: Path) -> Mapping[str, Any]:
+    text = data.attrs.get("env_args", "{}")
+    try:
+        if not isinstance(text, str) or len(text) > MAX_JSON_BYTES:
+            raise ValueError
+        arguments = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise UserError(f"{source}: the attribute env_args of data is not a JSON document.") from error
+    return cast(Mapping[str, Any], arguments) if isinstance(arguments, dict) else {}
+
+
+def _nested(mapping: Mapping[str, Any], *keys: str) -> Any:
+    value: Any = mapping
+    for key in keys:
+        value = cast(Mapping[str, Any], value).get(key) if isinstance(value, dict) else None
+    return value
+
+
+def _rate(arguments: Mapping[str, Any], source: Path) -> float:
+    rate = _nested(arguments, "env_kwargs", "control_freq")
+    if not isinstance(rate, int | float):
+        raise UserError(f"{source} does not say its control frequency; say the sampling rate.")
+    if not (math.isfinite(rate) and rate > 0):
+        raise UserError(
+            f"{source}: the control frequency is {rate:g} Hz; it must be a finite number above zero."
+        )
+    return float(rate)
+
+
+def _velocity_scale(arguments: Mapping[str, Any]) -> float | None:
+    """rad/s of a full action, where a joint-velocity controller took it, else None."""
+    controller = _nested(arguments, "env_kwargs", "controller_configs")
+    if _nested(arguments, "env_kwargs", "controller_configs", "body_parts", "right") is not None:
+        controller = controller["body_parts"]["right"]
+    if _nested({"c": controller}, "c", "type") != "JOINT_VELOCITY":
+        return None
+    largest_in, largest_out = controller.get("input_max"), controller.get("output_max")
+    numbers = isinstance(largest_in, int | float) and isinstance(largest_out, int | float)
+    return largest_out / largest_in if numbers and largest_in > 0 else None
+
+
+def _episode(
+    demo: h5py.Group, index: int, rate_hz: float, task: str, scale: float | None, source: Path
+) -> Episode:
+    observations = _group(demo, "obs", source)
+    found = (_array(observations, key, source) for key in STATE_KEYS)
+    state = next((values for values in found if values is not None), None)
+    if state is None:
+        raise UserError(f"{source}: {_path(demo, 'obs')} has no joint positions ({' or '.join(STATE_KEYS)}).")
+    second = _array(observations, SECOND_ARM_KEY, source)
+    if second is not None:
+        if len(second) != len(state):
+            raise UserError(
+                f"{source}: episode {index} is ragged: its arms have {len(state)} and {len(second)} samples."
+            )
+        state = np.concatenate([state, second], axis=1)
+    action = None
+    if scale is not None and second is None:
+        recorded = _array(demo, "actions", source)
+        action = None if recorded is None else recorded[:, : state.shape[1]] * scale
+    return Episode(state=state, timestamp=np.arange(len(state)) / rate_hz, action=action, task=task)

@@ -1,0 +1,298 @@
+"""What a dataset holds, in figures: for a person to look over before training on it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.demonstrations.pairs import STILL_RAD_S
+from latentarm.robots.limits import JointLimits
+from latentarm.robots.robot import Robot
+from latentarm.types import Demonstrations, Episode, FloatArray, Row
+
+STUDY: Final = "inspect"
+
+
+@final
+@dataclass(frozen=True)
+class EpisodeSummary:
+    """One episode.
+
+    Attributes:
+        index: its place in the dataset.
+        task: what was done.
+        samples: number of samples T.
+        duration_s: from the first sample to the last.
+        rate_hz: samples per second by its own timestamps.
+        path_rad: length of its path in joint space.
+        path_m: length of the end-effector's path, or None where the robot is unknown.
+        peak_speed_rad_s: fastest joint, from displacements between samples.
+        still_fraction: share of the time in which no joint is faster than `STILL_RAD_S`.
+    """
+
+    index: int
+    task: str
+    samples: int
+    duration_s: float
+    rate_hz: float
+    path_rad: float
+    path_m: float | None
+    peak_speed_rad_s: float
+    still_fraction: float
+
+
+@final
+@dataclass(frozen=True)
+class JointSummary:
+    """One joint over all episodes.
+
+    Attributes:
+        name: the joint.
+        lowest: rad.
+        highest: rad.
+        lower: its limit, rad, or None where the robot is unknown.
+        upper: likewise.
+        margin_rad: how far the nearer limit was away at the closest; negative past it.
+        speed_p50: median speed, rad/s.
+        speed_p95: 95th percentile.
+        speed_p99: 99th percentile.
+        speed_max: fastest.
+        speed_limit: hardware limit, rad/s, or None where the robot is unknown.
+    """
+
+    name: str
+    lowest: float
+    highest: float
+    lower: float | None
+    upper: float | None
+    margin_rad: float | None
+    speed_p50: float
+    speed_p95: float
+    speed_p99: float
+    speed_max: float
+    speed_limit: float | None
+
+
+@final
+@dataclass(frozen=True)
+class Table:
+    """A table as plain data: the command line draws it.
+
+    Attributes:
+        title: what it shows.
+        columns: headings with units.
+        rows: one text for each column.
+    """
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@final
+@dataclass(frozen=True)
+class Summary:
+    """A dataset.
+
+    Attributes:
+        robot: its name, or "" where unknown.
+        rate_hz: nominal sampling rate.
+        episodes: one summary each.
+        joints: one summary each.
+        goals: their names.
+        features: names of what is recorded beside the states.
+    """
+
+    robot: str
+    rate_hz: float
+    episodes: tuple[EpisodeSummary, ...]
+    joints: tuple[JointSummary, ...]
+    goals: tuple[str, ...]
+    features: tuple[str, ...]
+
+    @property
+    def samples(self) -> int:
+        """Samples in all episodes."""
+        return sum(episode.samples for episode in self.episodes)
+
+    @property
+    def duration_s(self) -> float:
+        """Length of all episodes together."""
+        return sum(episode.duration_s for episode in self.episodes)
+
+    def tables(self) -> tuple[Table, Table]:
+        """Episodes and joints, ready to be drawn."""
+        return _episode_table(self.episodes), _joint_table(self.joints)
+
+    def rows(self) -> list[Row]:
+        """Every figure in the one format that machines read; the condition is the episode or joint."""
+        rows = [
+            _row("episodes", "count", len(self.episodes)),
+            _row("samples", "count", self.samples),
+            _row("duration_s", "s", self.duration_s),
+            _row("rate_hz", "Hz", self.rate_hz),
+        ]
+        for episode in self.episodes:
+            name = f"episode_{episode.index}"
+            rows += [
+                _row("samples", "count", episode.samples, name),
+                _row("duration_s", "s", episode.duration_s, name),
+                _row("rate_hz", "Hz", episode.rate_hz, name),
+                _row("path_length_rad", "rad", episode.path_rad, name),
+                _row("path_length", "m", episode.path_m, name),
+                _row("peak_speed", "rad/s", episode.peak_speed_rad_s, name),
+                _row("still_fraction", "1", episode.still_fraction, name),
+            ]
+        for joint in self.joints:
+            rows += [
+                _row("lowest", "rad", joint.lowest, joint.name),
+                _row("highest", "rad", joint.highest, joint.name),
+                _row("limit_margin", "rad", joint.margin_rad, joint.name),
+                _row("speed_p50", "rad/s", joint.speed_p50, joint.name),
+                _row("speed_p95", "rad/s", joint.speed_p95, joint.name),
+                _row("speed_p99", "rad/s", joint.speed_p99, joint.name),
+                _row("speed_max", "rad/s", joint.speed_max, joint.name),
+            ]
+        return [row for row in rows if row.mean is not None]
+
+
+def summarise(demonstrations: Demonstrations, robot: Robot | None = None) -> Summary:
+    """Measure a dataset.
+
+    Args:
+        demonstrations: whole, validated episodes.
+        robot: the arm that was recorded; with it limits and the end-effector's path are known.
+    """
+    first = demonstrations.episodes[0]
+    recorded = ("action",) if first.action is not None else ()
+    return Summary(
+        robot=demonstrations.robot,
+        rate_hz=demonstrations.rate_hz,
+        episodes=tuple(_episode(index, one, robot) for index, one in enumerate(demonstrations.episodes)),
+        joints=_joints(demonstrations, None if robot is None else robot.limits),
+        goals=tuple(goal.name for goal in demonstrations.goals),
+        features=(*recorded, *sorted(first.extras)),
+    )
+
+
+def _speed(episode: Episode) -> FloatArray:
+    """(T - 1, n), rad/s, between one sample and the next."""
+    return np.abs(np.diff(episode.state, axis=0)) / np.diff(episode.timestamp)[:, None]
+
+
+def _episode(index: int, episode: Episode, robot: Robot | None) -> EpisodeSummary:
+    speed = _speed(episode).max(axis=1)
+    elapsed = np.diff(episode.timestamp)
+    duration = float(episode.timestamp[-1] - episode.timestamp[0])
+    path_m = None
+    if robot is not None:
+        path_m = _length(robot.chain.forward(episode.state).position)
+    return EpisodeSummary(
+        index=index,
+        task=episode.task,
+        samples=len(episode.timestamp),
+        duration_s=duration,
+        rate_hz=(len(episode.timestamp) - 1) / duration,
+        path_rad=_length(episode.state),
+        path_m=path_m,
+        peak_speed_rad_s=float(speed.max()),
+        still_fraction=float(elapsed[speed <= STILL_RAD_S].sum() / duration),
+    )
+
+
+def _length(points: FloatArray) -> float:
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+
+def _joints(demonstrations: Demonstrations, limits: JointLimits | None) -> tuple[JointSummary, ...]:
+    states = np.concatenate([episode.state for episode in demonstrations.episodes])
+    speeds = np.concatenate([_speed(episode) for episode in demonstrations.episodes])
+    lowest, highest = states.min(axis=0), states.max(axis=0)
+    p50, p95, p99, fastest = np.percentile(speeds, [50, 95, 99, 100], axis=0)
+    return tuple(
+        JointSummary(
+            name=name,
+            lowest=float(lowest[joint]),
+            highest=float(highest[joint]),
+            lower=None if limits is None else float(limits.lower[joint]),
+            upper=None if limits is None else float(limits.upper[joint]),
+            margin_rad=None
+            if limits is None
+            else float(min(lowest[joint] - limits.lower[joint], limits.upper[joint] - highest[joint])),
+            speed_p50=float(p50[joint]),
+            speed_p95=float(p95[joint]),
+            speed_p99=float(p99[joint]),
+            speed_max=float(fastest[joint]),
+            speed_limit=None if limits is None else float(limits.velocity[joint]),
+        )
+        for joint, name in enumerate(demonstrations.joint_names)
+    )
+
+
+def _row(measure: str, unit: str, value: float | None, condition: str | None = None) -> Row:
+    return Row(study=STUDY, measure=measure, unit=unit, mean=value, sd=None, n=1, condition=condition)
+
+
+def _text(value: float | None, digits: int) -> str:
+    return "–" if value is None else f"{value:.{digits}f}"
+
+
+def _episode_table(episodes: Sequence[EpisodeSummary]) -> Table:
+    columns = (
+        "episode",
+        "task",
+        "samples",
+        "duration (s)",
+        "rate (Hz)",
+        "joint path (rad)",
+        "tool path (m)",
+        "peak speed (rad/s)",
+        "still (%)",
+    )
+    rows = tuple(
+        (
+            str(one.index),
+            one.task,
+            str(one.samples),
+            _text(one.duration_s, 1),
+            _text(one.rate_hz, 1),
+            _text(one.path_rad, 2),
+            _text(one.path_m, 2),
+            _text(one.peak_speed_rad_s, 2),
+            _text(100 * one.still_fraction, 0),
+        )
+        for one in episodes
+    )
+    return Table("Episodes", columns, rows)
+
+
+def _joint_table(joints: Sequence[JointSummary]) -> Table:
+    columns = (
+        "joint",
+        "lowest (rad)",
+        "highest (rad)",
+        "limits (rad)",
+        "margin (rad)",
+        "speed p50",
+        "p95",
+        "p99",
+        "max (rad/s)",
+        "limit (rad/s)",
+    )
+    rows = tuple(
+        (
+            one.name,
+            _text(one.lowest, 3),
+            _text(one.highest, 3),
+            "–" if one.lower is None else f"{_text(one.lower, 3)} … {_text(one.upper, 3)}",
+            _text(one.margin_rad, 3),
+            _text(one.speed_p50, 3),
+            _text(one.speed_p95, 2),
+            _text(one.speed_p99, 2),
+            _text(one.speed_max, 2),
+            _text(one.speed_limit, 2),
+        )
+        for one in joints
+    )
+    return Table("Joints", columns, rows)

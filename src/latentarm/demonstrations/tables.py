@@ -1,0 +1,246 @@
+"""The dataset's Parquet tables: samples, episodes and tasks, column for column as LeRobot v3.0 has them."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final, TypeAlias, cast
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from latentarm.demonstrations.bounds import check_values
+from latentarm.demonstrations.feature_statistics import MEASURES, episode_statistics, pooled
+from latentarm.demonstrations.info import ACTION, INDEX_DTYPES, STATE, Feature
+from latentarm.errors import UserError
+from latentarm.types import Episode, FloatArray, IntArray
+
+Table: TypeAlias = Any
+"""A `pyarrow.Table`: the library ships no types."""
+
+TASK_COLUMN: Final = "__index_level_0__"
+"""The name that pandas gives to an index without one: readers of the layout look tasks up in it."""
+
+INTEGER_COLUMNS: Final = tuple(name for name, dtype in INDEX_DTYPES.items() if dtype == "int64")
+
+
+def sample_columns(
+    episode: Episode, features: Sequence[Feature], *, episode_index: int, first_index: int, task_index: int
+) -> dict[str, FloatArray]:
+    """One episode as columns.
+
+    Args:
+        episode: whole and validated.
+        features: the dataset's features.
+        episode_index: its place in the dataset.
+        first_index: samples in the dataset before it.
+        task_index: place of its task in the table of tasks.
+
+    Returns:
+        Every column of the sample table by name, (T, k), in the layout's order and in single
+        precision where the layout has it.
+    """
+    samples = len(episode.timestamp)
+    recorded = {STATE: episode.state, ACTION: episode.action, **episode.extras}
+    columns = {feature.name: cast(FloatArray, recorded[feature.name]) for feature in features}
+    columns["timestamp"] = episode.timestamp[:, None]
+    columns = {name: values.astype(np.float32).astype(np.float64) for name, values in columns.items()}
+    counted = {
+        "frame_index": np.arange(samples),
+        "episode_index": np.full(samples, episode_index),
+        "index": first_index + np.arange(samples),
+        "task_index": np.full(samples, task_index),
+    }
+    return columns | {name: values[:, None].astype(np.float64) for name, values in counted.items()}
+
+
+def sample_table(columns: dict[str, FloatArray]) -> Table:
+    """Columns as one Arrow table: vectors are fixed-size lists of float32, scalars plain columns."""
+    arrays: dict[str, pa.Array] = {}
+    described: dict[str, object] = {}
+    for name, values in columns.items():
+        width = values.shape[1]
+        dtype = "int64" if name in INTEGER_COLUMNS else "float32"
+        flat = pa.array(np.ascontiguousarray(values, dtype=dtype).ravel())
+        arrays[name] = flat if width == 1 else pa.FixedSizeListArray.from_arrays(flat, width)
+        value = {"dtype": dtype, "_type": "Value"}
+        described[name] = value if width == 1 else {"feature": value, "length": width, "_type": "List"}
+    metadata = {"huggingface": json.dumps({"info": {"features": described}})}
+    return pa.table(arrays).replace_schema_metadata(metadata)
+
+
+def episode_row(
+    columns: dict[str, FloatArray], task: str, *, data_place: tuple[int, int], episodes_place: tuple[int, int]
+) -> Table:
+    """The row that the table of episodes holds for one episode.
+
+    Args:
+        columns: what `sample_columns` gave.
+        task: what was done, in words.
+        data_place: chunk and file with its samples.
+        episodes_place: chunk and file with this row.
+    """
+    index = columns["index"]
+    plain = {
+        "episode_index": int(columns["episode_index"][0, 0]),
+        "tasks": [task],
+        "length": len(index),
+        "data/chunk_index": data_place[0],
+        "data/file_index": data_place[1],
+        "dataset_from_index": int(index[0, 0]),
+        "dataset_to_index": int(index[-1, 0]) + 1,
+    }
+    arrays: dict[str, pa.Array] = {
+        name: pa.array([value], type=pa.list_(pa.string()) if name == "tasks" else pa.int64())
+        for name, value in plain.items()
+    }
+    for name, measures in episode_statistics(columns).items():
+        for measure, values in measures.items():
+            integral = measure == "count" or (measure in {"min", "max"} and name in INTEGER_COLUMNS)
+            kind = np.int64 if integral else np.float64
+            arrays[f"stats/{name}/{measure}"] = pa.array([values.astype(kind)])
+    arrays["meta/episodes/chunk_index"] = pa.array([episodes_place[0]], type=pa.int64())
+    arrays["meta/episodes/file_index"] = pa.array([episodes_place[1]], type=pa.int64())
+    return pa.table(arrays)
+
+
+def statistics_json(episodes: Table) -> str:
+    """``meta/stats.json`` from the rows of the table of episodes.
+
+    Raises:
+        UserError: a row holds no statistics.
+    """
+    names = [column.split("/")[1] for column in episodes.column_names if column.endswith("/mean")]
+    document: dict[str, dict[str, list[Any]]] = {}
+    for name in names:
+        measures: dict[str, FloatArray] = {}
+        for measure in MEASURES:
+            column = episodes.column(f"stats/{name}/{measure}").combine_chunks()
+            try:
+                measures[measure] = column.flatten().to_numpy(zero_copy_only=False).reshape(len(column), -1)
+            except ValueError as error:
+                raise UserError(f"The dataset's statistics of {name} are damaged; import it anew.") from error
+        values = pooled(measures)
+        integral = {"count", "min", "max"} if name in INTEGER_COLUMNS else {"count"}
+        document[name] = {
+            measure: values[measure].astype(np.int64 if measure in integral else np.float64).tolist()
+            for measure in MEASURES
+        }
+    return json.dumps(document, indent=4, allow_nan=False)
+
+
+def task_table(tasks: Sequence[str]) -> Table:
+    """The table of tasks, with the note by which pandas finds its index in it."""
+    note = {
+        "index_columns": [TASK_COLUMN],
+        "column_indexes": [
+            {
+                "name": None,
+                "field_name": None,
+                "pandas_type": "unicode",
+                "numpy_type": "object",
+                "metadata": {"encoding": "UTF-8"},
+            }
+        ],
+        "columns": [
+            {
+                "name": "task_index",
+                "field_name": "task_index",
+                "pandas_type": "int64",
+                "numpy_type": "int64",
+                "metadata": None,
+            },
+            {
+                "name": None,
+                "field_name": TASK_COLUMN,
+                "pandas_type": "unicode",
+                "numpy_type": "object",
+                "metadata": None,
+            },
+        ],
+        "attributes": {},
+        "creator": {"library": "pyarrow", "version": pa.__version__},
+        "pandas_version": "2.2.0",
+    }
+    table = pa.table(
+        {
+            "task_index": pa.array(range(len(tasks)), type=pa.int64()),
+            TASK_COLUMN: pa.array(list(tasks), type=pa.string()),
+        }
+    )
+    return table.replace_schema_metadata({"pandas": json.dumps(note)})
+
+
+def read_table(path: Path, columns: Sequence[str] | None = None) -> Table:
+    """Read a Parquet file, or the named columns of it, once its size is known to be bearable.
+
+    Raises:
+        UserError: it is missing, damaged, too large, or lacks a column.
+    """
+    try:
+        with pq.ParquetFile(path, memory_map=False) as stored:
+            if columns is not None:
+                for name in columns:
+                    if name not in stored.schema_arrow.names:
+                        raise UserError(f"{path} has no column {name}; the dataset is damaged.")
+            check_values(path, "it", _stored_values(stored.metadata, columns))
+            return stored.read(columns=None if columns is None else list(columns), use_threads=False)
+    except FileNotFoundError as error:
+        raise UserError(f"{path} is missing; the dataset is damaged.") from error
+    except (pa.ArrowException, OSError) as error:
+        raise UserError(f"{path} is not a whole Parquet file; it is truncated or damaged.") from error
+
+
+def _stored_values(metadata: Any, columns: Sequence[str] | None) -> int:
+    """Numbers that reading the columns would hold, from the file's footer alone."""
+    total = 0
+    for group in range(metadata.num_row_groups):
+        row_group = metadata.row_group(group)
+        for index in range(row_group.num_columns):
+            column = row_group.column(index)
+            # A nested column's path goes on with ".list.element"; names themselves hold dots too.
+            if columns is None or any(
+                column.path_in_schema == name or column.path_in_schema.startswith(f"{name}.list")
+                for name in columns
+            ):
+                total += column.num_values
+    return total
+
+
+def float_column(table: Table, name: str, width: int, path: Path) -> FloatArray:
+    """A column of vectors (or of scalars, where the width is 1) as an array.
+
+    Returns:
+        (N, width).
+
+    Raises:
+        UserError: an entry is missing or of another width.
+    """
+    column = table.column(name).combine_chunks()
+    kind = column.type
+    if pa.types.is_fixed_size_list(kind):
+        ragged, values = kind.list_size != width, column.flatten()
+    elif pa.types.is_list(kind):
+        ragged, values = bool(np.any(np.diff(column.offsets.to_numpy()) != width)), column.flatten()
+    else:
+        ragged, values = width != 1, column
+    if (
+        ragged
+        or column.null_count
+        or len(values) != len(column) * width
+        or not pa.types.is_floating(values.type)
+    ):
+        raise UserError(f"{path}: the column {name} is ragged: every entry must hold {width} numbers.")
+    return values.to_numpy(zero_copy_only=False).astype(np.float64).reshape(-1, width)
+
+
+def integer_column(table: Table, name: str, path: Path) -> IntArray:
+    """A column of whole numbers as an array (N,).
+
+    Raises:
+        UserError: an entry is missing or not a whole number.
+    """
+    column = table.column(name)
+    if column.null_count or not pa.types.is_integer(column.type):
+        raise UserError(f"{path}: the column {name} must hold whole numbers.")
+    return column.to_numpy().astype(np.int64)
