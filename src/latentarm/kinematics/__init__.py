@@ -1,0 +1,1 @@
+"""Kinematic chains in NumPy and in torch, rotations, and distances between capsules."""

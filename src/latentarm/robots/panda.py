@@ -1,0 +1,146 @@
+"""The Franka Emika Panda, built offline from the manufacturer's published figures."""
+
+import mujoco
+import numpy as np
+
+from latentarm.robots.assemble import assemble
+from latentarm.robots.limits import JointLimits
+from latentarm.robots.robot import Robot
+from latentarm.types import FloatArray
+
+HOME: FloatArray = np.array([0.0, -np.pi / 4, 0.0, -3 * np.pi / 4, 0.0, np.pi / 2, np.pi / 4])
+"""(7,), the manufacturer's ready pose, rad."""
+
+LIMITS = JointLimits(
+    lower=np.array([-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973]),
+    upper=np.array([2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973]),
+    velocity=np.array([2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61]),
+    acceleration=np.array([15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0]),
+    jerk=np.array([7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0]),
+)
+"""Franka control-parameters documentation."""
+
+TOOL_SPEED_LIMIT = 1.7
+"""Cartesian limit of the end-effector, m/s."""
+
+# Modified Denavit-Hartenberg (Craig): a and d in m, alpha in rad. Joint i turns about its own z axis.
+_A = (0.0, 0.0, 0.0, 0.0825, -0.0825, 0.0, 0.088)
+_D = (0.333, 0.0, 0.316, 0.0, 0.384, 0.0, 0.0)
+_ALPHA = (0.0, -np.pi / 2, np.pi / 2, np.pi / 2, -np.pi / 2, np.pi / 2, np.pi / 2)
+_FLANGE_D = 0.107
+_HAND_TURN = -np.pi / 4
+_TOOL_D = 0.1034  # hand -> the point between the fingertips
+
+# Mass, kg; centre of mass, m; inertia xx, yy, zz, xy, xz, yz about it, kg m². Links 1-7 as identified
+# by Gaz et al. (IEEE RA-L 4(4), 2019); the base likewise.
+_INERTIA = (
+    (0.629769, (-0.041018, -0.00014, 0.049974), (0.00315, 0.00388, 0.004285, 8.2904e-7, 0.00015, 8.2299e-6)),
+    (4.970684, (0.003875, 0.002081, -0.04762), (0.70337, 0.70661, 0.009117, -0.000139, 0.006772, 0.019169)),
+    (0.646926, (-0.003141, -0.02872, 0.003495), (0.007962, 0.02811, 0.025995, -0.003925, 0.010254, 0.000704)),
+    (
+        3.228604,
+        (0.027518, 0.039252, -0.066502),
+        (0.037242, 0.036155, 0.01083, -0.004761, -0.011396, -0.012805),
+    ),
+    (3.587895, (-0.05317, 0.104419, 0.027454), (0.025853, 0.019552, 0.028323, 0.007796, -0.001332, 0.008641)),
+    (
+        1.225946,
+        (-0.011953, 0.041065, -0.038437),
+        (0.035549, 0.029474, 0.008627, -0.002117, -0.004037, 0.000229),
+    ),
+    (
+        1.666555,
+        (0.060149, -0.014117, -0.010517),
+        (0.001964, 0.004354, 0.005433, 0.000109, -0.001158, 0.000341),
+    ),
+    (
+        0.735522,
+        (0.010517, -0.004252, 0.061597),
+        (0.012516, 0.010027, 0.004815, -0.000428, -0.001196, -0.000741),
+    ),
+)
+_HAND_INERTIA = (0.76, (-0.01, 0.0, 0.03), (0.001, 0.0025, 0.0017, 0.0, 0.0, 0.0))
+
+_WHITE = (0.93, 0.94, 0.95, 1.0)
+_GREY = (0.35, 0.37, 0.40, 1.0)
+
+# The shell, capsule by capsule: body, both ends in its frame (m), radius (m), colour. Each covers the
+# robot's real shell to about a centimetre; the seams between neighbours overlap.
+_SHELL = (
+    ("link0", (-0.085, 0.0, 0.072), (0.0, 0.0, 0.072), 0.07, _WHITE),
+    ("link1", (0.0, 0.0, -0.16), (0.0, 0.0, -0.05), 0.06, _WHITE),
+    ("link2", (0.0, 0.0, -0.06), (0.0, 0.0, 0.06), 0.06, _WHITE),
+    ("link3", (0.0, 0.0, -0.22), (0.0, 0.0, -0.07), 0.06, _WHITE),
+    ("link4", (0.0, 0.0, -0.06), (0.0, 0.0, 0.06), 0.06, _WHITE),
+    ("link5", (0.0, 0.0, -0.31), (0.0, 0.0, -0.21), 0.06, _WHITE),
+    ("link5", (0.0, 0.06, -0.21), (0.0, 0.075, -0.05), 0.035, _WHITE),
+    ("link6", (0.0, 0.0, -0.07), (0.0, 0.0, 0.01), 0.05, _WHITE),
+    ("link7", (0.0, 0.0, -0.04), (0.0, 0.0, 0.07), 0.04, _WHITE),
+    ("link7", (0.05, 0.0, 0.08), (0.065, 0.0, 0.08), 0.03, _WHITE),
+    ("hand", (0.0, -0.066, 0.03), (0.0, 0.066, 0.03), 0.036, _GREY),
+    ("hand", (0.0, -0.02, 0.0664), (0.0, -0.02, 0.1024), 0.01, _GREY),
+    ("hand", (0.0, 0.02, 0.0664), (0.0, 0.02, 0.1024), 0.01, _GREY),
+)
+# For the eye only: the elbow's bridges over the 82.5 mm offset on either side of joint 4, and the waist.
+_DECORATION = (
+    ("link0", (0.0, 0.0, 0.06), (0.0, 0.0, 0.14), 0.055, _GREY),
+    ("link3", (0.0, 0.0, -0.1), (0.0825, 0.0, 0.0), 0.05, _WHITE),
+    ("link4", (0.0, 0.0, 0.0), (-0.0825, 0.08, 0.0), 0.05, _WHITE),
+    ("link6", (0.0, 0.0, 0.0), (0.088, 0.0, 0.0), 0.04, _GREY),
+)
+
+
+def panda() -> Robot:
+    """The Panda with its hand at a fixed opening; "tool" is the point between the fingertips."""
+    spec = mujoco.MjSpec()
+    spec.modelname = "panda"
+    spec.compiler.degree = False
+    body = spec.worldbody.add_body(name="link0")
+    bodies = {"link0": body}
+    _give_inertia(body, *_INERTIA[0])
+    for i, (a, d, alpha) in enumerate(zip(_A, _D, _ALPHA, strict=True)):
+        body = body.add_body(
+            name=f"link{i + 1}",
+            pos=[a, -d * np.sin(alpha), d * np.cos(alpha)],
+            quat=[np.cos(alpha / 2), np.sin(alpha / 2), 0.0, 0.0],
+        )
+        bodies[body.name] = body
+        body.add_joint(
+            name=f"joint{i + 1}",
+            axis=[0.0, 0.0, 1.0],
+            range=[LIMITS.lower[i], LIMITS.upper[i]],
+            armature=0.1,
+            damping=[1.0, 0.0, 0.0],
+        )
+        _give_inertia(body, *_INERTIA[i + 1])
+    hand = body.add_body(
+        name="hand",
+        pos=[0.0, 0.0, _FLANGE_D],
+        quat=[np.cos(_HAND_TURN / 2), 0.0, 0.0, np.sin(_HAND_TURN / 2)],
+    )
+    bodies["hand"] = hand
+    _give_inertia(hand, *_HAND_INERTIA)
+    hand.add_site(name="tool", pos=[0.0, 0.0, _TOOL_D], size=[0.005, 0.005, 0.005])
+    for shells, collides in ((_SHELL, 1), (_DECORATION, 0)):
+        for name, start, end, radius, colour in shells:
+            bodies[name].add_geom(
+                type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+                fromto=[*start, *end],
+                size=[radius, 0.0, 0.0],
+                rgba=colour,
+                contype=collides,
+                conaffinity=collides,
+            )
+    spec.compile()
+    spec.add_key(name="home", qpos=list(HOME))
+    spec.compile()
+    return assemble("panda", spec.to_xml(), ["tool"], LIMITS, HOME, TOOL_SPEED_LIMIT)
+
+
+def _give_inertia(
+    body: mujoco.MjsBody, mass: float, centre: tuple[float, ...], inertia: tuple[float, ...]
+) -> None:
+    body.explicitinertial = True
+    body.mass = mass
+    body.ipos = list(centre)
+    body.fullinertia = list(inertia)

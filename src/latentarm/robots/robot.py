@@ -1,0 +1,56 @@
+"""A robot as everything else sees it; importing this loads no physics engine."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, final
+
+from latentarm.kinematics.capsules import Capsules
+from latentarm.kinematics.chain import Chain
+from latentarm.robots.limits import JointLimits
+from latentarm.types import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    import mujoco
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """An arm: how it moves, how far and how fast it may, and the room it takes.
+
+    Attributes:
+        name: its name in the catalogue, or the path of its model.
+        chain: its kinematics; the first tool is the end-effector.
+        limits: hardware limits of its joints.
+        home: (n,), a configuration to start from, rad.
+        capsules: its shape, for distances online.
+        self_pairs: (P, 2), index pairs of capsules that could collide with each other.
+        mjcf: its model as MJCF text; mesh files in it have absolute paths.
+        tool_speed_limit: hardware limit of the tool's speed, m/s.
+        model_path: the file that the model was read from, or None for a built-in robot.
+    """
+
+    name: str
+    chain: Chain
+    limits: JointLimits
+    home: FloatArray
+    capsules: Capsules
+    self_pairs: IntArray
+    mjcf: str
+    tool_speed_limit: float
+    model_path: str | None = None
+
+    @property
+    def dof(self) -> int:
+        """Number of joints n."""
+        return self.chain.dof
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """The n joints' names."""
+        return self.chain.joint_names
+
+    def model(self) -> "mujoco.MjModel":
+        """The robot's MuJoCo model, compiled anew."""
+        import mujoco
+
+        return mujoco.MjModel.from_xml_string(self.mjcf)

@@ -1,0 +1,170 @@
+"""A robot's capsules, derived from the geoms of any MuJoCo model."""
+
+from itertools import combinations
+
+import mujoco
+import numpy as np
+
+from latentarm.kinematics.capsules import Capsules
+from latentarm.kinematics.reader import Reading
+from latentarm.types import FloatArray
+
+PER_BODY = 2
+"""Capsules that one body keeps; more are merged, so that distances stay cheap online."""
+
+PER_LINK = 4
+"""Capsules that one link keeps, over all the bodies fixed to it."""
+
+Balls = tuple[FloatArray, FloatArray]
+"""Centres (K, 3), m, and radii (K,), m, of balls whose convex hull covers a shape."""
+
+
+def read_capsules(model: mujoco.MjModel, reading: Reading) -> Capsules:
+    """Capsules that cover a robot: its moving links and the fixed bodies that carry them.
+
+    Spheres and capsules stay as they are; a cylinder becomes the capsule around its axis; boxes,
+    meshes and other geoms become the capsule around their corners or vertices. A body's visual
+    geoms count only where it has none that collide. Scenery (planes, geoms of the world itself,
+    bodies that do not carry the robot) is left out: it is the task's business.
+
+    Args:
+        model: the robot's model.
+        reading: what `latentarm.kinematics.reader.read` found in it.
+
+    Returns:
+        The capsules, each in its link's frame.
+    """
+    by_link: dict[int, list[tuple[str, Balls]]] = {}
+    for body in range(1, model.nbody):
+        if not _belongs(model, reading, body):
+            continue
+        pieces = [_balls(model, geom, reading.body_transform[body]) for geom in _solid_geoms(model, body)]
+        name = str(model.body(body).name) or f"body {body}"
+        kept = _merged([(name, piece) for piece in pieces], PER_BODY)
+        by_link.setdefault(int(reading.body_link[body]), []).extend(kept)
+    names: list[str] = []
+    links: list[int] = []
+    shapes: list[tuple[FloatArray, FloatArray, float]] = []
+    for link, pieces in sorted(by_link.items()):
+        for name, balls in _merged(pieces, PER_LINK):
+            names.append(name)
+            links.append(link)
+            shapes.append(bounding_capsule(*balls))
+    return Capsules(
+        name=tuple(names),
+        link=np.array(links, dtype=np.int64),
+        start=np.array([start for start, _, _ in shapes]).reshape(-1, 3),
+        end=np.array([end for _, end, _ in shapes]).reshape(-1, 3),
+        radius=np.array([radius for _, _, radius in shapes]),
+    )
+
+
+def bounding_capsule(centres: FloatArray, radii: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    """A small capsule around balls: the best along their principal, their longest or a frame axis.
+
+    Args:
+        centres: (K, 3), m.
+        radii: (K,), m; zero for points.
+
+    Returns:
+        Both ends of its segment, each (3,), m, and its radius, m.
+    """
+    spread = centres - centres.mean(axis=0)
+    farthest = spread[np.argmax(np.vecdot(spread, spread))]
+    longest = centres[np.argmax(np.linalg.norm(centres - centres.mean(axis=0) - farthest, axis=1))]
+    candidates = [*np.linalg.svd(spread, full_matrices=True)[2], *np.eye(3)]
+    direction = longest - centres.mean(axis=0) - farthest
+    if np.linalg.norm(direction) > 0.0:
+        candidates.append(direction / np.linalg.norm(direction))
+    found = [_capsule_along(axis, centres, radii) for axis in candidates]
+    return min(found, key=_volume)
+
+
+def _capsule_along(
+    axis: FloatArray, centres: FloatArray, radii: FloatArray
+) -> tuple[FloatArray, FloatArray, float]:
+    """The capsule around balls whose segment runs along a unit axis amid them."""
+    along = centres @ axis
+    across = centres - along[:, None] * axis
+    middle = 0.5 * ((across - radii[:, None]).min(axis=0) + (across + radii[:, None]).max(axis=0))
+    middle -= (middle @ axis) * axis
+    away = np.linalg.norm(across - middle, axis=1)
+    radius = float(np.max(away + radii))
+    # A ball is inside while the segment reaches to within radius - r of its centre.
+    reach = np.sqrt(np.maximum((radius - radii) ** 2 - away**2, 0.0))
+    low, high = float(np.min(along + reach)), float(np.max(along - reach))
+    if low > high:
+        low = high = 0.5 * (low + high)
+    return middle + low * axis, middle + high * axis, radius
+
+
+def _volume(capsule: tuple[FloatArray, FloatArray, float]) -> float:
+    start, end, radius = capsule
+    return float(np.pi * radius**2 * (np.linalg.norm(end - start) + 4.0 / 3.0 * radius))
+
+
+def _merged(pieces: list[tuple[str, Balls]], most: int) -> list[tuple[str, Balls]]:
+    """At most ``most`` capsules for the pieces, merged two by two where that adds the least volume."""
+    kept = [(name, _as_balls(bounding_capsule(*balls))) for name, balls in pieces]
+    while len(kept) > most:
+        joined = {
+            (i, j): bounding_capsule(
+                np.concatenate([kept[i][1][0], kept[j][1][0]]), np.concatenate([kept[i][1][1], kept[j][1][1]])
+            )
+            for i, j in combinations(range(len(kept)), 2)
+        }
+        volumes = [_volume(bounding_capsule(*balls)) for _, balls in kept]
+        i, j = min(joined, key=lambda pair: _volume(joined[pair]) - volumes[pair[0]] - volumes[pair[1]])
+        kept[i] = (kept[i][0], _as_balls(joined[i, j]))
+        del kept[j]
+    return kept
+
+
+def _as_balls(capsule: tuple[FloatArray, FloatArray, float]) -> Balls:
+    start, end, radius = capsule
+    return np.stack([start, end]), np.array([radius, radius])
+
+
+def _belongs(model: mujoco.MjModel, reading: Reading, body: int) -> bool:
+    """Whether a body is part of the robot: moved by it, carrying it, or fixed to what carries it."""
+    if reading.body_link[body] >= 0:
+        return True
+    while body > 0:
+        if body in reading.base_bodies:
+            return True
+        body = int(model.body_parentid[body])
+    return False
+
+
+def _solid_geoms(model: mujoco.MjModel, body: int) -> list[int]:
+    first = int(model.body_geomadr[body])
+    geoms = [
+        geom
+        for geom in range(first, first + int(model.body_geomnum[body]))
+        if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_PLANE
+    ]
+    colliding = [geom for geom in geoms if model.geom_contype[geom] or model.geom_conaffinity[geom]]
+    return colliding or geoms
+
+
+def _balls(model: mujoco.MjModel, geom: int, body_transform: FloatArray) -> Balls:
+    """Balls that cover a geom, in the frame of the link that its body rides on."""
+    kind, size = model.geom_type[geom], model.geom_size[geom]
+    if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
+        centres, radius = np.zeros((1, 3)), float(size[0])
+    elif kind in (mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_CYLINDER):
+        centres, radius = np.array([[0.0, 0.0, -size[1]], [0.0, 0.0, size[1]]]), float(size[0])
+    elif kind == mujoco.mjtGeom.mjGEOM_MESH:
+        mesh = int(model.geom_dataid[geom])
+        first = int(model.mesh_vertadr[mesh])
+        centres = model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])].astype(np.float64)
+        radius = 0.0
+    else:
+        middle, half = model.geom_aabb[geom][:3], model.geom_aabb[geom][3:]
+        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        centres, radius = middle + signs * half, 0.0
+    rotation = np.empty(9)
+    mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
+    in_body = centres @ rotation.reshape(3, 3).T + model.geom_pos[geom]
+    placed = in_body @ body_transform[:3, :3].T + body_transform[:3, 3]
+    return placed, np.full(len(centres), radius)
