@@ -1,0 +1,69 @@
+"""Steering by learned latent actions."""
+
+from collections.abc import Callable
+from typing import final
+
+import numpy as np
+
+from latentarm.control.controller import Controller
+from latentarm.errors import UserError
+from latentarm.models.decoder import Decoder
+from latentarm.types import Context, FloatArray
+
+Alignment = Callable[[FloatArray, FloatArray], FloatArray]
+"""``z = f(u, c)`` (equation 4): inputs (..., d) and a context vector (c,) to latent actions (..., d)."""
+
+
+def identity(u: FloatArray, context: FloatArray) -> FloatArray:
+    """``z = u``: the alignment before anything is known about the person."""
+    return u
+
+
+@final
+class LatentController(Controller):
+    """The person's input is a latent action, decoded in context: ``a_h = phi(f(u, c), c)``.
+
+    Args:
+        decoder: a trained decoder; it says whether its context is ``s`` or ``(s, b)``.
+        alignment: from inputs to latent actions.
+    """
+
+    def __init__(self, decoder: Decoder, alignment: Alignment = identity) -> None:
+        self._decoder = decoder
+        self._alignment = alignment
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """One mode: latent actions need no switching."""
+        return ("latent",)
+
+    @property
+    def input_dim(self) -> int:
+        """As many axes as the latent space has."""
+        return self._decoder.latent_dim
+
+    def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
+        """The alignment of equation 4."""
+        return self._alignment(u, self._vector(context))
+
+    def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
+        """The decoder of equation 1.
+
+        Raises:
+            UserError: the decoder was trained for another arm or another number of goals.
+        """
+        return self._decoder.decode(z, self._vector(context))
+
+    def _vector(self, context: Context) -> FloatArray:
+        """The context as the decoder was trained on it, (c,)."""
+        if self._decoder.context == "state":
+            vector = context.state
+        else:
+            vector = np.concatenate([context.state, context.belief])
+        if vector.shape[-1] != self._decoder.context_dim:
+            raise UserError(
+                f"The model's context has {self._decoder.context_dim} entries, but the arm gives "
+                f"{len(context.state)} joint positions and {len(context.belief)} goals: "
+                "use a model trained for this arm and these goals."
+            )
+        return vector

@@ -1,0 +1,1 @@
+"""Simulated people who give inputs: for tests, figures and tuning, never a substitute for real ones."""

@@ -1,0 +1,188 @@
+"""A simulated person who is approximately optimal (equation 24)."""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from latentarm.control.controller import Controller
+from latentarm.errors import UserError
+from latentarm.kinematics.rotations import angle_between
+from latentarm.operators.operator import Operator
+from latentarm.robots.robot import Robot
+from latentarm.types import Context, FloatArray, Input, Pose
+
+
+@final
+@dataclass(frozen=True)
+class BoltzmannConfig:
+    """How the simulated person thinks.
+
+    Attributes:
+        beta: rationality of equation 24, 1/m²; 0 acts at random, infinity always takes the best.
+        horizon_s: the look-ahead dt of equation 24, s: how far ahead an input is imagined.
+        rotation_weight: what a radian of wrong orientation counts, m.
+        magnitudes: sizes ‖u‖ of the inputs that are considered, beside no input at all.
+        directions: how many equal angles are considered on a 2-axis input; one axis has two
+            directions, more than two axes have two along each axis.
+        decision_s: a person decides this often and holds the input in between, s.
+        switch_cost: a switch of mode must bring the tool this much closer to be worth it, m.
+        switch_s: a switch takes this long, during which the input is zero, s.
+    """
+
+    beta: float = 5000.0
+    horizon_s: float = 0.5
+    rotation_weight: float = 0.2
+    magnitudes: tuple[float, ...] = (0.2, 0.6, 1.0)
+    directions: int = 8
+    decision_s: float = 0.1
+    switch_cost: float = 0.02
+    switch_s: float = 0.8
+
+    def __post_init__(self) -> None:
+        if not self.beta >= 0:
+            raise UserError(f"The simulated person's beta must be zero or more, not {self.beta}.")
+        for name in ("horizon_s", "decision_s"):
+            if not 0 < getattr(self, name) < np.inf:
+                raise UserError(
+                    f"The simulated person's {name} must be positive and finite, not {getattr(self, name)}."
+                )
+        for name in ("rotation_weight", "switch_cost", "switch_s"):
+            if not 0 <= getattr(self, name) < np.inf:
+                raise UserError(
+                    f"The simulated person's {name} must be zero or more, and finite, "
+                    f"not {getattr(self, name)}."
+                )
+        if not self.magnitudes or not all(0 < size <= 1 for size in self.magnitudes):
+            raise UserError(
+                f"The simulated person's magnitudes must be in (0, 1], at least one, not {self.magnitudes}."
+            )
+        if self.directions < 2:
+            raise UserError(
+                f"The simulated person needs at least 2 directions of input, not {self.directions}."
+            )
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Options:
+    """What a simulated person can do at one moment, and how likely each is.
+
+    Attributes:
+        inputs: (K, d), inputs in the present mode; the first is zero.
+        input_probability: (K,).
+        switch_probability: of asking for the next mode; all probabilities together sum to one.
+    """
+
+    inputs: FloatArray
+    input_probability: FloatArray
+    switch_probability: float
+
+
+@final
+class BoltzmannOperator(Operator):
+    """A simulated person who looks one step ahead and mostly picks what helps.
+
+    Equation 24::
+
+        p(u) ∝ exp(-beta ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
+
+    over a grid of inputs: none, and every direction at every magnitude. Distance between poses is
+    ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks one step ahead only, as in the paper:
+    they can get stuck where no single input brings the tool closer.
+
+    Where the controller has several modes, asking for the next mode is one more option. It counts as
+    the best input of the best other mode, with ``switch_cost`` added to the distance that it leaves,
+    so that a switch is made for a gain of more than ``switch_cost`` and not for less.
+
+    Args:
+        robot: the arm, for its forward kinematics.
+        config: how the simulated person thinks.
+        period_s: time between calls of `act`, s.
+
+    Raises:
+        UserError: the period is not positive and finite.
+    """
+
+    def __init__(self, robot: Robot, config: BoltzmannConfig | None = None, period_s: float = 0.05) -> None:
+        if not 0 < period_s < np.inf:
+            raise UserError(f"The time between inputs must be positive and finite, not {period_s} s.")
+        self._chain = robot.chain
+        self._config = config or BoltzmannConfig()
+        self._hold_calls = max(round(self._config.decision_s / period_s), 1)
+        # The step that asks for the mode already has a zero input.
+        self._switch_calls = max(round(self._config.switch_s / period_s), 1)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the held input and any switch under way."""
+        self._held = np.zeros(0)
+        self._held_calls = 0
+
+    def act(
+        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
+    ) -> Input:
+        """Hold the input of the last decision, or decide anew."""
+        if self._held_calls > 0:
+            self._held_calls -= 1
+            return Input(self._held)
+        options = self.options(context, controller, mode, target)
+        choice = int(
+            rng.choice(
+                len(options.inputs) + 1, p=np.append(options.input_probability, options.switch_probability)
+            )
+        )
+        switches = choice == len(options.inputs)
+        self._held = np.zeros(controller.input_dim) if switches else options.inputs[choice]
+        self._held_calls = (self._switch_calls if switches else self._hold_calls) - 1
+        return Input(self._held, switch_mode=switches)
+
+    def options(self, context: Context, controller: Controller, mode: int, target: Pose) -> Options:
+        """Equation 24 in the present context.
+
+        Args:
+            context: what the arm is at and believes.
+            controller: what the inputs go to.
+            mode: the controller's present mode.
+            target: the pose ``g*`` that the simulated person wants.
+
+        Returns:
+            Every option and its probability.
+        """
+        inputs = self._grid(controller.input_dim)
+        modes = range(len(controller.modes))
+        actions = [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
+        # One call over all modes: (M, K, n).
+        reached = self._chain.forward(context.state + self._config.horizon_s * np.stack(actions))
+        angle = self._config.rotation_weight * angle_between(reached.rotation, target.rotation)
+        cost = ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
+        best_other = min((float(cost[m].min()) for m in modes if m != mode), default=np.inf)
+        switch_cost = (np.sqrt(best_other) + self._config.switch_cost) ** 2
+        probability = _boltzmann(np.append(cost[mode], switch_cost), self._config.beta)
+        return Options(inputs, probability[:-1], float(probability[-1]))
+
+    def _grid(self, input_dim: int) -> FloatArray:
+        """The inputs that are considered, (K, d), the first of them zero."""
+        if input_dim == 2:
+            angle = np.arange(self._config.directions) * (2 * np.pi / self._config.directions)
+            directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        else:
+            directions = np.concatenate([np.eye(input_dim), -np.eye(input_dim)])
+        sized = [size * directions for size in self._config.magnitudes]
+        return np.concatenate([np.zeros((1, input_dim)), *sized])
+
+
+def _boltzmann(cost: FloatArray, beta: float) -> FloatArray:
+    """Probabilities ∝ exp(-beta cost) over the options whose cost is finite; the first is no input.
+
+    At beta = infinity the cheapest option gets all, ties share.
+    """
+    possible = np.isfinite(cost)
+    if not possible.any():
+        return np.where(np.arange(len(cost)) == 0, 1.0, 0.0)
+    above = np.where(possible, cost, np.inf) - cost[possible].min()
+    if np.isinf(beta):
+        weight = (above == 0.0).astype(float)
+    else:
+        weight = np.where(possible, np.exp(-beta * np.where(possible, above, 0.0)), 0.0)
+    return weight / weight.sum()

@@ -1,0 +1,37 @@
+"""Whoever gives inputs."""
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+
+from latentarm.control.controller import Controller
+from latentarm.types import Context, Input, Pose
+
+
+class Operator(ABC):
+    """A simulated person at the interface, asked once per step of the loop.
+
+    An operator remembers what it was doing (an input it holds, a switch under way), so a new drive
+    begins with `reset`.
+    """
+
+    @abstractmethod
+    def reset(self) -> None:
+        """Forget what was being done, before a new drive."""
+
+    @abstractmethod
+    def act(
+        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
+    ) -> Input:
+        """The simulated person's input for this step.
+
+        Args:
+            context: what the arm is at and believes.
+            controller: what the inputs go to.
+            mode: the controller's present mode.
+            target: the pose that the simulated person wants the tool at.
+            rng: source of all randomness.
+
+        Returns:
+            Inputs in [-1, 1]^d, and whether the next mode is asked for.
+        """
