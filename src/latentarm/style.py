@@ -1,10 +1,14 @@
-"""One look for every figure: a colour, a marker and a dash per model and condition, legible without colour."""
+"""One look for every figure: a colour, a marker and a dash per model, legible without colour."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+from latentarm.files import written_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,11 @@ LOOKS: dict[str, Look] = {
     "end_effector": Look("mode switching", "#7f7f7f", "s", ":"),
 }
 
-FIGURE_DPI = 150
+FIGURE_DPI = 200
+COLUMN_MM = 85.0
+FONT_SIZE = 8.0
+SMALL_FONT_SIZE = 7.0
+MM_PER_INCH = 25.4
 
 
 def tidy(axes: "Axes") -> None:
@@ -46,3 +54,35 @@ def tidy(axes: "Axes") -> None:
     axes.spines["right"].set_visible(False)
     axes.grid(True, color="#dddddd", linewidth=0.6)
     axes.set_axisbelow(True)
+    axes.tick_params(labelsize=SMALL_FONT_SIZE)
+    axes.title.set_fontsize(FONT_SIZE)
+    axes.xaxis.label.set_fontsize(FONT_SIZE)
+    axes.yaxis.label.set_fontsize(FONT_SIZE)
+
+
+def look_of(name: str) -> Look:
+    """The look of a model or condition; a plain one under its own name where none is laid down."""
+    return LOOKS.get(name, Look(name, "#000000", "o", "-"))
+
+
+def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> "Figure":
+    """An empty figure of a print column's width that lays out its panels so that nothing is cut off.
+
+    It belongs to no global state, so figures can be drawn anywhere, in threads too.
+    """
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), layout="constrained")
+
+
+def save_figure(figure: "Figure", path: Path) -> None:
+    """Write a figure as PNG, whole or not at all.
+
+    Raises:
+        UserError: the file cannot be written.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    with written_whole(path) as part:
+        FigureCanvasAgg(figure)
+        figure.savefig(part, format="png", dpi=FIGURE_DPI)

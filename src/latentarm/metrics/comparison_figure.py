@@ -1,0 +1,71 @@
+"""Figure: every measure for every model or condition, mean with SD, one small panel per measure."""
+
+import math
+import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from latentarm.metrics.table import measure_name
+from latentarm.style import SMALL_FONT_SIZE, look_of, new_figure, tidy
+from latentarm.types import Row
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+ACROSS = 3  # panels in a row
+LABEL_WIDTH = 15  # characters of a series' or panel's name before it breaks
+LINE_MM = 3.1  # height of a line of small print
+
+
+def comparison_figure(rows: Sequence[Row]) -> "Figure":
+    """Means with bars of one SD to either side, series down and measures across.
+
+    Series are told apart by place, marker and name as well as by colour.
+
+    Args:
+        rows: figures of one task, of several models or (where they name one) conditions.
+    """
+    measures = list(dict.fromkeys(row.measure for row in rows))
+    series = list(dict.fromkeys(_series(row) for row in rows))
+    down = math.ceil(len(measures) / ACROSS)
+    labels = [textwrap.fill(look_of(name).label, LABEL_WIDTH) for name in series]
+    height = sum(LINE_MM * (1 + label.count("\n")) + 2.2 for label in labels) + 17.0
+    figure = new_figure(height_mm=down * height)
+    panels = figure.subplots(down, min(ACROSS, len(measures)), sharey=True, squeeze=False)
+    for axes in panels.flat[len(measures) :]:
+        axes.remove()
+    for axes, measure in zip(panels.flat, measures, strict=False):
+        chosen = [row for row in rows if row.measure == measure]
+        _draw_measure(axes, chosen, series)
+        tidy(axes)
+        axes.set_title(textwrap.fill(measure_name(chosen[0]), LABEL_WIDTH + 2), fontsize=SMALL_FONT_SIZE)
+        axes.set_yticks(range(len(series)), labels)
+        axes.set_ylim(len(series) - 0.5, -0.5)
+    return figure
+
+
+def _series(row: Row) -> str:
+    """The name that decides a row's look: its condition's where it has one."""
+    return row.condition or row.model or row.study
+
+
+def _draw_measure(axes: "Axes", rows: Sequence[Row], series: Sequence[str]) -> None:
+    """One measure's panel; a figure that is absent leaves its place empty."""
+    for row in rows:
+        if row.mean is None:
+            continue
+        look = look_of(_series(row))
+        axes.errorbar(
+            row.mean,
+            series.index(_series(row)),
+            xerr=row.sd or 0.0,
+            color=look.colour,
+            marker=look.marker,
+            markersize=4.5,
+            capsize=2.0,
+            linewidth=1.2,
+        )
+    low, high = axes.get_xlim()
+    axes.set_xlim(min(low, 0.0), max(high, 0.0))
+    axes.locator_params(axis="x", nbins=3)

@@ -1,0 +1,184 @@
+"""All measures of a latent action model on held-out episodes, as rows with mean and SD over seeds."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+
+from latentarm.demonstrations.pairs import make_pairs
+from latentarm.demonstrations.split import select_episodes
+from latentarm.metrics.accuracy import pca_error, reconstruction_error
+from latentarm.metrics.consistency import consistency
+from latentarm.metrics.contract import DecodesActions, EncodesActions
+from latentarm.metrics.controllability import ReachConfig, reach_goals
+from latentarm.metrics.disentanglement import disentanglement_deg
+from latentarm.metrics.drift import drift
+from latentarm.metrics.effects import axis_effects, axis_grid
+from latentarm.metrics.reversal import reversal
+from latentarm.metrics.samples import (
+    ContextKind,
+    evenly_spread,
+    moving_episodes,
+    spread_contexts,
+    start_goal_pairs,
+)
+from latentarm.metrics.summary import Subject, summarise
+from latentarm.robots.robot import Robot
+from latentarm.types import Demonstrations, FloatArray, Row
+
+
+class TrainedModel(EncodesActions, Protocol):
+    """A fitted model together with how its training pairs were made."""
+
+    @property
+    def latent_dim(self) -> int:
+        """Number of latent axes d."""
+        ...
+
+    @property
+    def context(self) -> ContextKind:
+        """Kind of context: "state" or "state_belief"."""
+        ...
+
+    @property
+    def actions(self) -> Literal["displacement", "recorded"]:
+        """Where its training pairs took their actions from."""
+        ...
+
+    @property
+    def window(self) -> int:
+        """Largest distance, in samples, between the two states that an action leads between."""
+        ...
+
+    @property
+    def state_noise_rad(self) -> float:
+        """SD of the noise that the states were given in training, rad."""
+        ...
+
+
+@dataclass(frozen=True)
+class EvaluationConfig:
+    """How the measures are taken; the same for all models that are compared.
+
+    Attributes:
+        state_noise_rad: SD of the noise on held-out states for the noisy error, rad;
+            None for the noise that the model was trained with.
+        step_s: dt of the transition s' = s + a dt, and how long z and -z are each held for reversal, s;
+            None for one sample of the demonstrations.
+        states: states for consistency and disentanglement.
+        grid: values of z in [-1, 1] on each axis, at each of these states.
+        latents: encoded held-out actions for drift and reversal.
+        reach: what is asked for controllability.
+        tool: which end-effector, where there are several.
+    """
+
+    state_noise_rad: float | None = None
+    step_s: float | None = None
+    states: int = 25
+    grid: int = 21
+    latents: int = 2000
+    reach: ReachConfig = field(default_factory=ReachConfig)
+    tool: int = 0
+
+
+def evaluate(
+    model: TrainedModel,
+    demonstrations: Demonstrations,
+    held_out: Sequence[int],
+    robot: Robot,
+    *,
+    subject: Subject,
+    rng: np.random.Generator,
+    config: EvaluationConfig | None = None,
+) -> list[Row]:
+    """Measure a model on held-out episodes.
+
+    Args:
+        model: a fitted model of S seeds.
+        demonstrations: the dataset that it was trained on; PCA is fitted to the same training pairs.
+        held_out: indices of the episodes that it has not seen.
+        robot: the arm that it moves.
+        subject: what the rows say they are about.
+        rng: for the noise on held-out states.
+        config: how the measures are taken.
+
+    Returns:
+        One row per measure.
+
+    Raises:
+        UserError: no episode is held out, none is left for PCA, or the contexts lack a belief.
+    """
+    config = config or EvaluationConfig()
+    step_s = config.step_s or 1.0 / demonstrations.rate_hz
+    episodes = moving_episodes(demonstrations, held_out)
+    accuracy = _measure_accuracy(model, demonstrations, held_out, rng, config.state_noise_rad)
+    decoders, figures = accuracy.decoders, dict(accuracy.figures)
+
+    pairs = start_goal_pairs(
+        episodes, model.context, separation_s=config.reach.separation_s, count=config.reach.pairs
+    )
+    reach = reach_goals(decoders, pairs, robot.chain, step_s, config.reach, config.tool)
+    figures["controllability_m"] = reach.tool_error_m.mean(axis=1)
+    figures["controllability_state_error"] = reach.state_error_rad.mean(axis=1)
+
+    grid = axis_grid(config.grid)
+    states = spread_contexts(episodes, model.context, config.states)
+    effects = axis_effects(decoders, states, grid, robot.chain, step_s, config.tool)
+    per_axis = consistency(effects, grid)
+    figures["r2"] = per_axis.mean(axis=1)
+    figures |= {f"r2_axis_{axis}": per_axis[:, axis] for axis in range(per_axis.shape[1])}
+    figures["disentanglement_deg"] = disentanglement_deg(effects)
+
+    chosen = evenly_spread(config.latents, len(accuracy.context))
+    z, context = accuracy.z[:, chosen], accuracy.context[chosen]
+    figures["drift"] = drift(decoders, z, context)
+    figures["reversal"] = reversal(decoders, z, context, step_s)
+
+    rows = [summarise(subject, measure, values) for measure, values in figures.items()]
+    return [*rows, summarise(subject, "start_distance_m", reach.start_distance_m)]
+
+
+@dataclass(frozen=True)
+class _Accuracy:
+    """Errors (S,), and what they leave for the other measures.
+
+    Attributes:
+        figures: measure -> (S,).
+        decoders: S decoders.
+        z: (S, N, d), held-out actions as the encoder sees them without noise.
+        context: (N, c), their contexts.
+    """
+
+    figures: Mapping[str, FloatArray]
+    decoders: Sequence[DecodesActions]
+    z: FloatArray
+    context: FloatArray
+
+
+def _measure_accuracy(
+    model: TrainedModel,
+    demonstrations: Demonstrations,
+    held_out: Sequence[int],
+    rng: np.random.Generator,
+    state_noise_rad: float | None,
+) -> _Accuracy:
+    """Reconstruction errors with and without state noise, beside PCA fitted to the training pairs."""
+    noise = model.state_noise_rad if state_noise_rad is None else state_noise_rad
+    trained_on = [index for index in range(len(demonstrations.episodes)) if index not in set(held_out)]
+    how = (model.context, rng, model.actions)
+    training = make_pairs(select_episodes(demonstrations, trained_on), model.window, 0.0, *how)
+    pairs = make_pairs(select_episodes(demonstrations, held_out), model.window, noise, *how)
+    clean_z = model.encode(pairs.clean_context, pairs.action)
+    decoders = [model.decoder(seed) for seed in range(len(clean_z))]
+    noisy_z = model.encode(pairs.context, pairs.action)
+    baseline = pca_error(training.action, pairs.action, clean_z.shape[-1])
+    error = reconstruction_error(decoders, noisy_z, pairs.context, pairs.action)
+    clean_error = reconstruction_error(decoders, clean_z, pairs.clean_context, pairs.action)
+    figures = {
+        "error": error,
+        "noise_free_error": clean_error,
+        "error_percent_of_pca": 100.0 * error / baseline,
+        "noise_free_error_percent_of_pca": 100.0 * clean_error / baseline,
+    }
+    return _Accuracy(figures=figures, decoders=decoders, z=clean_z, context=pairs.clean_context)

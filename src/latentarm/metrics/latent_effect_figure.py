@@ -1,0 +1,83 @@
+"""Figure: where the tool goes while one latent axis is held to either side, at a few states."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from latentarm.metrics.contract import DecodesActions, PlacesTool
+from latentarm.metrics.effects import held_paths
+from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, look_of, new_figure, tidy
+from latentarm.types import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+AXIS_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
+HOLD_S = 1.0
+BASE_AXES = "xyz"
+
+
+def latent_effect_figure(
+    decoder: DecodesActions,
+    context: FloatArray,
+    chain: PlacesTool,
+    step_s: float,
+    model: str,
+    demonstrated: FloatArray | None = None,
+    tool: int = 0,
+) -> "Figure":
+    """Paths of the tool over one second of ±1 on each latent axis, from each of a few states.
+
+    A path ends in a filled marker for +1 and in an open one for -1. The view is along the base axis in
+    which the drawn paths differ least.
+
+    Args:
+        decoder: one seed's decoder.
+        context: (N, c), the states to start from, three or so.
+        chain: the robot's forward kinematics.
+        step_s: dt of the transition, s.
+        model: name of the model, for the title.
+        demonstrated: (T, 3), places of the tool in a demonstration to draw behind, m, or None.
+        tool: which end-effector, where there are several.
+    """
+    dim = decoder.latent_dim
+    ends = np.concatenate([np.eye(dim), -np.eye(dim)])
+    paths = held_paths(decoder, context, ends, chain, step_s, max(1, round(HOLD_S / step_s)), tool)
+    behind = np.zeros((0, 3)) if demonstrated is None else demonstrated
+    places = np.concatenate([paths.reshape(-1, 3), behind])
+    across, up = sorted(np.argsort(np.ptp(places, axis=0))[1:])
+    figure = new_figure(height_mm=70.0)
+    axes = figure.subplots()
+    if len(behind):
+        axes.plot(behind[:, across], behind[:, up], color="#bbbbbb", linewidth=1.0, label="demonstrated")
+    for axis in range(dim):
+        _draw_axis(axes, paths[[axis, axis + dim]][..., [across, up]], axis)
+    axes.plot(paths[0, :, 0, across], paths[0, :, 0, up], "k+", markersize=7, label="start")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(f"{BASE_AXES[across]} (m)")
+    axes.set_ylabel(f"{BASE_AXES[up]} (m)")
+    axes.set_title(f"{look_of(model).label}, held for {HOLD_S:g} s")
+    tidy(axes)
+    figure.legend(loc="outside lower center", ncols=3, fontsize=SMALL_FONT_SIZE, frameon=False)
+    axes.title.set_fontsize(FONT_SIZE)
+    return figure
+
+
+def _draw_axis(axes: "Axes", paths: FloatArray, axis: int) -> None:
+    """Paths (2, N, T, 2) of one latent axis, m: first those of +1, then those of -1."""
+    colour = AXIS_COLOURS[axis % len(AXIS_COLOURS)]
+    for sign, side, dash in (("+", paths[0], "-"), ("-", paths[1], "--")):
+        for index, path in enumerate(side):
+            axes.plot(
+                path[:, 0],
+                path[:, 1],
+                color=colour,
+                linewidth=1.3,
+                linestyle=dash,
+                marker="o" if axis % 2 == 0 else "s",
+                markevery=[-1],
+                markersize=4.0,
+                markerfacecolor=colour if sign == "+" else "white",
+                label=f"$z_{axis + 1}$ = {sign}1" if index == 0 else None,
+            )

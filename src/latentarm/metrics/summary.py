@@ -1,0 +1,79 @@
+"""From figures per seed or per drive to the rows that every command prints."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from latentarm.types import Row
+
+UNITS: dict[str, str] = {
+    "error": "rad^2/s^2",
+    "noise_free_error": "rad^2/s^2",
+    "error_percent_of_pca": "%",
+    "noise_free_error_percent_of_pca": "%",
+    "controllability_m": "m",
+    "controllability_state_error": "rad",
+    "start_distance_m": "m",
+    "r2": "1",
+    "r2_axis_0": "1",
+    "r2_axis_1": "1",
+    "disentanglement_deg": "deg",
+    "drift": "1",
+    "reversal": "1",
+    "success_rate": "1",
+    "time_s": "s",
+    "input_magnitude": "s",
+    "mode_switches": "1",
+    "path_length": "m",
+    "final_distance": "m",
+}
+"""Unit of every measure of this package; "1" is a plain number or ratio."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What a row is about.
+
+    Attributes:
+        study: the command or simulation that took the figures.
+        task: what was done, or None.
+        model: the model's name, or None.
+        condition: what was varied, or None.
+    """
+
+    study: str
+    task: str | None = None
+    model: str | None = None
+    condition: str | None = None
+
+
+def unit_of(measure: str) -> str:
+    """Unit of a measure; further latent axes (``r2_axis_2``, ...) are like the first two."""
+    return UNITS["r2"] if measure.startswith("r2_axis_") else UNITS[measure]
+
+
+def summarise(subject: Subject, measure: str, values: ArrayLike) -> Row:
+    """Mean and sample SD over runs.
+
+    Args:
+        subject: what the row is about.
+        measure: a name that `unit_of` knows.
+        values: (n,), one figure per run; runs without one (NaN) are left out and not counted.
+
+    Returns:
+        A row with SD absent for a single run, and mean absent where no run has a figure.
+    """
+    known = np.asarray(values, dtype=np.float64).reshape(-1)
+    known = known[np.isfinite(known)]
+    return Row(
+        study=subject.study,
+        measure=measure,
+        unit=unit_of(measure),
+        mean=float(known.mean()) if len(known) else None,
+        sd=float(known.std(ddof=1)) if len(known) > 1 else None,
+        n=len(known),
+        task=subject.task,
+        model=subject.model,
+        condition=subject.condition,
+    )

@@ -1,0 +1,135 @@
+"""Rows as a table for the terminal and as a table for GitHub."""
+
+import math
+from collections.abc import Sequence
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+
+from latentarm.style import LOOKS
+from latentarm.types import Row
+
+BORDER = 3  # characters between two columns
+ABSENT = "–"
+
+NAMES: dict[str, str] = {
+    "error": "error",
+    "noise_free_error": "error, noise-free",
+    "error_percent_of_pca": "error, of PCA's",
+    "noise_free_error_percent_of_pca": "error, noise-free, of PCA's",
+    "controllability_m": "reaches goals to",
+    "controllability_state_error": "joint error then",
+    "start_distance_m": "distance at the start",
+    "r2": "R², mean of axes",
+    "disentanglement_deg": "angle between axes",
+    "drift": "drift, of motion",
+    "reversal": "left after z then -z",
+    "success_rate": "success rate",
+    "time_s": "time",
+    "input_magnitude": "input magnitude",
+    "mode_switches": "mode switches",
+    "path_length": "path length",
+    "final_distance": "final distance",
+}
+
+
+def format_figure(mean: float | None, sd: float | None) -> str:
+    """Mean ± SD, both to the place of the SD's second digit and the mean to at most four digits."""
+    if mean is None:
+        return ABSENT
+    if not sd:
+        return _rounded(mean, _places(mean, 3))
+    places = min(_places(sd, 2), _places(mean, 4)) if mean else _places(sd, 2)
+    return f"{_rounded(mean, places)} ± {_rounded(sd, places)}"
+
+
+def _places(value: float, digits: int) -> int:
+    """Decimal places that show ``value`` to so many digits."""
+    return digits - 1 - math.floor(math.log10(abs(value))) if value else 0
+
+
+def _rounded(value: float, places: int) -> str:
+    """The value to so many decimal places; far from one, in powers of ten."""
+    if places > 6 or places < -6:
+        return f"{value:.2g}"
+    return f"{round(value, places):.{max(places, 0)}f}"
+
+
+def series_name(row: Row) -> str:
+    """How a row's model and condition are called in a table's head."""
+    parts = [LOOKS[name].label if name in LOOKS else name for name in (row.model, row.condition) if name]
+    return ", ".join(parts) or row.study
+
+
+def measure_name(row: Row) -> str:
+    """A measure's name and unit as people read them."""
+    axis = row.measure.removeprefix("r2_axis_")
+    name = f"R², axis {int(axis) + 1}" if axis.isdigit() else NAMES.get(row.measure, row.measure)
+    return name if row.unit in ("", "1") else f"{name} ({row.unit})"
+
+
+def rich_tables(rows: Sequence[Row], title: str = "", width: int = 100) -> RenderableType:
+    """Measures down, models or conditions across; split into several tables where they are too many.
+
+    Args:
+        rows: figures of one task.
+        title: what the table shows.
+        width: characters that a line may have.
+    """
+    measures, series, figures = _arranged(rows)
+    first_column = max((len(measure) for measure in measures), default=0) + BORDER
+    widths: list[int] = []
+    for name in series:
+        # A head may break between words; a figure may not break at all.
+        unbroken = [*name.split(), *(figures.get((measure, name), ABSENT) for measure in measures)]
+        widths.append(max(map(len, unbroken)) + BORDER)
+    tables: list[RenderableType] = []
+    for part in _fitting(widths, width - first_column - 1):
+        table = Table(title=None if tables else title, title_justify="left")
+        table.add_column("mean ± SD", no_wrap=True)
+        for index in part:
+            table.add_column(series[index], justify="right", min_width=widths[index] - BORDER)
+        for measure in measures:
+            table.add_row(measure, *(figures.get((measure, series[index]), ABSENT) for index in part))
+        tables.append(table)
+    return Group(*tables)
+
+
+def _fitting(widths: Sequence[int], room: int) -> list[list[int]]:
+    """Indices of columns in order, broken into as few tables as the room across allows."""
+    parts: list[list[int]] = []
+    left = 0
+    for index, wide in enumerate(widths):
+        if wide > left or not parts:
+            parts.append([])
+            left = room
+        parts[-1].append(index)
+        left -= wide
+    return parts
+
+
+def markdown_table(rows: Sequence[Row]) -> str:
+    """The same arrangement as a GitHub table, ending in a line break."""
+    measures, series, figures = _arranged(rows)
+    lines = [
+        "| mean ± SD | " + " | ".join(map(_cell, series)) + " |",
+        "|---|" + "---:|" * len(series),
+    ]
+    lines += [
+        f"| {_cell(measure)} | " + " | ".join(figures.get((measure, name), ABSENT) for name in series) + " |"
+        for measure in measures
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _cell(text: str) -> str:
+    """Text that cannot end its cell."""
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def _arranged(rows: Sequence[Row]) -> tuple[list[str], list[str], dict[tuple[str, str], str]]:
+    """Measures and series in order of first appearance, and the figure for each pair."""
+    measures = list(dict.fromkeys(measure_name(row) for row in rows))
+    series = list(dict.fromkeys(series_name(row) for row in rows))
+    figures = {(measure_name(row), series_name(row)): format_figure(row.mean, row.sd) for row in rows}
+    return measures, series, figures
