@@ -1,12 +1,16 @@
 """Capsules (segments with a radius) that ride on links, and distances between segments."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import final
 
 import numpy as np
 
 from latentarm.kinematics.chain import Chain
 from latentarm.types import FloatArray, IntArray
+
+# A segment whose squared length is below this counts as a point; it also keeps divisors from zero.
+_POINT = 1e-30
 
 
 @final
@@ -41,10 +45,16 @@ class Capsules:
         Returns:
             Starts and ends, each (..., K, 3), m.
         """
-        both = chain.points(
-            transforms, np.concatenate([self.link, self.link]), np.concatenate([self.start, self.end])
-        )
+        both = chain.points(transforms, self._links_twice, self._starts_and_ends)
         return both[..., : len(self), :], both[..., len(self) :, :]
+
+    @cached_property
+    def _links_twice(self) -> IntArray:
+        return np.concatenate([self.link, self.link])
+
+    @cached_property
+    def _starts_and_ends(self) -> FloatArray:
+        return np.concatenate([self.start, self.end])
 
 
 def segment_distance(
@@ -66,22 +76,22 @@ def segment_distance(
     d1 = q1 - p1
     d2 = q2 - p2
     r = p1 - p2
-    a = np.vecdot(d1, d1)
+    a = np.maximum(np.vecdot(d1, d1), _POINT)
     b = np.vecdot(d1, d2)
     c = np.vecdot(d1, r)
     e = np.vecdot(d2, d2)
     f = np.vecdot(d2, r)
-    tiny = np.finfo(np.float64).tiny
-    safe_a = np.maximum(a, tiny)
-    safe_e = np.maximum(e, tiny)
-    # Closest points of the infinite lines; where they are parallel any s will do.
-    denominator = a * e - b * b
-    s = np.clip((b * f - c * e) / np.where(denominator > 0.0, denominator, np.inf), 0.0, 1.0)
-    t_line = (b * s + f) / safe_e
-    t = np.clip(t_line, 0.0, 1.0)
-    # Where t had to be clamped (or the second segment is a point), s must follow.
-    s = np.where((t != t_line) | (e <= tiny), np.clip((b * t - c) / safe_a, 0.0, 1.0), s)
+    # The closest point of the infinite lines; where they are parallel any s will do.
+    s = _clamped((b * f - c * e) / np.maximum(a * e - b * b, _POINT))
+    t = _clamped((b * s + f) / np.maximum(e, _POINT))
+    # Where t was clamped s must follow; elsewhere this changes nothing.
+    s = _clamped((b * t - c) / a)
     on_first = p1 + s[..., None] * d1
     on_second = p2 + t[..., None] * d2
     gap = on_first - on_second
     return np.sqrt(np.vecdot(gap, gap)), on_first, on_second
+
+
+def _clamped(value: FloatArray) -> FloatArray:
+    """Clamped to [0, 1]; several times faster than ``np.clip`` on small arrays."""
+    return np.minimum(np.maximum(value, 0.0), 1.0)

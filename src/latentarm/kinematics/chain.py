@@ -82,20 +82,18 @@ class Chain:
         Returns:
             (..., n, 4, 4), link frame -> base frame.
         """
+        flat = q.reshape(-1, self.dof).T
         constants = self.motion_constants
-        features = np.empty((self.dof, *q.shape[:-1], constants.shape[1]))
-        by_joint = np.moveaxis(q, -1, 0)
+        features = np.empty((*flat.shape, constants.shape[1]))
         features[..., 0] = 1.0
-        np.sin(by_joint, out=features[..., 1])
-        np.cos(by_joint, out=features[..., 2])
-        if constants.shape[1] == 4:
-            features[..., 3] = by_joint
-        batch = features.reshape(self.dof, -1, constants.shape[1])
-        transforms = (batch @ constants).reshape(self.dof, *q.shape[:-1], 4, 4)
-        for link, parent in enumerate(self._parents):
-            if parent >= 0:
-                transforms[link] = transforms[parent] @ transforms[link]
-        return np.moveaxis(transforms, 0, -3)
+        np.sin(flat, out=features[..., 1])
+        np.cos(flat, out=features[..., 2])
+        if self._slides:
+            features[..., 3] = flat
+        transforms = (features @ constants).reshape(*flat.shape, 4, 4)
+        for link, parent in self._children:
+            transforms[link] = transforms[parent] @ transforms[link]
+        return transforms.swapaxes(0, 1).reshape(*q.shape, 4, 4)
 
     def forward(self, q: FloatArray, tool: int = 0) -> Pose:
         """Forward kinematics ``x = Psi(s)`` of a tool.
@@ -234,8 +232,9 @@ class Chain:
         return (self.offset[:, None] @ constants)[:, :features].reshape(self.dof, features, 16)
 
     @cached_property
-    def _parents(self) -> tuple[int, ...]:
-        return tuple(int(parent) for parent in self.parent)
+    def _children(self) -> tuple[tuple[int, int], ...]:
+        """Links that another link carries, each with its parent, parents first."""
+        return tuple((link, int(parent)) for link, parent in enumerate(self.parent) if parent >= 0)
 
     @cached_property
     def _slides(self) -> bool:

@@ -4,6 +4,32 @@ import numpy as np
 
 from latentarm.types import FloatArray, Pose
 
+_DIAGONAL = np.arange(4)
+
+
+def _outer_product_map() -> FloatArray:
+    """(9, 16), the linear map from a rotation matrix R to 4 q qᵀ - I, both flattened row by row."""
+    signs = {
+        (0, 0): ((0, 0, 1), (1, 1, 1), (2, 2, 1)),
+        (1, 1): ((0, 0, 1), (1, 1, -1), (2, 2, -1)),
+        (2, 2): ((0, 0, -1), (1, 1, 1), (2, 2, -1)),
+        (3, 3): ((0, 0, -1), (1, 1, -1), (2, 2, 1)),
+        (0, 1): ((2, 1, 1), (1, 2, -1)),
+        (0, 2): ((0, 2, 1), (2, 0, -1)),
+        (0, 3): ((1, 0, 1), (0, 1, -1)),
+        (1, 2): ((1, 0, 1), (0, 1, 1)),
+        (1, 3): ((2, 0, 1), (0, 2, 1)),
+        (2, 3): ((2, 1, 1), (1, 2, 1)),
+    }
+    table = np.zeros((3, 3, 4, 4))
+    for (i, j), terms in signs.items():
+        for row, column, sign in terms:
+            table[row, column, i, j] = table[row, column, j, i] = sign
+    return table.reshape(9, 16)
+
+
+_OUTER = _outer_product_map()
+
 
 def rotation_vector(rotation: FloatArray) -> FloatArray:
     """Logarithm of rotation matrices, accurate at 0 and at pi alike.
@@ -75,21 +101,9 @@ def pose_error(x_from: Pose, x_to: Pose) -> FloatArray:
 
 def _quaternion(rotation: FloatArray) -> FloatArray:
     """(..., 4), unit quaternion (w, x, y, z) with w >= 0."""
-    r = rotation
-    xx, yy, zz = r[..., 0, 0], r[..., 1, 1], r[..., 2, 2]
-    # Row i of the outer product 4 q qᵀ is q times its own i-th component.
-    outer = np.empty((*r.shape[:-2], 4, 4))
-    outer[..., 0, 0] = 1.0 + xx + yy + zz
-    outer[..., 1, 1] = 1.0 + xx - yy - zz
-    outer[..., 2, 2] = 1.0 - xx + yy - zz
-    outer[..., 3, 3] = 1.0 - xx - yy + zz
-    outer[..., 0, 1] = outer[..., 1, 0] = r[..., 2, 1] - r[..., 1, 2]
-    outer[..., 0, 2] = outer[..., 2, 0] = r[..., 0, 2] - r[..., 2, 0]
-    outer[..., 0, 3] = outer[..., 3, 0] = r[..., 1, 0] - r[..., 0, 1]
-    outer[..., 1, 2] = outer[..., 2, 1] = r[..., 1, 0] + r[..., 0, 1]
-    outer[..., 1, 3] = outer[..., 3, 1] = r[..., 2, 0] + r[..., 0, 2]
-    outer[..., 2, 3] = outer[..., 3, 2] = r[..., 2, 1] + r[..., 1, 2]
-    largest = np.argmax(np.diagonal(outer, axis1=-2, axis2=-1), axis=-1)
-    quaternion = np.take_along_axis(outer, largest[..., None, None], axis=-2)[..., 0, :]
-    quaternion = quaternion / np.sqrt(np.vecdot(quaternion, quaternion))[..., None]
-    return np.where(quaternion[..., :1] < 0.0, -quaternion, quaternion)
+    # Row i of the outer product 4 q qᵀ is q times its own i-th component: take the largest.
+    outer = (rotation.reshape(-1, 9) @ _OUTER + np.eye(4).ravel()).reshape(-1, 4, 4)
+    largest = outer[:, _DIAGONAL, _DIAGONAL].argmax(axis=-1)
+    row = outer[np.arange(len(outer)), largest]
+    row *= np.copysign(1.0 / np.sqrt(np.vecdot(row, row)), row[:, 0])[:, None]
+    return row.reshape(*rotation.shape[:-2], 4)

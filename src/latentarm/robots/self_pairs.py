@@ -9,13 +9,13 @@ from latentarm.kinematics.chain import Chain
 from latentarm.robots.limits import JointLimits
 from latentarm.types import BoolArray, FloatArray, IntArray
 
-SAMPLES = 2000
+SAMPLES = 4000
 """Configurations that are sampled within the joint limits, always the same ones."""
 
 TOUCHING_M = 0.02
 """Closer than this, two capsules count as touching."""
 
-NEVER_CLOSER_M = 0.1
+NEVER_CLOSER_M = 0.05
 """A pair that comes no closer in any sampled configuration is left out."""
 
 

@@ -9,6 +9,13 @@ from latentarm.kinematics.capsules import Capsules
 from latentarm.kinematics.reader import Reading
 from latentarm.types import FloatArray
 
+# NumPy integers never equal MuJoCo's enums: compare plain integers.
+_PLANE = int(mujoco.mjtGeom.mjGEOM_PLANE)
+_SPHERE = int(mujoco.mjtGeom.mjGEOM_SPHERE)
+_CAPSULE = int(mujoco.mjtGeom.mjGEOM_CAPSULE)
+_CYLINDER = int(mujoco.mjtGeom.mjGEOM_CYLINDER)
+_MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
+
 PER_BODY = 2
 """Capsules that one body keeps; more are merged, so that distances stay cheap online."""
 
@@ -141,7 +148,7 @@ def _solid_geoms(model: mujoco.MjModel, body: int) -> list[int]:
     geoms = [
         geom
         for geom in range(first, first + int(model.body_geomnum[body]))
-        if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_PLANE
+        if model.geom_type[geom] != _PLANE
     ]
     colliding = [geom for geom in geoms if model.geom_contype[geom] or model.geom_conaffinity[geom]]
     return colliding or geoms
@@ -150,11 +157,11 @@ def _solid_geoms(model: mujoco.MjModel, body: int) -> list[int]:
 def _balls(model: mujoco.MjModel, geom: int, body_transform: FloatArray) -> Balls:
     """Balls that cover a geom, in the frame of the link that its body rides on."""
     kind, size = model.geom_type[geom], model.geom_size[geom]
-    if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
+    if kind == _SPHERE:
         centres, radius = np.zeros((1, 3)), float(size[0])
-    elif kind in (mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_CYLINDER):
+    elif kind in (_CAPSULE, _CYLINDER):
         centres, radius = np.array([[0.0, 0.0, -size[1]], [0.0, 0.0, size[1]]]), float(size[0])
-    elif kind == mujoco.mjtGeom.mjGEOM_MESH:
+    elif kind == _MESH:
         mesh = int(model.geom_dataid[geom])
         first = int(model.mesh_vertadr[mesh])
         centres = model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])].astype(np.float64)
