@@ -14,8 +14,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ACROSS = 3  # panels in a row
-LABEL_WIDTH = 15  # characters of a series' or panel's name before it breaks
-LINE_MM = 3.1  # height of a line of small print
+LABEL_WIDTH = 17  # characters of a series' name before it breaks
+TITLE_WIDTH = 14  # of a panel's
+LINE_MM = 3.2  # height of a line of small print
+GAP_MM = 1.0  # between two series
+FRAME_MM = 14.0  # a panel's title and numbers
 
 
 def comparison_figure(rows: Sequence[Row]) -> "Figure":
@@ -29,9 +32,9 @@ def comparison_figure(rows: Sequence[Row]) -> "Figure":
     measures = list(dict.fromkeys(row.measure for row in rows))
     series = list(dict.fromkeys(_series(row) for row in rows))
     down = math.ceil(len(measures) / ACROSS)
-    labels = [textwrap.fill(look_of(name).label, LABEL_WIDTH) for name in series]
-    height = sum(LINE_MM * (1 + label.count("\n")) + 2.2 for label in labels) + 17.0
-    figure = new_figure(height_mm=down * height)
+    labels = [_wrapped(look_of(name).label, LABEL_WIDTH) for name in series]
+    lines = 1 + max((label.count("\n") for label in labels), default=0)
+    figure = new_figure(height_mm=down * (len(series) * (LINE_MM * lines + GAP_MM) + FRAME_MM))
     panels = figure.subplots(down, min(ACROSS, len(measures)), sharey=True, squeeze=False)
     for axes in panels.flat[len(measures) :]:
         axes.remove()
@@ -39,10 +42,15 @@ def comparison_figure(rows: Sequence[Row]) -> "Figure":
         chosen = [row for row in rows if row.measure == measure]
         _draw_measure(axes, chosen, series)
         tidy(axes)
-        axes.set_title(textwrap.fill(measure_name(chosen[0]), LABEL_WIDTH + 2), fontsize=SMALL_FONT_SIZE)
+        axes.set_title(_wrapped(measure_name(chosen[0]), TITLE_WIDTH), fontsize=SMALL_FONT_SIZE)
         axes.set_yticks(range(len(series)), labels)
         axes.set_ylim(len(series) - 0.5, -0.5)
     return figure
+
+
+def _wrapped(text: str, width: int) -> str:
+    """The text on lines of at most ``width`` characters, broken between words."""
+    return textwrap.fill(text, width, break_on_hyphens=False)
 
 
 def _series(row: Row) -> str:
@@ -66,6 +74,9 @@ def _draw_measure(axes: "Axes", rows: Sequence[Row], series: Sequence[str]) -> N
             capsize=2.0,
             linewidth=1.2,
         )
+    axes.margins(x=0.12)  # room for a whole marker at either end
     low, high = axes.get_xlim()
     axes.set_xlim(min(low, 0.0), max(high, 0.0))
     axes.locator_params(axis="x", nbins=3)
+    # "0.01", not "0.010": three numbers have to fit under a narrow panel.
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")

@@ -79,5 +79,5 @@ def _draw_axis(axes: "Axes", paths: FloatArray, axis: int) -> None:
                 markevery=[-1],
                 markersize=4.0,
                 markerfacecolor=colour if sign == "+" else "white",
-                label=f"$z_{axis + 1}$ = {sign}1" if index == 0 else None,
+                label=f"$z_{axis + 1} = {sign}1$" if index == 0 else None,
             )

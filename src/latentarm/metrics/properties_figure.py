@@ -53,5 +53,5 @@ def _draw_axis(axes: "Axes", grid: FloatArray, distance: FloatArray, model: str)
         fontsize=SMALL_FONT_SIZE,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
     )
-    axes.set_xlim(-1.0, 1.0)
+    axes.set_xlim(-1.05, 1.05)
     axes.set_xticks([-1.0, 0.0, 1.0])

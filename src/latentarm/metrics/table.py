@@ -14,9 +14,9 @@ ABSENT = "–"
 
 NAMES: dict[str, str] = {
     "error": "error",
-    "noise_free_error": "error, noise-free",
+    "noise_free_error": "noise-free error",
     "error_percent_of_pca": "error, of PCA's",
-    "noise_free_error_percent_of_pca": "error, noise-free, of PCA's",
+    "noise_free_error_percent_of_pca": "noise-free error, of PCA's",
     "controllability_m": "reaches goals to",
     "controllability_state_error": "joint error then",
     "start_distance_m": "distance at the start",
