@@ -1,0 +1,118 @@
+"""A simulated person who leads an arm by hand along strokes (kinesthetic demonstrations)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from latentarm.kinematics.chain import Chain
+from latentarm.types import FloatArray
+
+_FINE = 400
+"""Samples with which a stroke's timing is integrated before it is sampled at the rate asked for."""
+_WAVES = 3
+"""Half-waves, at most, in the low-frequency noise along a stroke."""
+
+
+@final
+@dataclass(frozen=True)
+class Hand:
+    """How the simulated person moves: smoothly, never twice the same, without tremor.
+
+    Attributes:
+        rate_hz: sampling rate of the demonstrations.
+        joint_speed: fastest that any joint moves, rad/s.
+        tool_speed: fastest that the tool moves, m/s.
+        slowest: a stroke peaks at this share of those speeds, or more.
+        deviation: SD of the smooth deviation from the straight path, rad in each joint.
+        spread: SD of where a stroke ends, rad in each joint.
+        undershoot: largest share of a stroke that its main movement leaves to a correction.
+        hurry: SD of the logarithm of the speed's variation along a stroke.
+        pause_s: longest rest between strokes, s.
+    """
+
+    rate_hz: float = 20.0
+    joint_speed: float = 0.42
+    tool_speed: float = 0.2
+    slowest: float = 0.7
+    deviation: float = 0.02
+    spread: float = 0.008
+    undershoot: float = 0.15
+    hurry: float = 0.2
+    pause_s: float = 0.4
+
+
+def demonstrate(
+    chain: Chain, start: FloatArray, strokes: Sequence[FloatArray], hand: Hand, rng: np.random.Generator
+) -> FloatArray:
+    """One demonstration: from a start along strokes, resting shortly in between.
+
+    Args:
+        chain: the arm's kinematics, for the tool's speed.
+        start: (n,), rad.
+        strokes: each (V, n), configurations to pass after the start or the stroke before, rad.
+        hand: how the simulated person moves.
+        rng: source of all variation.
+
+    Returns:
+        (T, n), states every ``1 / hand.rate_hz`` seconds, rad.
+    """
+    parts = [start[None]]
+    for via in strokes:
+        moved = _stroke(chain, np.concatenate([parts[-1][-1:], via]), hand, rng)
+        rest = rng.integers(0, round(hand.pause_s * hand.rate_hz), endpoint=True)
+        parts.append(np.concatenate([moved, np.repeat(moved[-1:], rest, axis=0)]))
+    return np.concatenate(parts)
+
+
+def _stroke(chain: Chain, via: FloatArray, hand: Hand, rng: np.random.Generator) -> FloatArray:
+    """One movement through configurations (V, n), its first sample left out: (T, n)."""
+    progress = _progress(hand, rng)
+    fine = _path(via, hand, rng)(progress)
+    # Per unit of the stroke's own time, which is 1 in total.
+    joint_speed = np.abs(np.diff(fine, axis=0)).max() * _FINE
+    tool_speed = np.linalg.norm(np.diff(chain.forward(fine).position, axis=0), axis=-1).max() * _FINE
+    effort = rng.uniform(hand.slowest, 1.0)
+    duration = max(joint_speed / hand.joint_speed, tool_speed / hand.tool_speed) / effort
+    samples = max(int(np.ceil(duration * hand.rate_hz)), 2)
+    own_time = np.linspace(0.0, 1.0, samples + 1)[1:]
+    return CubicSpline(np.linspace(0.0, 1.0, _FINE + 1), fine)(own_time)
+
+
+def _path(via: FloatArray, hand: Hand, rng: np.random.Generator) -> CubicSpline:
+    """A smooth curve from via[0] to near via[-1], over progress in [0, 1]."""
+    knots = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(via, axis=0), axis=-1))])
+    progress = np.linspace(0.0, 1.0, 50)
+    curve = CubicSpline(knots / knots[-1], via)(progress)
+    wave = np.arange(1, _WAVES + 1)
+    sway = rng.normal(0.0, hand.deviation / wave, (via.shape[1], _WAVES)) @ np.sin(
+        np.pi * np.outer(wave, progress)
+    )
+    miss = rng.normal(0.0, hand.spread, via.shape[1])
+    return CubicSpline(progress, curve + sway.T + progress[:, None] * miss)
+
+
+def _progress(hand: Hand, rng: np.random.Generator) -> FloatArray:
+    """Share of a stroke that is done, from 0 to 1, over its own time: (_FINE + 1,).
+
+    A main movement falls a little short and a correction that begins before it ends does the rest
+    (both of minimum jerk), and the clock of both runs unevenly.
+    """
+    own_time = np.linspace(0.0, 1.0, _FINE + 1)
+    wave = np.arange(1, _WAVES + 1)
+    hurry = np.exp(rng.normal(0.0, hand.hurry / wave, _WAVES) @ np.sin(np.pi * np.outer(wave, own_time)))
+    clock = np.concatenate([[0.0], np.cumsum(hurry[1:] + hurry[:-1])])
+    clock /= clock[-1]
+    short = rng.uniform(0.0, hand.undershoot)
+    main_end, correction_start = rng.uniform(0.75, 0.9), rng.uniform(0.5, 0.65)
+    main = _minimum_jerk(clock / main_end)
+    correction = _minimum_jerk((clock - correction_start) / (1.0 - correction_start))
+    return (1.0 - short) * main + short * correction
+
+
+def _minimum_jerk(share: FloatArray) -> FloatArray:
+    """Flash and Hogan's profile from 0 to 1 over the share of the movement's time, held outside."""
+    t = np.clip(share, 0.0, 1.0)
+    return t**3 * (10.0 - 15.0 * t + 6.0 * t**2)

@@ -1,0 +1,52 @@
+"""Configurations in which the tool is at a wanted pose."""
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
+from latentarm.types import FloatArray, Pose
+
+_STEP_S = 0.1
+_STEPS = 300
+_CLOSE = 1e-4
+"""The pose counts as met within this, m and rad together."""
+_POSTURE_COST = 1e-3
+"""Pull of the preferred posture beside the tool's pose; it settles what a redundant arm leaves open."""
+
+
+def solve(robot: Robot, pose: Pose, posture: FloatArray) -> FloatArray:
+    """The configuration near a preferred posture that puts the robot's first tool at a pose.
+
+    Differential inverse kinematics (mink) from the posture on, within the joint limits.
+
+    Args:
+        robot: the arm; its tool is a site of its model.
+        pose: wanted, in the base frame.
+        posture: (n,), where the search begins and what redundant joints stay close to, rad.
+
+    Returns:
+        (n,), rad.
+
+    Raises:
+        UserError: the arm does not reach the pose from there.
+    """
+    import mink
+
+    model = robot.model()
+    wanted = np.eye(4)
+    wanted[:3, :3], wanted[:3, 3] = pose.rotation, pose.position
+    tool = mink.FrameTask(robot.chain.tools[0].name, "site", 1.0, 1.0, lm_damping=1e-6)
+    tool.set_target(mink.SE3.from_matrix(wanted))
+    near = mink.PostureTask(model, _POSTURE_COST)
+    near.set_target(posture)
+    limits = [mink.ConfigurationLimit(model)]
+    configuration = mink.Configuration(model, posture)
+    for _ in range(_STEPS):
+        if np.linalg.norm(tool.compute_error(configuration)) < _CLOSE:
+            return np.array(configuration.q)
+        velocity = mink.solve_ik(configuration, [tool, near], _STEP_S, "daqp", limits=limits)
+        configuration.integrate_inplace(velocity, _STEP_S)
+    place = ", ".join(f"{x:.2f}" for x in pose.position)
+    raise UserError(
+        f"The robot {robot.name} does not bring its tool to ({place}) m in the orientation asked for."
+    )

@@ -1,0 +1,199 @@
+"""A Panda at a table with three food items, each to be reached and then stabbed or scooped."""
+
+from functools import cached_property
+from typing import final
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.kinematics.obstacles import HalfSpace, Obstacle
+from latentarm.kinematics.rotations import angle_between
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.tasks.demonstrator import Hand, demonstrate
+from latentarm.tasks.inverse_kinematics import solve
+from latentarm.tasks.task import Task
+from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Pose
+
+TABLE_HEIGHT = 0.0
+"""Height of the table top in the robot's base frame, m: the arm is mounted on the table."""
+
+ITEMS = {"carrot": (0.50, -0.28), "tofu": (0.60, 0.0), "melon": (0.50, 0.28)}
+"""Where the food is, x and y, m; each item lies on a raised dish."""
+
+ITEM_HEIGHT = 0.10
+"""Height of the food above the table top, m."""
+
+HOVER = 0.13
+"""How far above the food a reach ends, m."""
+
+SCOOP_TILT = 0.45
+"""How far the tool tilts when it scoops, its tip pointing outwards, rad."""
+
+SCOOP_SWEEP = (-0.03, 0.04)
+"""Where a scoop enters and leaves the food, m outwards from its middle."""
+
+REACHED_DISTANCE = 0.03
+"""A waypoint is reached within this distance, m, ..."""
+
+REACHED_ANGLE = np.deg2rad(20.0)
+"""... and this angle, rad. Both were set before any result was seen."""
+
+_VIA = 3
+"""Configurations between the ends of a stab or scoop, so that the tool follows a line."""
+
+
+@final
+class TableTop(Task):
+    """Three food items on a table, in an arc in front of a Panda whose hand holds a fork.
+
+    The tool point stands for the fork's tip and its z axis for where the fork points. A goal is the
+    configuration with the fork upright above an item, turned outwards from the base. To stab, the
+    fork goes straight down from there; to scoop, it tilts, goes low before the item and sweeps
+    outwards through it. The demonstrator is a simulated person.
+    """
+
+    @property
+    def name(self) -> str:
+        """``table_top``."""
+        return "table_top"
+
+    @property
+    def robot(self) -> Robot:
+        """A Panda."""
+        return self._robot
+
+    @property
+    def manners(self) -> tuple[str, ...]:
+        """Stab or scoop."""
+        return ("stab", "scoop")
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table; the food and its dishes are soft and may be touched."""
+        return (HalfSpace("table", np.array([0.0, 0.0, TABLE_HEIGHT]), np.array([0.0, 0.0, 1.0])),)
+
+    @property
+    def goals(self) -> tuple[Goal, ...]:
+        """Above each item, the fork upright."""
+        return self._goals
+
+    def sample_start(self, rng: np.random.Generator) -> FloatArray:
+        """About the ready pose, above and before the items: (7,), rad."""
+        spread = np.array([0.3, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1])
+        return self.robot.home + rng.uniform(-spread, spread)
+
+    def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
+        """The pose above the item, then the end of the stab or scoop.
+
+        Raises:
+            UserError: there is no such goal or manner.
+        """
+        if not 0 <= goal < len(ITEMS):
+            raise UserError(f"The table has goals 0 to {len(ITEMS) - 1}, not {goal}.")
+        return self.goals[goal].pose, self.robot.chain.forward(self._manipulation(goal, manner)[-1])
+
+    def reached(self, pose: Pose, waypoint: Pose) -> bool:
+        """Within 0.03 m and 20 degrees."""
+        distance = np.linalg.norm(pose.position - waypoint.position)
+        angle = angle_between(pose.rotation, waypoint.rotation)
+        return bool(distance <= REACHED_DISTANCE and angle <= REACHED_ANGLE)
+
+    def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
+        """Reach and manipulate, goals and manners in turn, as a simulated person would.
+
+        Raises:
+            UserError: fewer than one episode is asked for.
+        """
+        if episodes < 1:
+            raise UserError(f"Ask for at least one demonstration, not {episodes}.")
+        hand = Hand()
+        return Demonstrations(
+            episodes=tuple(self._episode(i, hand, rng) for i in range(episodes)),
+            rate_hz=hand.rate_hz,
+            joint_names=self.robot.joint_names,
+            robot=self.robot.name,
+            goals=self.goals,
+        )
+
+    def _episode(self, index: int, hand: Hand, rng: np.random.Generator) -> Episode:
+        goal = index % len(ITEMS)
+        manner = self.manners[index // len(ITEMS) % len(self.manners)]
+        strokes = (self.goals[goal].configuration[None], self._manipulation(goal, manner))
+        state = demonstrate(self.robot.chain, self.sample_start(rng), strokes, hand, rng)
+        return Episode(
+            state=state,
+            timestamp=np.arange(len(state)) / hand.rate_hz,
+            task=f"{manner} the {self.goals[goal].name}",
+        )
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("panda")
+
+    @cached_property
+    def _goals(self) -> tuple[Goal, ...]:
+        return tuple(self._goal(name) for name in ITEMS)
+
+    def _goal(self, name: str) -> Goal:
+        outwards = np.arctan2(ITEMS[name][1], ITEMS[name][0])
+        posture = self.robot.home.copy()
+        posture[0] = outwards
+        configuration = solve(self.robot, _above(name, height=HOVER), posture)
+        return Goal(name, configuration, self.robot.chain.forward(configuration))
+
+    def _manipulation(self, goal: int, manner: str) -> FloatArray:
+        """Configurations along a stab or scoop after the goal, (V, 7), rad."""
+        if manner not in self.manners:
+            raise UserError(f"At the table one can {' or '.join(self.manners)}, not {manner!r}.")
+        return self._manipulations[goal, manner]
+
+    @cached_property
+    def _manipulations(self) -> dict[tuple[int, str], FloatArray]:
+        return {
+            (index, manner): self._along(goal, _line(goal.name, manner))
+            for index, goal in enumerate(self.goals)
+            for manner in self.manners
+        }
+
+    def _along(self, goal: Goal, poses: list[Pose]) -> FloatArray:
+        """Configurations for poses one after the other, each found from the one before, (V, n), rad."""
+        configurations = [goal.configuration]
+        for pose in poses:
+            configurations.append(solve(self.robot, pose, configurations[-1]))
+        return np.stack(configurations[1:])
+
+
+def _line(name: str, manner: str) -> list[Pose]:
+    """Poses of the tool along a stab or scoop, after the pose above the item."""
+    share = np.linspace(0.0, 1.0, _VIA + 2)[1:]
+    if manner == "stab":
+        return [_above(name, height=HOVER * (1.0 - s)) for s in share]
+    enter, leave = SCOOP_SWEEP
+    lower = [
+        _above(name, height=HOVER * (1.0 - s), tilt=SCOOP_TILT * s / 2, outwards=enter * s) for s in share
+    ]
+    sweep = [
+        _above(name, height=0.0, tilt=SCOOP_TILT * (1.0 + s) / 2, outwards=enter + (leave - enter) * s)
+        for s in share
+    ]
+    return lower + sweep
+
+
+def _above(name: str, height: float, tilt: float = 0.0, outwards: float = 0.0) -> Pose:
+    """A pose of the fork over an item.
+
+    Args:
+        name: of the item.
+        height: of the tip above the food, m.
+        tilt: of the fork from upright, its tip outwards, rad.
+        outwards: shift away from the robot's base, m.
+    """
+    x, y = ITEMS[name]
+    direction = np.array([x, y]) / np.hypot(x, y)
+    out = np.array([*direction, 0.0])
+    points = np.sin(tilt) * out + np.array([0.0, 0.0, -np.cos(tilt)])
+    side = np.array([direction[1], -direction[0], 0.0])
+    rotation = np.stack([np.cross(side, points), side, points], axis=-1)
+    position = np.array([x, y, TABLE_HEIGHT + ITEM_HEIGHT + height]) + outwards * out
+    return Pose(position, rotation)

@@ -1,0 +1,71 @@
+"""What every task says about itself."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.robot import Robot
+from latentarm.types import Demonstrations, FloatArray, Goal, Pose
+
+
+class Task(ABC):
+    """A robot in a place with discrete goals, and ways (manners) of doing something at each."""
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """Short name, in snake_case."""
+
+    @property
+    @abstractmethod
+    def robot(self) -> Robot:
+        """The arm."""
+
+    @property
+    @abstractmethod
+    def goals(self) -> tuple[Goal, ...]:
+        """The discrete goals ``G`` that a person may have."""
+
+    @property
+    @abstractmethod
+    def manners(self) -> tuple[str, ...]:
+        """What can be done at a goal, at least one name."""
+
+    @property
+    @abstractmethod
+    def obstacles(self) -> Sequence[Obstacle]:
+        """What the arm must keep clear of."""
+
+    @abstractmethod
+    def sample_start(self, rng: np.random.Generator) -> FloatArray:
+        """A state to begin from, (n,), rad."""
+
+    @abstractmethod
+    def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
+        """Poses that the tool must come to, one after the other, for the task to be done.
+
+        Args:
+            goal: index into `goals`.
+            manner: one of `manners`.
+
+        Raises:
+            UserError: there is no such goal or manner.
+        """
+
+    @abstractmethod
+    def reached(self, pose: Pose, waypoint: Pose) -> bool:
+        """Whether the tool at ``pose`` counts as being at ``waypoint``."""
+
+    @abstractmethod
+    def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
+        """Demonstrations by a simulated person.
+
+        Args:
+            episodes: how many, spread evenly over goals and manners.
+            rng: source of all variation.
+
+        Raises:
+            UserError: fewer than one episode is asked for.
+        """
