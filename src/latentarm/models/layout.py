@@ -1,0 +1,94 @@
+"""Which tensors each kind of model consists of: the trainer, the files and the runtime all read it here."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final, Literal
+
+DecoderForm = Literal["linear", "latent", "latent_context", "matrix"]
+EncoderForm = Literal["projection", "deterministic", "gaussian"]
+Shape = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The form of a model's two halves.
+
+    Attributes:
+        decoder: ``linear`` is phi(z) without hidden layers, ``latent`` is phi(z), ``latent_context`` is
+            phi(z, c), ``matrix`` is M(c) z.
+        encoder: ``projection`` onto the columns of the decoder (no weights of its own), or a network
+            of (c, a) whose output is z (``deterministic``) or (mu, log sigma^2) (``gaussian``).
+    """
+
+    decoder: DecoderForm
+    encoder: EncoderForm
+
+
+LAYOUTS: Final[dict[str, Layout]] = {
+    "pca": Layout("linear", "projection"),
+    "ae": Layout("latent", "deterministic"),
+    "vae": Layout("latent", "gaussian"),
+    "cae": Layout("latent_context", "deterministic"),
+    "cvae": Layout("latent_context", "gaussian"),
+    "cae_zero": Layout("latent_context", "deterministic"),
+    "scl": Layout("matrix", "projection"),
+}
+"""Every kind of model, by the name that it has on disk and on the command line."""
+
+
+@dataclass(frozen=True)
+class Dimensions:
+    """The sizes that fix every tensor's shape.
+
+    Attributes:
+        seeds: S, models trained side by side.
+        latent: d.
+        context: c.
+        action: m.
+        hidden: units of each hidden layer, the same in encoder and decoder.
+    """
+
+    seeds: int
+    latent: int
+    context: int
+    action: int
+    hidden: tuple[int, ...]
+
+
+def network_sizes(layout: Layout, dimensions: Dimensions) -> dict[str, Shape]:
+    """Layer widths, input first, of each network that a model has."""
+    d, c, m, hidden = dimensions.latent, dimensions.context, dimensions.action, dimensions.hidden
+    decoder: dict[DecoderForm, Shape] = {
+        "linear": (d, m),
+        "latent": (d, *hidden, m),
+        "latent_context": (d + c, *hidden, m),
+        "matrix": (c, *hidden, d * m),
+    }
+    encoder: dict[EncoderForm, dict[str, Shape]] = {
+        "projection": {},
+        "deterministic": {"encoder": (c + m, *hidden, d)},
+        "gaussian": {"encoder": (c + m, *hidden, 2 * d)},
+    }
+    return {"decoder": decoder[layout.decoder], **encoder[layout.encoder]}
+
+
+def weight_shapes(layout: Layout, dimensions: Dimensions) -> dict[str, Shape]:
+    """Shape, with the leading seed axis, of every learned tensor by name (``decoder.0.weight``, ...)."""
+    shapes: dict[str, Shape] = {}
+    for network, sizes in network_sizes(layout, dimensions).items():
+        for layer, (inputs, outputs) in enumerate(pairwise(sizes)):
+            shapes[f"{network}.{layer}.weight"] = (dimensions.seeds, inputs, outputs)
+            shapes[f"{network}.{layer}.bias"] = (dimensions.seeds, 1, outputs)
+    return shapes
+
+
+def tensor_shapes(layout: Layout, dimensions: Dimensions) -> dict[str, Shape]:
+    """Shape of every tensor of a saved model: the learned ones, the normalisers and the latent scale."""
+    return {
+        **weight_shapes(layout, dimensions),
+        "context.centre": (dimensions.context,),
+        "context.scale": (dimensions.context,),
+        "action.scale": (1,),
+        "latent.centre": (dimensions.seeds, dimensions.latent),
+        "latent.scale": (dimensions.seeds, dimensions.latent),
+    }

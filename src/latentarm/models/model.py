@@ -1,0 +1,314 @@
+"""The contract of every latent action model."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import ClassVar, Final, Literal, Self
+from warnings import warn
+
+import numpy as np
+
+from latentarm.demonstrations.pairs import make_pairs
+from latentarm.demonstrations.split import split_episodes
+from latentarm.errors import UserError
+from latentarm.models.decoder import Decoder
+from latentarm.models.layout import LAYOUTS, Dimensions
+from latentarm.models.normaliser import action_normaliser, context_normaliser
+from latentarm.models.parameters import check_held_out, check_parameters, check_rows
+from latentarm.models.saving import write_model
+from latentarm.models.scaling import (
+    EFFECT_SAMPLES,
+    CollapseWarning,
+    describe_collapse,
+    effect_of_dimensions,
+    find_collapsed,
+    latent_scale,
+)
+from latentarm.models.trained import TrainedModel, TrainingSummary
+from latentarm.models.training import TrainingData, TrainingResult
+from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs
+
+ROWS_AT_ONCE: Final = 4096
+"""Pairs encoded or decoded at a time, so that memory does not grow with the dataset."""
+
+Weights = Mapping[str, FloatArray]
+
+
+@dataclass(kw_only=True, eq=False)
+class LatentActionModel(ABC):
+    """A decoder ``phi: (z, c) -> a`` and an encoder ``psi: (c, a) -> z``, learned for S seeds at once.
+
+    Follows scikit-learn: the constructor stores parameters, `fit` learns, attributes that end in
+    ``_`` exist after it. z is given and returned in input units: u in [-1, 1] on each axis spans what
+    the demonstrations used. Arrays are float64.
+
+    All models take the same parameters, so that they can be compared with one set of them; PCA has
+    no use for those of the networks and their training.
+
+    Attributes:
+        latent_dim: d, size of z.
+        context: what the decoder may see: ``state`` is c = s, ``state_belief`` is c = (s, b).
+        actions: where actions come from: ``displacement`` between states, or ``recorded``.
+        window: samples that a displacement may reach ahead and back.
+        state_noise_rad: standard deviation of the noise on training states, rad.
+        held_out_fraction: share of the episodes held out, where `fit` is not told which.
+        data_seed: draws the held-out episodes and the state noise, the same for every seed.
+        seeds: S, models trained side by side.
+        seed: the first of S consecutive seeds.
+        hidden: units of each hidden layer, of encoder and decoder.
+        learning_rate: of Adam, at the start.
+        epochs: passes over the training pairs, at most.
+        batch_size: pairs per step.
+        patience: epochs without improvement on the held-out episodes after which a seed stops.
+        device: ``cpu``, ``cuda``, or ``auto`` for CUDA where there is one.
+        checkpoint_interval_s: shortest time between two checkpoints of a training, s.
+        trained_: what `fit` learned.
+    """
+
+    kind: ClassVar[str]
+    """The name of the model on disk and on the command line."""
+
+    rests_at_zero: ClassVar[bool]
+    """Whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must stay u = 0.
+    Where it does not, u = 0 is the mean latent action of the demonstrations."""
+
+    latent_dim: int = 2
+    context: Literal["state", "state_belief"] = "state"
+    actions: Literal["displacement", "recorded"] = "displacement"
+    window: int = 5
+    state_noise_rad: float = 0.0
+    held_out_fraction: float = 0.2
+    data_seed: int = 0
+    seeds: int = 1
+    seed: int = 0
+    hidden: tuple[int, ...] = (32, 32)
+    learning_rate: float = 1e-2
+    epochs: int = 60
+    batch_size: int = 64
+    patience: int = 20
+    device: Literal["cpu", "cuda", "auto"] = "cpu"
+    checkpoint_interval_s: float = 5.0
+    trained_: TrainedModel | None = field(default=None, init=False, repr=False)
+
+    @abstractmethod
+    def _learn(
+        self, data: TrainingData, dimensions: Dimensions, checkpoint: Path | None, progress: bool
+    ) -> TrainingResult:
+        """Fit the weights of S seeds to normalised pairs."""
+
+    @abstractmethod
+    def _encode(self, weights: Weights, context: FloatArray, action: FloatArray) -> FloatArray:
+        """psi: normalised (N, c) and (N, m) to latents as trained (S, N, d); of a distribution, the mean."""
+
+    @abstractmethod
+    def _decode(self, weights: Weights, latent: FloatArray, context: FloatArray) -> FloatArray:
+        """phi: latents as trained (S, N, d), normalised contexts (N, c) to normalised actions (S, N, m)."""
+
+    def fit(
+        self,
+        demonstrations: Demonstrations,
+        *,
+        held_out: Sequence[int] | None = None,
+        checkpoint: Path | None = None,
+        progress: bool = False,
+    ) -> Self:
+        """Learn from demonstrations, all seeds at once.
+
+        Args:
+            demonstrations: at least two episodes.
+            held_out: indices of the episodes that the weights are not fitted to; the loss on them
+                says when to stop. Drawn by ``data_seed`` where None.
+            checkpoint: file to write the training's state to and, if it exists, to go on from. It
+                stays when the training is done; delete it once the model is saved.
+            progress: show a bar.
+
+        Returns:
+            This model.
+
+        Raises:
+            UserError: a parameter makes no sense, the demonstrations have too few episodes or lack
+                what the parameters ask for, training diverged, or CUDA is asked for and absent.
+
+        Warns:
+            CollapseWarning: a latent dimension moves nothing; ``collapsed_`` says which.
+        """
+        check_parameters(self.parameters())
+        if held_out is None:
+            rng = np.random.default_rng([self.data_seed, 0])
+            held_out = [
+                int(index) for index in split_episodes(demonstrations, self.held_out_fraction, rng)[1]
+            ]
+        check_held_out(held_out, len(demonstrations.episodes))
+        rng = np.random.default_rng([self.data_seed, 1])
+        pairs = make_pairs(
+            demonstrations, self.window, self.state_noise_rad, self.context, rng, actions=self.actions
+        )
+        self.trained_ = self._fit_pairs(pairs, tuple(held_out), checkpoint, progress)
+        if self.collapsed_.any():
+            seeds = self.trained_.summary.seeds
+            warn(CollapseWarning(describe_collapse(self.kind, seeds, self.collapsed_)), stacklevel=2)
+        return self
+
+    def encode(self, context: FloatArray, action: FloatArray) -> FloatArray:
+        """Latent actions of demonstrated ones.
+
+        Args:
+            context: (N, c).
+            action: (N, m), rad/s.
+
+        Returns:
+            (S, N, d), in input units.
+
+        Raises:
+            UserError: the model is not fitted, or an array has the wrong shape or a NaN.
+        """
+        trained = self._fitted()
+        check_rows("context", context, trained.dimensions.context)
+        check_rows("action", action, trained.dimensions.action)
+        contexts, actions = trained.contexts.apply(context), trained.actions.apply(action)
+        return trained.latents.apply(self._encode_rows(trained.tensors, contexts, actions))
+
+    def decode(self, z: FloatArray, context: FloatArray) -> FloatArray:
+        """Actions that latent actions stand for.
+
+        Args:
+            z: (S, N, d), or (N, d) for the same in every seed; in input units.
+            context: (N, c).
+
+        Returns:
+            (S, N, m), rad/s.
+
+        Raises:
+            UserError: the model is not fitted, or an array has the wrong shape or a NaN.
+        """
+        trained = self._fitted()
+        check_rows("context", context, trained.dimensions.context)
+        check_rows("z", z, trained.dimensions.latent, seeds=trained.dimensions.seeds, rows=len(context))
+        stacked = np.broadcast_to(z, (trained.dimensions.seeds, *z.shape[-2:]))
+        latents, contexts = trained.latents.invert(stacked), trained.contexts.apply(context)
+        return trained.actions.invert(self._decode_rows(trained.tensors, latents, contexts))
+
+    def decoder(self, seed: int = 0) -> Decoder:
+        """The decoder of one seed as the control loop runs it.
+
+        Args:
+            seed: index of the seed, 0..S-1.
+
+        Raises:
+            UserError: the model is not fitted, or has no such seed.
+        """
+        return Decoder(self._fitted(), seed)
+
+    def save(self, folder: Path, *, run: Mapping[str, object] | None = None) -> None:
+        """Write ``model.safetensors`` and ``config.json``.
+
+        Args:
+            folder: made if it does not exist.
+            run: further keys for ``config.json``, beside its ``model``.
+
+        Raises:
+            UserError: the model is not fitted, or the files cannot be written.
+        """
+        write_model(folder, self._fitted(), run or {})
+
+    def parameters(self) -> dict[str, object]:
+        """What the model was constructed with, by name."""
+        return {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.init}
+
+    @property
+    def seed_numbers(self) -> tuple[int, ...]:
+        """The S seeds."""
+        return tuple(range(self.seed, self.seed + self.seeds))
+
+    @property
+    def collapsed_(self) -> BoolArray:
+        """Latent dimensions that move nothing, (S, d)."""
+        return self._fitted().summary.collapsed
+
+    @property
+    def held_out_episodes_(self) -> tuple[int, ...]:
+        """Indices of the episodes that the weights were not fitted to."""
+        return self._fitted().summary.held_out_episodes
+
+    @property
+    def held_out_loss_(self) -> FloatArray:
+        """Loss on their pairs (S,), in normalised units."""
+        return self._fitted().summary.held_out_loss
+
+    @property
+    def history_(self) -> FloatArray:
+        """Held-out loss after each epoch, (E, S)."""
+        return self._fitted().summary.history
+
+    def _fit_pairs(
+        self, pairs: Pairs, held_out: tuple[int, ...], checkpoint: Path | None, progress: bool
+    ) -> TrainedModel:
+        outside = np.isin(pairs.episode, held_out)
+        if outside.all() or not outside.any():
+            raise UserError(
+                "The arm moves in none of the training episodes, or in none of the held-out ones."
+            )
+        context, action = pairs.context[~outside], pairs.action[~outside]
+        dimensions = Dimensions(self.seeds, self.latent_dim, context.shape[1], action.shape[1], self.hidden)
+        if dimensions.latent > dimensions.action:
+            raise UserError(
+                f"A latent action of {dimensions.latent} dimensions is no smaller than the arm's "
+                f"{dimensions.action}: choose at most {dimensions.action}."
+            )
+        contexts, actions = context_normaliser(context), action_normaliser(action)
+        data = TrainingData(
+            context=contexts.apply(context),
+            action=actions.apply(action),
+            held_out_context=contexts.apply(pairs.context[outside]),
+            held_out_action=actions.apply(pairs.action[outside]),
+        )
+        learned = self._learn(data, dimensions, checkpoint, progress)
+        weights = learned.weights
+        latents = self._encode_rows(weights, data.context, data.action)
+        centre = np.zeros_like(latents[:, 0]) if self.rests_at_zero else latents.mean(axis=1)
+        scale = latent_scale(latents, centre)
+        rows = np.linspace(0, len(context) - 1, min(EFFECT_SAMPLES, len(context))).astype(np.int64)
+        effect = effect_of_dimensions(
+            lambda u: self._decode(weights, scale.invert(u), data.context[rows]),
+            scale.apply(latents[:, rows]),
+            np.sqrt(np.square(data.action).sum(axis=1).mean()),
+        )
+        return TrainedModel(
+            kind=self.kind,
+            parameters=self.parameters(),
+            dimensions=dimensions,
+            tensors={
+                **weights,
+                "context.centre": contexts.centre,
+                "context.scale": contexts.scale,
+                "action.scale": actions.scale,
+                "latent.centre": scale.centre[:, 0],
+                "latent.scale": scale.scale[:, 0],
+            },
+            summary=TrainingSummary(
+                seeds=self.seed_numbers,
+                held_out_episodes=held_out,
+                held_out_loss=learned.held_out_loss,
+                best_epoch=learned.best_epoch,
+                history=learned.history,
+                collapsed=find_collapsed(effect, latents, LAYOUTS[self.kind]),
+            ),
+        )
+
+    def _encode_rows(self, weights: Weights, context: FloatArray, action: FloatArray) -> FloatArray:
+        return _in_rows(lambda rows: self._encode(weights, context[rows], action[rows]), len(context))
+
+    def _decode_rows(self, weights: Weights, latent: FloatArray, context: FloatArray) -> FloatArray:
+        return _in_rows(lambda rows: self._decode(weights, latent[:, rows], context[rows]), len(context))
+
+    def _fitted(self) -> TrainedModel:
+        if self.trained_ is None:
+            raise UserError(f"This {self.kind} model is not fitted yet: call fit first, or load a saved one.")
+        return self.trained_
+
+
+def _in_rows(compute: Callable[[slice], FloatArray], rows: int) -> FloatArray:
+    """Apply to a bounded number of rows at a time and join along the second axis."""
+    parts = [compute(slice(start, start + ROWS_AT_ONCE)) for start in range(0, max(rows, 1), ROWS_AT_ONCE)]
+    return np.concatenate(parts, axis=1)

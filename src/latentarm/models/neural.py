@@ -1,0 +1,108 @@
+"""What all models trained by gradient share: the way into torch and back."""
+
+import json
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from pathlib import Path
+from typing import final
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from latentarm.errors import UserError
+from latentarm.models.layout import LAYOUTS, Dimensions, weight_shapes
+from latentarm.models.model import LatentActionModel, Weights
+from latentarm.models.networks import Networks, mlp, networks_from_arrays
+from latentarm.models.training import Batch, TrainingConfig, TrainingData, TrainingResult, train
+from latentarm.types import FloatArray
+
+
+@dataclass(kw_only=True, eq=False)
+class NeuralModel(LatentActionModel, ABC):
+    """A latent action model whose encoder and decoder are small networks.
+
+    Training is in float32; encoding and decoding afterwards in float64. A model says how it encodes,
+    decodes and what it minimises, on batches with a leading seed axis and normalised values.
+    """
+
+    @abstractmethod
+    def _loss(self, networks: Networks, batch: Batch) -> Tensor:
+        """What training minimises, (S,)."""
+
+    @abstractmethod
+    def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
+        """psi: (S, B, c) and (S, B, m) to (S, B, d); the mean where psi is a distribution."""
+
+    @abstractmethod
+    def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
+        """phi: (S, B, d) and (S, B, c) to (S, B, m)."""
+
+    @final
+    def _learn(
+        self, data: TrainingData, dimensions: Dimensions, checkpoint: Path | None, progress: bool
+    ) -> TrainingResult:
+        layout = LAYOUTS[self.kind]
+        apart = ("device", "checkpoint_interval_s")
+        identity = {name: value for name, value in self.parameters().items() if name not in apart}
+        return train(
+            self._loss,
+            weight_shapes(layout, dimensions),
+            dimensions.latent if layout.encoder == "gaussian" else 0,
+            data,
+            self.seed_numbers,
+            TrainingConfig(
+                learning_rate=self.learning_rate,
+                epochs=self.epochs,
+                batch_size=self.batch_size,
+                patience=self.patience,
+                checkpoint_interval_s=self.checkpoint_interval_s,
+            ),
+            device=choose_device(self.device),
+            checkpoint=checkpoint,
+            identity=json.dumps({"kind": self.kind, **identity}, sort_keys=True),
+            progress=progress,
+        )
+
+    @final
+    def _encode(self, weights: Weights, context: FloatArray, action: FloatArray) -> FloatArray:
+        networks = networks_from_arrays(weights)
+        with torch.no_grad():
+            return self._latent(
+                networks, _for_every_seed(networks, context), _for_every_seed(networks, action)
+            ).numpy()
+
+    @final
+    def _decode(self, weights: Weights, latent: FloatArray, context: FloatArray) -> FloatArray:
+        networks = networks_from_arrays(weights)
+        with torch.no_grad():
+            latents = torch.from_numpy(np.ascontiguousarray(latent))
+            return self._action(networks, latents, _for_every_seed(networks, context)).numpy()
+
+
+def choose_device(name: str) -> torch.device:
+    """The torch device for ``cpu``, ``cuda`` or ``auto``.
+
+    Raises:
+        UserError: CUDA is asked for and this machine or this torch has none.
+    """
+    present = torch.cuda.is_available()
+    if name == "cuda" and not present:
+        raise UserError("The device is cuda, but torch finds no CUDA on this machine: use cpu, or auto.")
+    return torch.device("cuda" if present and name in ("cuda", "auto") else "cpu")
+
+
+def encoder_output(networks: Networks, context: Tensor, action: Tensor) -> Tensor:
+    """The encoder network on (c, a): (S, B, c) and (S, B, m) to (S, B, d), or 2 d for a Gaussian one."""
+    return mlp(networks["encoder"], torch.cat([context, action], dim=-1))
+
+
+def conditioned_action(networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
+    """The decoder network on (z, c): (S, B, d) and (S, B, c) to (S, B, m)."""
+    return mlp(networks["decoder"], torch.cat([latent, context], dim=-1))
+
+
+def _for_every_seed(networks: Networks, values: FloatArray) -> Tensor:
+    """Rows (N, k) as (S, N, k)."""
+    seeds = len(networks["decoder"][0][0])
+    return torch.from_numpy(np.ascontiguousarray(values)).expand(seeds, -1, -1)

@@ -1,0 +1,40 @@
+"""Adam on one flat buffer."""
+
+import math
+from typing import Final, final
+
+import torch
+from torch import Tensor
+
+FIRST_DECAY: Final = 0.9
+SECOND_DECAY: Final = 0.999
+EPSILON: Final = 1e-8
+
+
+@final
+class FlatAdam:
+    """Adam (Kingma and Ba, 2015) for one buffer that holds every weight of every seed.
+
+    The same arithmetic as ``torch.optim.Adam``. That one costs 80-200 us a step in bookkeeping over a
+    dozen small tensors, as much as a forward pass of these networks; this one costs 20-50 us.
+
+    Attributes:
+        first: running mean of the gradient, shaped like the buffer.
+        second: running mean of its square, shaped like the buffer.
+        steps: steps taken.
+    """
+
+    def __init__(self, values: Tensor) -> None:
+        self.first = torch.zeros_like(values)
+        self.second = torch.zeros_like(values)
+        self.steps = 0
+
+    def step(self, values: Tensor, gradient: Tensor, learning_rate: float) -> None:
+        """Move ``values`` one step against ``gradient``, in place."""
+        self.steps += 1
+        self.first.lerp_(gradient, 1 - FIRST_DECAY)
+        self.second.mul_(SECOND_DECAY).addcmul_(gradient, gradient, value=1 - SECOND_DECAY)
+        first_correction = 1 - FIRST_DECAY**self.steps
+        second_correction = 1 - SECOND_DECAY**self.steps
+        size = self.second.sqrt().div_(math.sqrt(second_correction)).add_(EPSILON)
+        values.addcdiv_(self.first, size, value=-learning_rate / first_correction)

@@ -1,0 +1,50 @@
+"""Principal component analysis of the actions: the linear, context-free baseline of the paper."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar, final
+
+import numpy as np
+from sklearn.decomposition import PCA as Components
+
+from latentarm.models.layout import Dimensions
+from latentarm.models.model import LatentActionModel, Weights
+from latentarm.models.training import TrainingData, TrainingResult
+from latentarm.types import FloatArray
+
+
+@final
+@dataclass(kw_only=True, eq=False)
+class PCA(LatentActionModel):
+    """PCA: minimises equation 6 among linear maps that see no context.
+
+    As scikit-learn has it, the actions' mean is subtracted first, so that z = 0 decodes to that mean.
+    Nothing in it is random: every seed gets the same.
+    """
+
+    kind: ClassVar[str] = "pca"
+    rests_at_zero: ClassVar[bool] = False
+
+    def _learn(
+        self, data: TrainingData, dimensions: Dimensions, checkpoint: Path | None, progress: bool
+    ) -> TrainingResult:
+        components = Components(n_components=dimensions.latent, svd_solver="full").fit(data.action)
+        held_out = data.held_out_action
+        rebuilt = components.inverse_transform(components.transform(held_out))
+        loss = np.square(held_out - rebuilt).sum(axis=1).mean()
+        seeds = dimensions.seeds
+        return TrainingResult(
+            weights={
+                "decoder.0.weight": np.repeat(components.components_[None], seeds, axis=0),
+                "decoder.0.bias": np.repeat(components.mean_[None, None], seeds, axis=0),
+            },
+            held_out_loss=np.full(seeds, loss),
+            best_epoch=np.zeros(seeds, dtype=np.int64),
+            history=np.empty((0, seeds)),
+        )
+
+    def _encode(self, weights: Weights, context: FloatArray, action: FloatArray) -> FloatArray:
+        return (action - weights["decoder.0.bias"]) @ weights["decoder.0.weight"].transpose(0, 2, 1)
+
+    def _decode(self, weights: Weights, latent: FloatArray, context: FloatArray) -> FloatArray:
+        return latent @ weights["decoder.0.weight"] + weights["decoder.0.bias"]

@@ -1,0 +1,126 @@
+"""Reading untrusted JSON: every value is asked for with the type and size that it must have."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast, final
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.types import FloatArray
+
+
+@final
+@dataclass(frozen=True)
+class Section:
+    """A JSON object in a file.
+
+    Attributes:
+        where: file and place, for error messages.
+        values: what it holds.
+    """
+
+    where: str
+    values: Mapping[str, Any]
+
+    @staticmethod
+    def of_file(path: Path, limit: int) -> "Section":
+        """The object that a file consists of.
+
+        Args:
+            path: a JSON file.
+            limit: bytes that it may have at most.
+
+        Raises:
+            UserError: the file is missing, too large, or not a JSON object.
+        """
+        try:
+            size = path.stat().st_size
+            if size > limit:
+                raise UserError(f"{path} is {size} bytes long; {limit} is the most that is read.")
+            values = json.loads(path.read_bytes())
+        except OSError as error:
+            raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
+        except (ValueError, RecursionError) as error:
+            raise UserError(f"{path} is not a JSON file.") from error
+        if not isinstance(values, dict):
+            raise UserError(f"{path} is JSON but not an object with named fields.")
+        return Section(str(path), cast(dict[str, Any], values))
+
+    def section(self, key: str) -> "Section":
+        """The object under a key."""
+        value = self._get(key)
+        if not isinstance(value, dict):
+            raise self._wrong(key, "an object with named fields")
+        return Section(f"{self.where}, '{key}'", cast(dict[str, Any], value))
+
+    def text(self, key: str) -> str:
+        """The string under a key."""
+        value = self._get(key)
+        if not isinstance(value, str):
+            raise self._wrong(key, "a text")
+        return value
+
+    def choice(self, key: str, allowed: Sequence[str]) -> str:
+        """The string under a key, one of those allowed."""
+        value = self.text(key)
+        if value not in allowed:
+            raise self._wrong(key, f"one of {', '.join(allowed)}")
+        return value
+
+    def integer(self, key: str, least: int) -> int:
+        """The whole number under a key."""
+        value = self._get(key)
+        if not _is_integer(value, least):
+            raise self._wrong(key, f"a whole number of at least {least}")
+        return value
+
+    def integers(self, key: str, least: int, *, length: int | None = None) -> list[int]:
+        """The list of whole numbers under a key, of the given length if there is one."""
+        value = self._get(key)
+        if not isinstance(value, list):
+            raise self._wrong(key, "a list of whole numbers")
+        entries = cast(list[Any], value)
+        if not all(_is_integer(entry, least) for entry in entries) or length not in (None, len(entries)):
+            raise self._wrong(key, f"a list of whole numbers of at least {least}" + _of_length(length))
+        return entries
+
+    def array(self, key: str, shape: tuple[int | None, ...]) -> FloatArray:
+        """The nested list of numbers under a key; None in ``shape`` allows any length."""
+        value = self._get(key)
+        try:
+            array = np.array(value, dtype=np.float64)
+        except (ValueError, TypeError, OverflowError) as error:
+            raise self._wrong(key, "a list of numbers") from error
+        if array.size == 0 and shape[0] is None:
+            array = array.reshape(0, *(length or 0 for length in shape[1:]))
+        fits = array.ndim == len(shape) and all(
+            length in (None, actual) for length, actual in zip(shape, array.shape, strict=True)
+        )
+        if not fits or not np.isfinite(array).all():
+            raise self._wrong(
+                key, f"a list of finite numbers of shape {[length or 'any' for length in shape]}"
+            )
+        return array
+
+    def plain(self) -> dict[str, Any]:
+        """All values as they are, for a reader that checks each itself."""
+        return dict(self.values)
+
+    def _get(self, key: str) -> Any:
+        if key not in self.values:
+            raise UserError(f"{self.where} has no '{key}': it was not written by latentarm, or not whole.")
+        return self.values[key]
+
+    def _wrong(self, key: str, wanted: str) -> UserError:
+        return UserError(f"{self.where}: '{key}' must be {wanted}.")
+
+
+def _is_integer(value: object, least: int) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and least <= value < 2**31
+
+
+def _of_length(length: int | None) -> str:
+    return "" if length is None else f", {length} of them"

@@ -1,0 +1,169 @@
+"""A trained model on disk: ``model.safetensors`` and the ``model`` key of ``config.json``. NumPy alone.
+
+What is read is believed only after it has been checked: sizes before anything is allocated, then the
+weights' SHA-256, then every tensor's name, shape, dtype and finiteness. Nothing is unpickled.
+"""
+
+import hashlib
+import json
+import platform
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from safetensors import SafetensorError
+from safetensors.numpy import load, save
+
+from latentarm.errors import UserError
+from latentarm.files import write_text, written_whole
+from latentarm.models.layout import LAYOUTS, Dimensions, Shape, tensor_shapes
+from latentarm.models.reading import Section
+from latentarm.models.trained import TrainedModel, TrainingSummary
+from latentarm.types import FloatArray
+
+CONFIG_NAME: Final = "config.json"
+WEIGHTS_NAME: Final = "model.safetensors"
+SCHEMA: Final = 1
+CONFIG_LIMIT: Final = 16 * 2**20
+"""Bytes; a config with the training curves of a hundred seeds stays far below."""
+HEADER_LIMIT: Final = 2**20
+WEIGHTS_LIMIT: Final = 2**30
+PACKAGES: Final = ("latentarm", "numpy", "safetensors", "scikit-learn", "torch")
+
+
+def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) -> None:
+    """Write a model to a folder, each file whole or not at all.
+
+    Args:
+        folder: made if it does not exist.
+        trained: the model.
+        run: further keys for ``config.json`` (dataset, commit, ...), beside ``model``.
+
+    Raises:
+        UserError: the files cannot be written.
+    """
+    content = save({name: np.ascontiguousarray(trained.tensors[name]) for name in sorted(trained.tensors)})
+    with written_whole(folder / WEIGHTS_NAME) as part:
+        part.write_bytes(content)
+    dimensions, summary = trained.dimensions, trained.summary
+    section = {
+        "schema": SCHEMA,
+        "kind": trained.kind,
+        "parameters": dict(trained.parameters),
+        "dimensions": {
+            "seeds": dimensions.seeds,
+            "latent": dimensions.latent,
+            "context": dimensions.context,
+            "action": dimensions.action,
+            "hidden": list(dimensions.hidden),
+        },
+        "seeds": list(summary.seeds),
+        "training": {
+            "held_out_episodes": list(summary.held_out_episodes),
+            "held_out_loss": summary.held_out_loss.tolist(),
+            "best_epoch": summary.best_epoch.tolist(),
+            "history": summary.history.tolist(),
+        },
+        "collapsed": summary.collapsed.tolist(),
+        "tensors": {
+            name: {"shape": list(array.shape), "dtype": "F64"} for name, array in trained.tensors.items()
+        },
+        "sha256": hashlib.sha256(content).hexdigest(),
+        "versions": {"python": platform.python_version(), **_versions()},
+    }
+    write_text(folder / CONFIG_NAME, json.dumps({**run, "model": section}, indent=2) + "\n")
+
+
+def read_model(folder: Path) -> TrainedModel:
+    """Read and check a model.
+
+    Raises:
+        UserError: a file is missing, foreign, of another version, or does not agree with the other.
+    """
+    path = folder / CONFIG_NAME
+    section = Section.of_file(path, CONFIG_LIMIT).section("model")
+    schema = section.integer("schema", 0)
+    if schema != SCHEMA:
+        raise UserError(
+            f"{path} has schema {schema} and this version reads schema {SCHEMA}: train the model again."
+        )
+    kind = section.text("kind")
+    if kind not in LAYOUTS:
+        raise UserError(f"{path} names the model '{kind}', which is none of {', '.join(LAYOUTS)}.")
+    sizes = section.section("dimensions")
+    dimensions = Dimensions(
+        seeds=sizes.integer("seeds", 1),
+        latent=sizes.integer("latent", 1),
+        context=sizes.integer("context", 1),
+        action=sizes.integer("action", 1),
+        hidden=tuple(sizes.integers("hidden", 1)),
+    )
+    shapes = tensor_shapes(LAYOUTS[kind], dimensions)
+    parameters = section.section("parameters")
+    parameters.choice("context", ("state", "state_belief"))
+    training = section.section("training")
+    seeds = dimensions.seeds
+    summary = TrainingSummary(
+        seeds=tuple(section.integers("seeds", 0, length=seeds)),
+        held_out_episodes=tuple(training.integers("held_out_episodes", 0)),
+        held_out_loss=training.array("held_out_loss", (seeds,)),
+        best_epoch=training.array("best_epoch", (seeds,)).astype(np.int64),
+        history=training.array("history", (None, seeds)),
+        collapsed=section.array("collapsed", (seeds, dimensions.latent)).astype(np.bool_),
+    )
+    tensors = _read_tensors(folder / WEIGHTS_NAME, shapes, section.text("sha256"))
+    return TrainedModel(kind, parameters.plain(), dimensions, tensors, summary)
+
+
+def _read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[str, FloatArray]:
+    """The tensors, after every check that can be made on them."""
+    payload = 8 * sum(int(np.prod(shape, dtype=object)) for shape in shapes.values())
+    if payload > WEIGHTS_LIMIT:
+        raise UserError(
+            f"{path.parent / CONFIG_NAME} asks for {payload:.3g} bytes of weights: it is not a model's."
+        )
+    try:
+        size = path.stat().st_size
+        with path.open("rb") as stream:
+            header = int.from_bytes(stream.read(8), "little")
+            if header > HEADER_LIMIT or size != 8 + header + payload:
+                raise UserError(
+                    f"{path} is not the weights that its {CONFIG_NAME} describes: it is {size} bytes long with a "
+                    f"header of {header}, and {payload} bytes of weights belong in it."
+                )
+            stream.seek(0)
+            content = stream.read(size)
+    except OSError as error:
+        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
+    if hashlib.sha256(content).hexdigest() != sha256:
+        raise UserError(
+            f"{path} does not have the SHA-256 that its {CONFIG_NAME} holds: one of the two was changed."
+        )
+    try:
+        tensors = load(content)
+    except (SafetensorError, KeyError, ValueError, TypeError) as error:
+        raise UserError(f"{path} is not a safetensors file.") from error
+    for name in sorted(set(tensors) ^ set(shapes)):
+        raise UserError(f"{path} {'lacks' if name in shapes else 'holds an unknown'} tensor '{name}'.")
+    for name, array in tensors.items():
+        if array.dtype != np.float64 or array.shape != shapes[name]:
+            raise UserError(
+                f"{path}: tensor '{name}' is {array.dtype}{list(array.shape)}, not float64{list(shapes[name])}."
+            )
+        if not np.isfinite(array).all():
+            raise UserError(f"{path}: tensor '{name}' holds a NaN or an infinity.")
+        if name.endswith(".scale") and not (array > 0).all():
+            raise UserError(f"{path}: tensor '{name}' holds a scale that is not positive.")
+    return tensors
+
+
+def _versions() -> dict[str, str]:
+    versions: dict[str, str] = {}
+    for package in PACKAGES:
+        try:
+            versions[package] = version(package)
+        except PackageNotFoundError:
+            versions[package] = "not installed as a package"
+    return versions

@@ -1,0 +1,104 @@
+"""Scaling a trained latent space to the person's input, and finding dimensions that came out dead."""
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from latentarm.models.layout import Layout
+from latentarm.models.normaliser import Normaliser
+from latentarm.types import BoolArray, FloatArray
+
+SPAN_QUANTILE: Final = 0.99
+"""u in [-1, 1] reaches all but this share's complement of what the demonstrations used; the rest are outliers."""
+
+EFFECT_SAMPLES: Final = 512
+"""Training contexts, at most, in which the effect of a latent dimension is measured."""
+
+SMALLEST_SCALE: Final = 1e-9
+"""Floor under a latent dimension's range, so that a dead one divides by a number."""
+
+DEAD_EFFECT: Final = 0.01
+"""A dimension whose full deflection changes the action by less than this share of the demonstrated
+speed is dead: no person could steer with it."""
+
+INACTIVE_VARIANCE: Final = 1e-2
+"""Variance of the posterior mean below which a variational dimension has collapsed to the prior
+(the "active units" criterion of Burda et al., Importance Weighted Autoencoders, 2016)."""
+
+
+class CollapseWarning(UserWarning):
+    """A latent dimension learned nothing: the input on that axis will move nothing."""
+
+
+def latent_scale(latents: FloatArray, centre: FloatArray) -> Normaliser:
+    """The map between z as trained and the input u, so that u in [-1, 1] spans the demonstrations.
+
+    Args:
+        latents: (S, N, d), the encoder's means on the training pairs.
+        centre: (S, d), the z that becomes u = 0.
+
+    Returns:
+        Normaliser with centre (S, 1, d) and scale (S, 1, d).
+    """
+    distance = np.abs(latents - centre[:, None])
+    scale = np.quantile(distance, SPAN_QUANTILE, axis=1)
+    return Normaliser(centre=centre[:, None], scale=np.maximum(scale, SMALLEST_SCALE)[:, None])
+
+
+def effect_of_dimensions(
+    decode: Callable[[FloatArray], FloatArray], inputs: FloatArray, action_size: float
+) -> FloatArray:
+    """How much each latent dimension moves the arm, as a share of the demonstrated speed.
+
+    Args:
+        decode: from inputs u (S, N, d) to actions (S, N, m) in N fixed contexts.
+        inputs: (S, N, d), the inputs that the demonstrations used there.
+        action_size: root mean square norm ``‖a‖`` of the demonstrated actions, same unit as decoded ones.
+
+    Returns:
+        (S, d), RMS of ``‖phi(u_j = 1) - phi(u_j = -1)‖ / 2`` over ``action_size``.
+    """
+    effects: list[FloatArray] = []
+    for axis in range(inputs.shape[-1]):
+        up, down = inputs.copy(), inputs.copy()
+        up[..., axis], down[..., axis] = 1.0, -1.0
+        change = np.linalg.norm(decode(up) - decode(down), axis=-1) / 2
+        effects.append(np.sqrt(np.square(change).mean(axis=1)) / action_size)
+    return np.stack(effects, axis=-1)
+
+
+def find_collapsed(effect: FloatArray, latents: FloatArray, layout: Layout) -> BoolArray:
+    """Which dimensions learned nothing.
+
+    Args:
+        effect: (S, d), see `effect_of_dimensions`.
+        latents: (S, N, d), the encoder's means on the training pairs.
+        layout: the model's; a Gaussian encoder may also collapse to its prior.
+
+    Returns:
+        (S, d).
+    """
+    dead = effect < DEAD_EFFECT
+    if layout.encoder == "gaussian":
+        dead |= latents.var(axis=1) < INACTIVE_VARIANCE
+    return dead
+
+
+def describe_collapse(kind: str, seeds: tuple[int, ...], collapsed: BoolArray) -> str:
+    """One sentence that names the dead dimensions.
+
+    Args:
+        kind: kind of model.
+        seeds: S seeds.
+        collapsed: (S, d), at least one True.
+    """
+    dead = [
+        f"seed {seed}: " + ", ".join(f"z{axis + 1}" for axis in np.flatnonzero(row))
+        for seed, row in zip(seeds, collapsed, strict=True)
+        if row.any()
+    ]
+    return (
+        f"The {kind} model has collapsed latent dimensions ({'; '.join(dead)}): input on them moves nothing; "
+        "use fewer latent dimensions, a smaller KL weight, or other seeds."
+    )

@@ -1,0 +1,256 @@
+"""The one training loop: S seeds of any model in one batched fit."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from time import monotonic
+from typing import Final, NamedTuple
+
+import numpy as np
+import torch
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from torch import Tensor
+
+from latentarm.errors import UserError
+from latentarm.models.checkpoint import TrainingState, fingerprint, read_checkpoint, write_checkpoint
+from latentarm.models.layout import Shape
+from latentarm.models.networks import FlatNetworks, Networks
+from latentarm.models.optimiser import FlatAdam
+from latentarm.types import FloatArray, IntArray
+
+FINAL_RATE: Final = 0.01
+"""The learning rate ends at this share of where it began."""
+
+THREADED_WORK: Final = 40_000
+"""Hidden units computed per layer and step from which a second thread costs less than it saves."""
+
+
+@dataclass(frozen=True)
+class TrainingConfig:
+    """How long and how fast to train.
+
+    Attributes:
+        learning_rate: Adam's, at the start; it falls along half a cosine.
+        epochs: passes over the training pairs, at most.
+        batch_size: pairs per step and seed.
+        patience: a seed has stalled when its held-out loss has not improved for this many epochs.
+        checkpoint_interval_s: shortest time between two checkpoints, s.
+    """
+
+    learning_rate: float
+    epochs: int
+    batch_size: int
+    patience: int
+    checkpoint_interval_s: float
+
+
+class Batch(NamedTuple):
+    """What one step sees.
+
+    Attributes:
+        context: (S, B, c), normalised.
+        action: (S, B, m), normalised.
+        noise: (S, B, k), standard normal for training and zero for judging; k = 0 where the encoder
+            is deterministic.
+    """
+
+    context: Tensor
+    action: Tensor
+    noise: Tensor
+
+
+@dataclass(frozen=True)
+class TrainingData:
+    """Normalised pairs, the same for every seed.
+
+    Attributes:
+        context: (N, c), training pairs.
+        action: (N, m).
+        held_out_context: (H, c), pairs of the held-out episodes.
+        held_out_action: (H, m).
+    """
+
+    context: FloatArray
+    action: FloatArray
+    held_out_context: FloatArray
+    held_out_action: FloatArray
+
+
+@dataclass(frozen=True)
+class TrainingResult:
+    """The best weights of every seed.
+
+    Attributes:
+        weights: float64 arrays (S, in, out) by name.
+        held_out_loss: (S,), the loss that those weights have on the held-out pairs.
+        best_epoch: (S,), counted from 1.
+        history: (E, S), held-out loss after each epoch.
+    """
+
+    weights: dict[str, FloatArray]
+    held_out_loss: FloatArray
+    best_epoch: IntArray
+    history: FloatArray
+
+
+def seed_generator(seed: int, stream: int) -> torch.Generator:
+    """A seed's own source of randomness for one purpose: stream 0 for its weights, e for epoch e.
+
+    A new generator per epoch makes every draw a function of (seed, epoch) alone: not of the seeds
+    beside it, and not of whether the training was cut off in between.
+    """
+    state = np.random.SeedSequence([seed, stream]).generate_state(1, np.uint64)[0]
+    return torch.Generator().manual_seed(int(state) >> 1)
+
+
+def train(
+    objective: Callable[[Networks, Batch], Tensor],
+    shapes: dict[str, Shape],
+    noise_dim: int,
+    data: TrainingData,
+    seeds: Sequence[int],
+    config: TrainingConfig,
+    *,
+    device: torch.device,
+    checkpoint: Path | None = None,
+    identity: str = "",
+    progress: bool = False,
+) -> TrainingResult:
+    """Train S seeds together; each as it would be alone.
+
+    Per seed, the weights with the least held-out loss are kept. A seed that has stalled is left as
+    it is; the loop ends when all have, or after the last epoch.
+
+    Args:
+        objective: loss (S,) of the networks on a batch, to be minimised for every seed by itself.
+        shapes: shape (S, in, out) of each weight by name.
+        noise_dim: k, standard normal numbers that the objective takes per pair.
+        data: N training and H held-out pairs.
+        seeds: S seeds.
+        config: how long and how fast.
+        device: where to compute.
+        checkpoint: file to go on from, if it exists, and to write to.
+        identity: what else fixes the result; a checkpoint of another identity is refused.
+        progress: show a bar.
+
+    Raises:
+        UserError: a seed diverged, or the checkpoint is not this training's.
+    """
+    networks = FlatNetworks(shapes, device)
+    adam = FlatAdam(networks.values)
+    state = TrainingState.start(networks.values, adam)
+    settings = asdict(config) | {"identity": identity, "seeds": list(seeds), "shapes": shapes}
+    del settings["checkpoint_interval_s"]
+    print_of = fingerprint(settings, [getattr(data, field.name) for field in fields(data)])
+    if checkpoint is not None and checkpoint.exists():
+        read_checkpoint(checkpoint, print_of, state)
+        adam.steps = state.steps
+    else:
+        networks.initialise([seed_generator(seed, 0) for seed in seeds])
+
+    batches = _Batches(data, seeds, config.batch_size, noise_dim, device)
+    written = monotonic()
+    with (
+        _threads(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())),
+        _bar(progress) as bar,
+    ):
+        task = bar.add_task("training", total=config.epochs, completed=state.epoch, loss="")
+        while state.epoch < config.epochs and not state.stalled(config.patience).all():
+            rate = _learning_rate(config, state.epoch)
+            for batch in batches.epoch(state.epoch + 1):
+                networks.fill_gradient(objective(networks.networks, batch).sum())
+                adam.step(networks.values, networks.gradient, rate)
+            with torch.no_grad():
+                loss = objective(networks.networks, batches.held_out).cpu().double().numpy()
+            state.record(loss, adam.steps, config.patience)
+            bar.update(task, completed=state.epoch, loss=f"held-out loss {state.best_loss.mean():.4f}")
+            if checkpoint is not None and monotonic() - written >= config.checkpoint_interval_s:
+                write_checkpoint(checkpoint, print_of, state)
+                written = monotonic()
+    if checkpoint is not None:
+        write_checkpoint(checkpoint, print_of, state)
+    diverged = [seed for seed, loss in zip(seeds, state.best_loss, strict=True) if not math.isfinite(loss)]
+    if diverged:
+        raise UserError(
+            f"Training diverged for seed {', '.join(map(str, diverged))}: the loss is not a number; "
+            f"lower the learning rate ({config.learning_rate:g})."
+        )
+    return TrainingResult(
+        weights=networks.arrays(state.best),
+        held_out_loss=state.best_loss.copy(),
+        best_epoch=state.best_epoch.copy(),
+        history=np.array(state.history),
+    )
+
+
+class _Batches:
+    """Shuffled training batches and the held-out pairs, on the device."""
+
+    def __init__(
+        self, data: TrainingData, seeds: Sequence[int], batch_size: int, noise_dim: int, device: torch.device
+    ) -> None:
+        def tensor(values: FloatArray) -> Tensor:
+            return torch.from_numpy(values).float().to(device)
+
+        self._seeds, self._noise_dim, self._device = tuple(seeds), noise_dim, device
+        self._context, self._action = tensor(data.context), tensor(data.action)
+        self._pairs = len(data.context)
+        self.size = min(batch_size, self._pairs)
+        many, held_out = len(seeds), len(data.held_out_context)
+        self.held_out = Batch(
+            context=tensor(data.held_out_context).expand(many, -1, -1).contiguous(),
+            action=tensor(data.held_out_action).expand(many, -1, -1).contiguous(),
+            noise=torch.zeros(many, held_out, noise_dim, device=device),
+        )
+
+    def epoch(self, epoch: int) -> Iterator[Batch]:
+        """Whole batches of one pass; the pairs that do not fill a last one wait for the next shuffle."""
+        many, size = len(self._seeds), self.size
+        steps = self._pairs // size
+        order = torch.empty(steps, many, size, dtype=torch.int64)
+        noise = torch.empty(steps, many, size, self._noise_dim)
+        for index, seed in enumerate(self._seeds):
+            generator = seed_generator(seed, epoch)
+            order[:, index] = torch.randperm(self._pairs, generator=generator)[: steps * size].view(
+                steps, size
+            )
+            noise[:, index] = torch.randn(steps, size, self._noise_dim, generator=generator)
+        order, noise = order.to(self._device).view(steps, many * size), noise.to(self._device)
+        for chosen, drawn in zip(order, noise, strict=True):
+            yield Batch(
+                context=self._context.index_select(0, chosen).view(many, size, -1),
+                action=self._action.index_select(0, chosen).view(many, size, -1),
+                noise=drawn,
+            )
+
+
+def _learning_rate(config: TrainingConfig, epoch: int) -> float:
+    """Half a cosine from ``learning_rate`` down to `FINAL_RATE` of it."""
+    fall = (1 + math.cos(math.pi * epoch / config.epochs)) / 2
+    return config.learning_rate * (FINAL_RATE + (1 - FINAL_RATE) * fall)
+
+
+@contextmanager
+def _threads(work: int) -> Iterator[None]:
+    """One thread for small steps, where handing over costs more than it saves; then as it was before."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(before if work >= THREADED_WORK else 1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
+
+
+def _bar(shown: bool) -> Progress:
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("epochs"),
+        TextColumn("{task.fields[loss]}"),
+        TimeRemainingColumn(),
+        disable=not shown,
+        transient=True,
+    )
