@@ -48,8 +48,9 @@ def draw_trajectories(demonstrations: Demonstrations, path: Path, limits: JointL
             else:
                 axes.set_axis_off()
         for column in range(min(COLUMNS, dof)):
-            grid[(dof - 1 - column) // COLUMNS, column].tick_params(labelbottom=True)
-        figure.supxlabel("time from the episode's start (s)", fontsize=9)
+            lowest = grid[(dof - 1 - column) // COLUMNS, column]
+            lowest.tick_params(labelbottom=True)
+            lowest.set_xlabel("time from the episode's start (s)")
         figure.supylabel("joint position (rad)", fontsize=9)
         figure.legend(
             handles=_key(limits is not None), loc="outside lower center", ncols=3, frameon=False, fontsize=8

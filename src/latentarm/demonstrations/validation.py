@@ -40,9 +40,6 @@ def validate(demonstrations: Demonstrations, source: str, limits: JointLimits | 
     Raises:
         UserError: one sentence naming the source, the episode and the sample.
     """
-    rate = demonstrations.rate_hz
-    if not (np.isfinite(rate) and rate > 0):
-        raise UserError(f"{source}: the sampling rate is {rate:g} Hz; it must be a finite number above zero.")
     names = demonstrations.joint_names
     if not names or not all(names) or len(set(names)) != len(names) or not all(map(_is_text, names)):
         raise UserError(f"{source}: the joint names {names} must be distinct, not empty and at least one.")
@@ -59,6 +56,9 @@ def validate(demonstrations: Demonstrations, source: str, limits: JointLimits | 
     for index, episode in enumerate(demonstrations.episodes):
         validate_episode(episode, index, names, source, limits)
         check_same_features(first, episode, index, source)
+    rate = demonstrations.rate_hz
+    if not (np.isfinite(rate) and rate > 0):
+        raise UserError(f"{source}: the sampling rate is {rate:g} Hz; it must be a finite number above zero.")
 
 
 def validate_episode(
