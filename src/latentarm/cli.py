@@ -68,10 +68,10 @@ def demo(
     For example: latentarm demo --out demo
     """
     from latentarm.experiments.demo import DemoConfig, run_demo
-    from latentarm.metrics.table import table
+    from latentarm.metrics.table import rich_tables
 
     rows = run_demo(DemoConfig(out=out, drives=drives, seed=seed, jobs=jobs))
-    _show(rows, json, table(rows))
+    _show(rows, json, rich_tables(rows))
     _say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
     return 0
 
@@ -89,11 +89,11 @@ def import_demonstrations(
     For example: latentarm import panda_pour_coffee.npz pour
     """
     from latentarm.demonstrations.importing import import_to
-    from latentarm.experiments.inspection import summary_rows
+    from latentarm.experiments.inspection import summary
     from latentarm.robots.catalogue import load_robot
 
     demonstrations = import_to(source, destination, load_robot(robot, end_effector))
-    _show(summary_rows(demonstrations), json, None)
+    _show(summary(demonstrations).rows(), json)
     _say(f"{len(demonstrations.episodes)} episodes of {demonstrations.dof} joints are in {destination}/.", json)
     return 0
 
@@ -111,11 +111,11 @@ def inspect(
     For example: latentarm inspect pour
     """
     from latentarm.demonstrations.dataset import read_dataset
-    from latentarm.experiments.inspection import draw, summary_rows, summary_tables
+    from latentarm.experiments.inspection import draw, summary, summary_tables
 
     demonstrations = read_dataset(dataset)
     figure = draw(demonstrations, out or dataset.with_name(f"{dataset.name}-figures"))
-    _show(summary_rows(demonstrations), json, *summary_tables(demonstrations))
+    _show(summary(demonstrations).rows(), json, *summary_tables(demonstrations))
     _say(f"The joints over time are drawn in {figure}.", json)
     return 0
 
@@ -164,9 +164,9 @@ def train(
         progress=not json,
     )
     rows = train_run(config)
-    from latentarm.metrics.table import table
+    from latentarm.metrics.table import rich_tables
 
-    _show(rows, json, table(rows))
+    _show(rows, json, rich_tables(rows))
     _say(f"The run is {config.out}/; next: latentarm evaluate {config.out}", json)
     return 0
 
@@ -183,11 +183,11 @@ def evaluate(
     For example: latentarm evaluate runs/pour-cae
     """
     from latentarm.experiments.evaluating import evaluate_run
-    from latentarm.metrics.table import table
+    from latentarm.metrics.table import rich_tables
 
     folder = out or run
     rows = evaluate_run(run, folder, seed)
-    _show(rows, json, table(rows))
+    _show(rows, json, rich_tables(rows))
     _say(f"metrics.json and figures are in {folder}/.", json)
     return 0
 
@@ -224,7 +224,7 @@ def drive(
     Exits with 1 when no drive reached its goal. For example: latentarm drive runs/pour-cae
     """
     from latentarm.experiments.driving import DriveConfig, drive_run
-    from latentarm.metrics.table import table
+    from latentarm.metrics.table import rich_tables
 
     rows = drive_run(
         DriveConfig(
@@ -241,7 +241,7 @@ def drive(
             out=out,
         )
     )
-    _show(rows, json, table(rows))
+    _show(rows, json, rich_tables(rows))
     _say(f"drives.json and the figure are in {out}/.", json)
     return 0 if any(row.measure == "success_rate" and row.mean for row in rows) else 1
 
@@ -257,10 +257,10 @@ def bench(
     For example: latentarm bench --json
     """
     from latentarm.experiments.bench import run_bench
-    from latentarm.metrics.table import table
+    from latentarm.metrics.table import rich_tables
 
     rows = run_bench(repeats=repeats, seed=seed, progress=not json)
-    _show(rows, json, table(rows))
+    _show(rows, json, rich_tables(rows))
     return 0
 
 
@@ -285,12 +285,12 @@ def robots(
     return 0
 
 
-def _show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType | None") -> None:
+def _show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
     """Print rows as one JSON document, or the tables that show them."""
     if json:
         print(json_format.dumps([row.as_json() for row in rows], indent=2))
     else:
-        _print(*(table for table in tables if table is not None))
+        _print(*tables)
 
 
 def _say(sentence: str, json: bool) -> None:

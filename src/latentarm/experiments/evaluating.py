@@ -1,0 +1,101 @@
+"""`latentarm evaluate`: a run measured on the episodes that it never saw."""
+
+from pathlib import Path
+
+import numpy as np
+
+from latentarm.demonstrations.dataset import read_dataset
+from latentarm.errors import UserError
+from latentarm.experiments.runs import Run, read_run
+from latentarm.experiments.training import prepared
+from latentarm.metrics.effects import axis_effects, axis_grid
+from latentarm.metrics.evaluation import EvaluationConfig, evaluate
+from latentarm.metrics.latent_effect_figure import latent_effect_figure
+from latentarm.metrics.properties_figure import properties_figure
+from latentarm.metrics.results import write_results
+from latentarm.metrics.samples import ContextKind, moving_episodes, spread_contexts
+from latentarm.metrics.summary import Subject
+from latentarm.models.catalogue import load_model
+from latentarm.models.model import LatentActionModel
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.style import save_figure
+from latentarm.types import Demonstrations, Row
+
+DRAWN_STATES = 3
+"""States from which the effect of each latent axis is drawn."""
+
+
+def evaluate_run(folder: Path, out: Path, seed: int) -> list[Row]:
+    """Measure a run and write ``metrics.json`` and two figures.
+
+    Args:
+        folder: the run.
+        out: where to write.
+        seed: of the noise on held-out states.
+
+    Returns:
+        One row per measure: mean and SD over the run's seeds.
+
+    Raises:
+        UserError: the folder is not a run, its dataset is gone or does not fit it, or its robot is
+            not to be had.
+    """
+    run = read_run(folder)
+    model = load_model(folder)
+    demonstrations = prepared(read_dataset(run.demonstrations), run.context)
+    robot = robot_of(run)
+    if demonstrations.dof != robot.dof:
+        raise UserError(
+            f"{run.demonstrations} has {demonstrations.dof} joints and the robot {robot.name} has {robot.dof}."
+        )
+    config = EvaluationConfig()
+    rows = evaluate(
+        model,
+        demonstrations,
+        run.held_out,
+        robot,
+        subject=Subject("evaluate", task=run.demonstrations.name, model=run.model),
+        rng=np.random.default_rng(seed),
+        config=config,
+    )
+    write_results(out / "metrics.json", rows, {"run": str(folder), "seed": seed, "held_out": list(run.held_out)})
+    _draw(run, model, demonstrations, robot, config, out)
+    return rows
+
+
+def robot_of(run: Run) -> Robot:
+    """The robot that a run's dataset was recorded on.
+
+    Raises:
+        UserError: the dataset did not say, or that robot is not to be had here.
+    """
+    if not run.robot:
+        raise UserError(
+            f"{run.demonstrations} does not say which robot it is of: import it again with --robot."
+        )
+    return load_robot(run.robot, run.end_effector)
+
+
+def _draw(
+    run: Run,
+    model: LatentActionModel,
+    demonstrations: Demonstrations,
+    robot: Robot,
+    config: EvaluationConfig,
+    out: Path,
+) -> None:
+    """Figures of the first seed: distance against z, and where each axis leads."""
+    kind: ContextKind = model.context
+    decoder = model.decoder(0)
+    episodes = moving_episodes(demonstrations, run.held_out)
+    step_s = 1.0 / demonstrations.rate_hz
+    grid = axis_grid(config.grid)
+    states = spread_contexts(episodes, kind, config.states)
+    effects = axis_effects([decoder], states, grid, robot.chain, step_s)[0]
+    save_figure(properties_figure(effects, grid, run.model), out / "consistency.png")
+    shown = episodes[:1]
+    path = robot.chain.forward(shown[0].state).position
+    starts = spread_contexts(shown, kind, DRAWN_STATES)
+    figure = latent_effect_figure(decoder, starts, robot.chain, step_s, run.model, path)
+    save_figure(figure, out / "latent_axes.png")

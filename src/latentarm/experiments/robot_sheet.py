@@ -1,0 +1,94 @@
+"""What `latentarm robots` tells: the names it knows, or one robot's joints, limits and end-effector."""
+
+from typing import TYPE_CHECKING
+
+from latentarm.robots.catalogue import ROBOTS, load_robot
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from latentarm.robots.robot import Robot
+
+
+def describe(name: str | None, end_effector: str | None = None) -> list[dict[str, object]]:
+    """Robots as plain data.
+
+    Args:
+        name: a robot's name or model file, or None for all built-in ones.
+        end_effector: site, body or link of the model file that is the end-effector.
+
+    Raises:
+        UserError: no such robot, or its model cannot be used.
+    """
+    return [_facts(robot) for robot in _robots(name, end_effector)]
+
+
+def sheets(name: str | None, end_effector: str | None = None) -> "list[Table]":
+    """Robots as tables, see `describe`."""
+    from rich.table import Table
+
+    robots = _robots(name, end_effector)
+    if name is None:
+        table = Table("robot", "joints", "arms", "joint speed limits, rad/s", title="Built-in robots")
+        for robot in robots:
+            low, high = robot.limits.velocity.min(), robot.limits.velocity.max()
+            table.add_row(
+                robot.name, str(robot.dof), str(len(robot.chain.tools)), f"{low:.3g} to {high:.3g}"
+            )
+        table.caption = "Any MJCF or URDF file works too: latentarm robots PATH --end-effector NAME"
+        return [table]
+    return [_sheet(robot) for robot in robots]
+
+
+def _robots(name: str | None, end_effector: str | None) -> "list[Robot]":
+    return [load_robot(known, end_effector) for known in ([name] if name is not None else list(ROBOTS))]
+
+
+def _facts(robot: "Robot") -> dict[str, object]:
+    limits = robot.limits
+    return {
+        "name": robot.name,
+        "end_effectors": [tool.name for tool in robot.chain.tools],
+        "tool_speed_limit_m_per_s": robot.tool_speed_limit,
+        "joints": [
+            {
+                "name": joint,
+                "prismatic": bool(robot.chain.slide[index]),
+                "lower": float(limits.lower[index]),
+                "upper": float(limits.upper[index]),
+                "velocity": float(limits.velocity[index]),
+                "acceleration": float(limits.acceleration[index]),
+                "jerk": float(limits.jerk[index]),
+                "home": float(robot.home[index]),
+            }
+            for index, joint in enumerate(robot.joint_names)
+        ],
+        "capsules": len(robot.capsules.name),
+        "self_pairs": len(robot.self_pairs),
+    }
+
+
+def _sheet(robot: "Robot") -> "Table":
+    from rich.table import Table
+
+    table = Table(title=robot.name)
+    for heading in ("joint", "lower", "upper", "home", "velocity", "acceleration", "jerk"):
+        table.add_column(heading, justify="left" if heading == "joint" else "right")
+    limits = robot.limits
+    for index, joint in enumerate(robot.joint_names):
+        figures = (
+            limits.lower,
+            limits.upper,
+            robot.home,
+            limits.velocity,
+            limits.acceleration,
+            limits.jerk,
+        )
+        table.add_row(joint, *(f"{figure[index]:.4g}" for figure in figures))
+    tools = ", ".join(tool.name for tool in robot.chain.tools)
+    table.caption = (
+        f"end-effector: {tools}; hardware limits in rad, rad/s, rad/s², rad/s³ (m for a sliding joint);"
+        f" tool at most {robot.tool_speed_limit:g} m/s; {len(robot.capsules.name)} capsules,"
+        f" {len(robot.self_pairs)} pairs of them watched"
+    )
+    return table

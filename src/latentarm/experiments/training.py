@@ -1,0 +1,132 @@
+"""`latentarm train`: a dataset in, a run folder out.
+
+Three kinds of episodes, always whole ones: most train the model, some stop its training early, and
+some are held out from both, for `latentarm evaluate`.
+"""
+
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from latentarm.assistance.annotation import annotate
+from latentarm.demonstrations.dataset import read_dataset
+from latentarm.demonstrations.split import select_episodes, split_episodes
+from latentarm.errors import UserError
+from latentarm.experiments.runs import Run, git_commit, run_facts
+from latentarm.models.catalogue import MODELS
+from latentarm.types import Demonstrations, Row
+
+CHECKPOINT = "training.safetensors"
+
+
+@dataclass(frozen=True)
+class TrainConfig:
+    """What `latentarm train` was asked for; its ``--help`` says the same of each field.
+
+    Attributes:
+        demonstrations: folder of a native dataset.
+        model: a name in `MODELS`.
+        out: the run folder; it must not hold a run yet.
+        latent_dim: d.
+        context: what the decoder sees.
+        seeds: S, models trained side by side.
+        seed: of everything random; the first of the S seeds.
+        window: samples that an action may lead ahead or back.
+        state_noise_rad: SD of the noise on the states that train the model, rad.
+        held_out: share of the episodes that neither train nor stop the model.
+        epochs: passes over the training pairs, at most.
+        device: where to train.
+        end_effector: site, body or link, where the dataset's robot is a model file.
+        resume: go on with a training that was cut off.
+        progress: show a bar on standard error.
+    """
+
+    demonstrations: Path
+    model: str
+    out: Path
+    latent_dim: int = 2
+    context: Literal["state", "state_belief"] = "state"
+    seeds: int = 5
+    seed: int = 0
+    window: int = 5
+    state_noise_rad: float = 0.01
+    held_out: float = 0.2
+    epochs: int = 60
+    device: Literal["cpu", "cuda", "auto"] = "cpu"
+    end_effector: str | None = None
+    resume: bool = False
+    progress: bool = False
+
+
+def train_run(config: TrainConfig) -> list[Row]:
+    """Train a model on a dataset and write its run folder.
+
+    Returns:
+        The normalised loss on the episodes that stopped the training: mean and SD over seeds.
+
+    Raises:
+        UserError: the dataset cannot be read or lacks what is asked for, the folder holds a run
+            already, or a setting makes no sense.
+    """
+    _check_folder(config)
+    demonstrations = prepared(read_dataset(config.demonstrations), config.context)
+    training, held_out = split_episodes(demonstrations, config.held_out, np.random.default_rng(config.seed))
+    model = MODELS[config.model](
+        latent_dim=config.latent_dim,
+        context=config.context,
+        window=config.window,
+        state_noise_rad=config.state_noise_rad,
+        seeds=config.seeds,
+        seed=config.seed,
+        data_seed=config.seed,
+        epochs=config.epochs,
+        device=config.device,
+    )
+    config.out.mkdir(parents=True, exist_ok=True)
+    checkpoint = config.out / CHECKPOINT
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        model.fit(select_episodes(demonstrations, training), checkpoint=checkpoint, progress=config.progress)
+    run = Run(
+        folder=config.out,
+        demonstrations=config.demonstrations,
+        held_out=tuple(int(index) for index in held_out),
+        model=config.model,
+        context=config.context,
+        robot=demonstrations.robot,
+        end_effector=config.end_effector,
+    )
+    said = [str(warning.message) for warning in caught]
+    model.save(config.out, run={**run_facts(run), "warnings": said, "git_commit": git_commit()})
+    checkpoint.unlink(missing_ok=True)
+    for sentence in said:
+        warnings.warn(sentence, stacklevel=2)
+    loss = model.held_out_loss_
+    spread = float(loss.std(ddof=1)) if len(loss) > 1 else None
+    return [Row("train", "held_out_loss", "1", float(loss.mean()), spread, len(loss), model=config.model)]
+
+
+def prepared(demonstrations: Demonstrations, context: str) -> Demonstrations:
+    """The demonstrations with the belief that the context needs, computed where it is not recorded.
+
+    Raises:
+        UserError: a belief is needed, none is recorded, and no goals are known to compute it from.
+    """
+    if context != "state_belief" or all("belief" in episode.extras for episode in demonstrations.episodes):
+        return demonstrations
+    return annotate(demonstrations)
+
+
+def _check_folder(config: TrainConfig) -> None:
+    if (config.out / "config.json").exists():
+        raise UserError(f"{config.out} holds a run already: choose another folder with --out.")
+    unfinished = (config.out / CHECKPOINT).exists()
+    if unfinished and not config.resume:
+        raise UserError(
+            f"{config.out} holds an unfinished training: go on with --resume, or choose another --out."
+        )
+    if config.resume and not unfinished:
+        raise UserError(f"{config.out} holds no unfinished training to resume.")
