@@ -170,7 +170,7 @@ class Chain:
         Returns:
             Unit axes (..., n, 3), and a point on each axis (..., n, 3), m.
         """
-        both = transforms[..., :3, :] @ self._axis_and_anchor
+        both = transforms[..., :3, :] @ self.axis_and_anchor
         return both[..., 0], both[..., 1]
 
     def points(self, transforms: FloatArray, link: IntArray, local: FloatArray) -> FloatArray:
@@ -250,7 +250,7 @@ class Chain:
         return tuple(self._moves_or_base[tool.link] for tool in self.tools)
 
     @cached_property
-    def _axis_and_anchor(self) -> FloatArray:
+    def axis_and_anchor(self) -> FloatArray:
         """(n, 4, 2), homogeneous axis (a direction) and anchor (a point) of each joint."""
         both = np.zeros((self.dof, 4, 2))
         both[:, :3, 0] = self.axis

@@ -83,7 +83,7 @@ def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> Reading:
     for body in range(1, model.nbody):
         body_link[body] = body_link[model.body_parentid[body]]
         for joint in _joints_of(model, body):
-            body_link[body] = index.get(joint, body_link[body])
+            body_link[body] = index.get(joint, int(body_link[body]))
     link_placed = placed[model.jnt_bodyid[joints]]
     parent = np.empty(len(joints), dtype=np.int64)
     offset = np.empty((len(joints), 4, 4))

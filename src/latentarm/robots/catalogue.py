@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from latentarm.errors import UserError
+from latentarm.robots.menagerie import menagerie_file
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
@@ -21,7 +22,8 @@ def load_robot(name_or_path: str, end_effector: str | None = None) -> Robot:
     """A robot of the catalogue, or any robot whose MJCF or URDF file is given.
 
     Args:
-        name_or_path: a name in `ROBOTS`, or the path of an .xml or .urdf file.
+        name_or_path: a name in `ROBOTS`, the path of an .xml or .urdf file, or a name in the MuJoCo
+            Menagerie where the package `mujoco-menagerie` is installed.
         end_effector: site or body of a file's model; see `load_model_file`.
 
     Returns:
@@ -39,6 +41,8 @@ def load_robot(name_or_path: str, end_effector: str | None = None) -> Robot:
         return ROBOTS[name_or_path]()
     if Path(name_or_path).suffix.lower() in (".xml", ".urdf", ".mjcf") or Path(name_or_path).is_file():
         return load_model_file(Path(name_or_path), end_effector)
+    if (found := menagerie_file(name_or_path)) is not None:
+        return load_model_file(found, end_effector)
     raise UserError(
         f"There is no robot named {name_or_path!r}: use one of {', '.join(ROBOTS)}, or the path of an"
         " MJCF or URDF file."

@@ -1,11 +1,220 @@
 """Any robot from a MuJoCo (MJCF) or URDF file."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import final
+from xml.etree import ElementTree as Xml
+from xml.parsers import expat
+
+import mujoco
+import numpy as np
 
 from latentarm.errors import UserError
+from latentarm.kinematics.chain import Chain
+from latentarm.kinematics.reader import Reading, read
+from latentarm.robots.assemble import assemble
+from latentarm.robots.limits import JointLimits
 from latentarm.robots.robot import Robot
+from latentarm.robots.urdf import prepare_urdf
+from latentarm.types import FloatArray
+
+LARGEST_BYTES = 20_000_000
+"""A longer model file is refused before it is parsed; meshes lie in files of their own."""
+
+SINGULAR = 0.05
+"""A start whose tool's least singular value is below this share of the best that was found is moved."""
+
+
+@final
+@dataclass(frozen=True)
+class Defaults:
+    """What is assumed of a joint where the file does not say.
+
+    MJCF has no place for velocity, acceleration and jerk; URDF has one for velocity alone.
+
+    Attributes:
+        range: half of the range, about zero, rad or m.
+        velocity: rad/s or m/s.
+        acceleration: rad/s² or m/s².
+        jerk: rad/s³ or m/s³.
+    """
+
+    range: float
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+HINGE = Defaults(range=2.0 * np.pi, velocity=1.0, acceleration=10.0, jerk=1000.0)
+SLIDE = Defaults(range=1.0, velocity=0.25, acceleration=2.5, jerk=250.0)
+TOOL_SPEED_LIMIT = 1.0
+"""Assumed hardware limit of the tool's speed, m/s."""
 
 
 def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
-    """Load a robot from an MJCF or URDF file."""
-    raise UserError(f"{path}: model files cannot be read yet.")
+    """Load a robot from an MJCF or URDF file.
+
+    It starts at the key frame "home" if there is one, else in the middle of its joints' ranges, or
+    near there where that is singular. What the file does not say of its joints, `Defaults` say.
+
+    Args:
+        path: the file.
+        end_effector: name of a site or body. Needed only where it is ambiguous, that is, where the
+            model has not exactly one site that moves, nor exactly one last moving body.
+
+    Returns:
+        The robot, with ``str(path)`` as its name.
+
+    Raises:
+        UserError: the file or a mesh is missing or broken, the end-effector is unknown or ambiguous,
+            a joint on the way is neither a hinge nor a slide, or a limit is not a limit.
+    """
+    spec, velocity = _parse(path)
+    try:
+        mjcf = _as_mjcf(spec, path)
+        model = mujoco.MjModel.from_xml_string(mjcf)
+    except ValueError as error:
+        raise UserError(f"{path} cannot be used as a robot: {_one_line(error)}") from error
+    try:
+        tool = end_effector if end_effector is not None else _only_end_effector(model)
+        reading = read(model, [tool])
+        limits = _limits(model, reading, velocity)
+        home = _home(model, reading, limits)
+        return assemble(str(path), mjcf, [tool], limits, home, TOOL_SPEED_LIMIT, str(path))
+    except UserError as error:
+        raise UserError(f"{path}: {error}") from error
+
+
+def _parse(path: Path) -> tuple[mujoco.MjSpec, Mapping[str, float]]:
+    """The model to edit, and the velocity limits that a URDF gives."""
+    try:
+        if path.stat().st_size > LARGEST_BYTES:
+            raise UserError(f"{path} is larger than {LARGEST_BYTES // 1_000_000} MB: this is no robot model.")
+        text = path.read_bytes()
+    except OSError as error:
+        raise UserError(f"The robot model {path} cannot be read: {error.strerror or error}.") from error
+    root = _tree(path, text)
+    try:
+        if root.tag == "robot":
+            urdf = prepare_urdf(path, root)
+            return mujoco.MjSpec.from_string(urdf.text), urdf.velocity
+        if root.tag == "mujoco":
+            return mujoco.MjSpec.from_file(str(path)), {}
+    except ValueError as error:
+        raise UserError(f"{path} cannot be used as a robot: {_one_line(error)}") from error
+    raise UserError(
+        f"{path} is neither MJCF nor URDF: its outermost element is <{root.tag}>, not <mujoco> or <robot>."
+    )
+
+
+def _tree(path: Path, text: bytes) -> Xml.Element:
+    """The file's elements; as MuJoCo does, it lets pass prefixes that are not declared."""
+
+    def refuse(*_: object) -> None:
+        # Without declarations nothing can expand or be fetched from elsewhere.
+        raise UserError(f"{path} declares a document type, which no robot model needs: remove that line.")
+
+    builder = Xml.TreeBuilder()
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = refuse
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data
+    try:
+        parser.Parse(text, True)
+    except expat.ExpatError as error:
+        raise UserError(f"{path} is not valid XML: {error}.") from error
+    return builder.close()
+
+
+def _as_mjcf(spec: mujoco.MjSpec, path: Path) -> str:
+    """The model as MJCF text that can be compiled from anywhere."""
+    folder = path.resolve().parent
+    spec.compiler.meshdir = str(folder / spec.compiler.meshdir)
+    spec.compiler.texturedir = str(folder / spec.compiler.texturedir)
+    # A body merged into its parent would take the end-effector's name with it.
+    spec.compiler.fusestatic = False
+    # Only the kinematics are used: a moving link without inertia is no reason to refuse a robot.
+    spec.compiler.boundmass = 1e-6
+    spec.compiler.boundinertia = 1e-9
+    spec.compiler.balanceinertia = True
+    for i, joint in enumerate(spec.joints):
+        if not joint.name:
+            joint.name = f"joint{i}"
+    spec.compile()
+    return spec.to_xml()
+
+
+def _only_end_effector(model: mujoco.MjModel) -> str:
+    """The one site that moves, or else the one moving body that carries no other.
+
+    Raises:
+        UserError: there are none or several.
+    """
+    if not model.njnt:
+        raise UserError("the model has no hinge or slide joint, so nothing in it can be driven.")
+    moved = np.zeros(model.nbody, dtype=np.bool_)
+    for body in range(1, model.nbody):
+        moved[body] = moved[model.body_parentid[body]] or model.body_jntnum[body] > 0
+    parents = {int(parent) for parent in model.body_parentid[1:]}
+    sites = [model.site(i).name for i in range(model.nsite) if moved[model.site_bodyid[i]]]
+    bodies = [model.body(i).name for i in range(1, model.nbody) if moved[i] and i not in parents]
+    for candidates in (sites, bodies):
+        if len(candidates) == 1 and candidates[0]:
+            return str(candidates[0])
+    names = ", ".join(name for name in [*sites, *bodies] if name)
+    raise UserError(f"name the end-effector (--end-effector), a site or body such as: {names}.")
+
+
+def _limits(model: mujoco.MjModel, reading: Reading, velocity: Mapping[str, float]) -> JointLimits:
+    assumed = [SLIDE if slide else HINGE for slide in reading.chain.slide]
+    limited = model.jnt_limited[reading.joints].astype(np.bool_)
+    free = np.array([[-defaults.range, defaults.range] for defaults in assumed])
+    ranges = np.where(limited[:, None], model.jnt_range[reading.joints], free)
+    names = reading.chain.joint_names
+    return JointLimits(
+        lower=ranges[:, 0],
+        upper=ranges[:, 1],
+        velocity=np.array([velocity.get(name, d.velocity) for name, d in zip(names, assumed, strict=True)]),
+        acceleration=np.array([defaults.acceleration for defaults in assumed]),
+        jerk=np.array([defaults.jerk for defaults in assumed]),
+    )
+
+
+def _home(model: mujoco.MjModel, reading: Reading, limits: JointLimits) -> FloatArray:
+    """(n,), where the robot starts, rad."""
+    key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home")
+    if key >= 0:
+        home = np.array(model.key_qpos[key][model.jnt_qposadr[reading.joints]])
+        return np.clip(home, limits.lower, limits.upper)
+    middle = 0.5 * (limits.lower + limits.upper)
+    # A quarter turn at most to either side, so that a joint of two turns does not start wound up.
+    around = np.minimum(0.25 * (limits.upper - limits.lower), np.pi / 4)
+    samples = middle + around * np.random.default_rng(0).uniform(-1.0, 1.0, size=(256, limits.dof))
+    candidates = np.concatenate([middle[None], samples])
+    freedom = _least_singular_value(reading.chain, candidates)
+    if freedom[0] >= SINGULAR * freedom.max():
+        return candidates[0]
+    # Well away from singularities, as high above the table as can be.
+    height = np.where(freedom >= 0.5 * freedom.max(), _lowest_point(reading.chain, candidates), -np.inf)
+    return candidates[np.argmax(height)]
+
+
+def _lowest_point(chain: Chain, q: FloatArray) -> FloatArray:
+    """(N,), height of the lowest joint or tool, m."""
+    transforms = chain.link_transforms(q)
+    _, origins = chain.joint_axes(transforms)
+    return np.minimum(origins[..., 2].min(axis=-1), chain.tool_pose(transforms).position[..., 2])
+
+
+def _least_singular_value(chain: Chain, q: FloatArray) -> FloatArray:
+    """(N,), how far the tool is from losing a direction in which it could move."""
+    values = np.asarray(np.linalg.svd(chain.jacobian(q), compute_uv=False), dtype=np.float64)
+    # A robot of few joints lacks some directions everywhere; those are not held against a start.
+    rank = int((values > 1e-9).sum(axis=-1).max())
+    return values[:, rank - 1]
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split()).rstrip(".") + "."

@@ -1,0 +1,97 @@
+"""What MuJoCo does not do with a URDF file: find its meshes and read its velocity limits."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import final
+from xml.etree import ElementTree as Xml
+
+from latentarm.errors import UserError
+
+MESH_FORMATS = (".stl", ".obj", ".msh")
+"""Mesh files that MuJoCo reads."""
+
+
+@final
+@dataclass(frozen=True)
+class Urdf:
+    """A URDF made ready for MuJoCo.
+
+    Attributes:
+        text: the URDF without visual geometry, its collision meshes as absolute paths.
+        velocity: the velocity limit of each joint that has one above zero, rad/s (m/s where prismatic).
+            Exporters write zero where they know none.
+    """
+
+    text: str
+    velocity: dict[str, float]
+
+
+def prepare_urdf(path: Path, root: Xml.Element) -> Urdf:
+    """Resolve the meshes of a URDF and read its velocity limits.
+
+    Args:
+        path: the file, for messages and for paths relative to it.
+        root: its parsed <robot> element; it is changed.
+
+    Returns:
+        The URDF, ready for MuJoCo.
+
+    Raises:
+        UserError: the file still contains xacro, a collision mesh is missing or in a format that
+            MuJoCo cannot read, or a velocity limit is no number.
+    """
+    if any(element.tag.startswith("xacro:") for element in root.iter()):
+        raise UserError(f"{path} is a xacro file: expand it first, with `xacro {path.name} > robot.urdf`.")
+    for link in root.findall("link"):
+        for visual in link.findall("visual"):
+            link.remove(visual)
+        for mesh in link.iterfind("collision/geometry/mesh"):
+            mesh.set("filename", str(_mesh_file(path, str(link.get("name")), mesh.get("filename", ""))))
+    # MuJoCo would merge links that have no joint, and with them the end-effector's name.
+    for element in root.findall("mujoco"):
+        root.remove(element)
+    return Urdf(text=Xml.tostring(root, encoding="unicode"), velocity=dict(_velocities(path, root)))
+
+
+def _velocities(path: Path, root: Xml.Element) -> Iterator[tuple[str, float]]:
+    for joint in root.findall("joint"):
+        limit = joint.find("limit")
+        text = "0" if limit is None else limit.get("velocity", "0")
+        try:
+            velocity = float(text)
+        except ValueError as error:
+            raise UserError(
+                f"{path}: the velocity limit of joint {joint.get('name')} is {text!r}, not a number."
+            ) from error
+        if velocity != 0.0:
+            yield str(joint.get("name")), velocity
+
+
+def _mesh_file(path: Path, link: str, filename: str) -> Path:
+    """Where a link's mesh lies, found from a plain, a file:// or a package:// name."""
+    named = next((found for found in _places(path, filename) if found.is_file()), None)
+    if named is None:
+        raise UserError(
+            f"{path}: the collision mesh {filename!r} of link {link} is not there: put the robot's mesh"
+            " files where the URDF names them."
+        )
+    if named.suffix.lower() not in MESH_FORMATS:
+        raise UserError(
+            f"{path}: the collision mesh {filename!r} of link {link} is in a format that cannot be read:"
+            f" convert it to one of {', '.join(MESH_FORMATS)}."
+        )
+    return named
+
+
+def _places(path: Path, filename: str) -> Iterator[Path]:
+    folder = path.resolve().parent
+    if filename.startswith("package://"):
+        package, _, rest = filename.removeprefix("package://").partition("/")
+        for above in (folder, *folder.parents):
+            # The package's own folder, or a workspace that holds it, somewhere above the file.
+            if above.name == package:
+                yield above / rest
+            yield above / package / rest
+    else:
+        yield folder / filename.removeprefix("file://")
