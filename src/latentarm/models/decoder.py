@@ -133,13 +133,18 @@ class _Matrix(_Form):
         layers = _layers(trained, seed)
         first = _scale_context(layers[0], trained)
         (self._weight, self._bias), *self._rest = _halve_hidden([first, *layers[1:]])
-        self._columns = (trained.dimensions.latent, trained.dimensions.action)
+        joints = trained.dimensions.action
+        self._parts = [slice(axis * joints, (axis + 1) * joints) for axis in range(trained.dimensions.latent)]
         self._gain: FloatArray = trained.latents.scale[seed, 0] * trained.actions.scale
 
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
         raw = _propagate(context @ self._weight + self._bias, self._rest)
-        columns = _orthonormal(raw.reshape(*raw.shape[:-1], *self._columns))
-        return ((z * self._gain)[..., None, :] @ columns)[..., 0, :]
+        columns = _orthonormal([raw[..., part] for part in self._parts])
+        scaled = z * self._gain
+        action = scaled[..., :1] * columns[0]
+        for axis in range(1, len(columns)):
+            action = action + scaled[..., axis : axis + 1] * columns[axis]
+        return action
 
 
 _FORMS: Final[dict[DecoderForm, type[_Form]]] = {
@@ -164,15 +169,15 @@ def _propagate(values: FloatArray, layers: list[Layer]) -> FloatArray:
     return values
 
 
-def _orthonormal(columns: FloatArray) -> FloatArray:
-    """Gram-Schmidt over the second-last axis of (..., d, m)."""
+def _orthonormal(columns: list[FloatArray]) -> list[FloatArray]:
+    """Gram-Schmidt over d columns, each (..., m)."""
     done: list[FloatArray] = []
-    for axis in range(columns.shape[-2]):
-        column = columns[..., axis, :]
+    for raw in columns:
+        column = raw
         for other in done:
-            column = column - np.vecdot(column, other)[..., None] * other
-        done.append(column / np.sqrt(np.vecdot(column, column) + NORM_FLOOR)[..., None])
-    return np.stack(done, axis=-2)
+            column = column - np.vecdot(column, other, keepdims=True) * other
+        done.append(column / np.sqrt(np.vecdot(column, column, keepdims=True) + NORM_FLOOR))
+    return done
 
 
 def _layers(trained: TrainedModel, seed: int) -> list[Layer]:

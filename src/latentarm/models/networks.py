@@ -41,12 +41,13 @@ def mlp(layers: Sequence[Layer], inputs: Tensor) -> Tensor:
 
 
 def group_layers(tensors: Mapping[str, Tensor]) -> dict[str, list[Layer]]:
-    """Networks from tensors named ``<network>.<layer>.weight`` and ``.bias``, in layer order."""
+    """Networks from tensors named ``<network>.<layer>.weight`` and ``.bias``; others are left aside."""
     networks: dict[str, list[Layer]] = {}
-    for name, weight in tensors.items():
-        stem, _, part = name.rpartition(".")
-        if part == "weight":
-            networks.setdefault(stem.partition(".")[0], []).append((weight, tensors[f"{stem}.bias"]))
+    for network in {name.partition(".")[0] for name in tensors if name.endswith(".0.weight")}:
+        stems = [
+            f"{network}.{layer}" for layer in range(len(tensors)) if f"{network}.{layer}.weight" in tensors
+        ]
+        networks[network] = [(tensors[f"{stem}.weight"], tensors[f"{stem}.bias"]) for stem in stems]
     return networks
 
 

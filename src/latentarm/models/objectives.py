@@ -34,5 +34,5 @@ def kl_divergence(mean: Tensor, log_variance: Tensor) -> Tensor:
 
 
 def sample_latent(mean: Tensor, log_variance: Tensor, noise: Tensor) -> Tensor:
-    """z drawn from N(mu, sigma) with standard normal ``noise``, differentiable in mu and sigma: (S, B, d)."""
+    """Latent actions drawn from N(mu, sigma) with standard normal ``noise``: (S, B, d)."""
     return torch.addcmul(mean, (0.5 * log_variance).exp(), noise)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import ClassVar, final
 
 import numpy as np
-from sklearn.decomposition import PCA as Components
+from sklearn import decomposition
 
 from latentarm.models.layout import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
@@ -28,15 +28,15 @@ class PCA(LatentActionModel):
     def _learn(
         self, data: TrainingData, dimensions: Dimensions, checkpoint: Path | None, progress: bool
     ) -> TrainingResult:
-        components = Components(n_components=dimensions.latent, svd_solver="full").fit(data.action)
+        components = decomposition.PCA(n_components=dimensions.latent, svd_solver="full").fit(data.action)
         held_out = data.held_out_action
         rebuilt = components.inverse_transform(components.transform(held_out))
         loss = np.square(held_out - rebuilt).sum(axis=1).mean()
-        seeds = dimensions.seeds
+        principal, seeds = np.asarray(components.components_), dimensions.seeds
         return TrainingResult(
             weights={
-                "decoder.0.weight": np.repeat(components.components_[None], seeds, axis=0),
-                "decoder.0.bias": np.repeat(components.mean_[None, None], seeds, axis=0),
+                "decoder.0.weight": np.repeat(principal[None], seeds, axis=0),
+                "decoder.0.bias": np.repeat(data.action.mean(axis=0)[None, None], seeds, axis=0),
             },
             held_out_loss=np.full(seeds, loss),
             best_epoch=np.zeros(seeds, dtype=np.int64),

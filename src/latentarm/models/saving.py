@@ -130,8 +130,8 @@ def _read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[
             header = int.from_bytes(stream.read(8), "little")
             if header > HEADER_LIMIT or size != 8 + header + payload:
                 raise UserError(
-                    f"{path} is not the weights that its {CONFIG_NAME} describes: it is {size} bytes long with a "
-                    f"header of {header}, and {payload} bytes of weights belong in it."
+                    f"{path} is not what its {CONFIG_NAME} describes: it has {size} bytes, a header of "
+                    f"{header}, and {payload} bytes of weights belong in it."
                 )
             stream.seek(0)
             content = stream.read(size)
@@ -150,7 +150,7 @@ def _read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[
     for name, array in tensors.items():
         if array.dtype != np.float64 or array.shape != shapes[name]:
             raise UserError(
-                f"{path}: tensor '{name}' is {array.dtype}{list(array.shape)}, not float64{list(shapes[name])}."
+                f"{path}: tensor '{name}' is {array.dtype} {array.shape}, not float64 {shapes[name]}."
             )
         if not np.isfinite(array).all():
             raise UserError(f"{path}: tensor '{name}' holds a NaN or an infinity.")

@@ -10,7 +10,7 @@ from latentarm.models.normaliser import Normaliser
 from latentarm.types import BoolArray, FloatArray
 
 SPAN_QUANTILE: Final = 0.99
-"""u in [-1, 1] reaches all but this share's complement of what the demonstrations used; the rest are outliers."""
+"""u in [-1, 1] reaches this share of what the demonstrations used; the rest are outliers."""
 
 EFFECT_SAMPLES: Final = 512
 """Training contexts, at most, in which the effect of a latent dimension is measured."""

@@ -1,7 +1,7 @@
 """The one training loop: S seeds of any model in one batched fit."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -233,7 +233,7 @@ def _learning_rate(config: TrainingConfig, epoch: int) -> float:
 
 
 @contextmanager
-def _threads(work: int) -> Iterator[None]:
+def _threads(work: int) -> Generator[None]:
     """One thread for small steps, where handing over costs more than it saves; then as it was before."""
     before = torch.get_num_threads()
     torch.set_num_threads(before if work >= THREADED_WORK else 1)
