@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.metrics.consistency import consistency, r_squared, signed_distance
+from latentarm.metrics.consistency import consistency, local_consistency, r_squared, signed_distance
 from latentarm.metrics.effects import axis_effects, axis_grid
 
 GRID = axis_grid(11)
@@ -33,6 +33,19 @@ def test_a_motion_that_turns_round_between_states_is_marked_down(formula_decoder
     right = np.mean(STATES[:, 0] > 0)
     # Slope is the balance b of right over left; R^2 of that line is b^2.
     assert consistency(effects, GRID)[0, 0] == pytest.approx((2 * right - 1) ** 2)
+
+
+def test_an_axis_that_turns_with_the_state_is_right_in_its_own_place(formula_decoder, gantry):
+    def right_or_left(z, context):
+        return z[..., :1] * np.sign(context[..., :1]) * np.array([1.0, 0.0, 0.0])
+
+    effects = effects_of([formula_decoder(1, right_or_left)], gantry)
+    np.testing.assert_allclose(local_consistency(effects, GRID), [[1.0]])
+
+
+def test_a_drift_is_marked_down_in_its_own_place_too(linear_decoder, gantry):
+    decoder = linear_decoder(np.array([[1.0], [0.0], [0.0]]), offset=np.array([0.0, 2.0, 0.0]))
+    assert local_consistency(effects_of([decoder], gantry), GRID)[0, 0] < 0.9
 
 
 def test_a_motion_that_does_not_grow_with_z_is_marked_down(formula_decoder, gantry):
@@ -73,8 +86,10 @@ def test_turning_or_scaling_z_changes_no_score(seed, scale, formula_decoder, gan
 
     plain = axis_effects([curved(1.0)], STATES, GRID, gantry, step_s=0.1)
     scaled = axis_effects([curved(scale)], STATES, GRID, gantry, step_s=0.1)
-    np.testing.assert_allclose(consistency(plain, GRID), consistency(scaled, GRID), atol=1e-9)
-    np.testing.assert_allclose(consistency(plain, GRID), consistency(plain[..., ::-1, :], GRID), atol=1e-9)
+    turned = plain[..., ::-1, :]
+    for score in (consistency, local_consistency):
+        np.testing.assert_allclose(score(plain, GRID), score(scaled, GRID), atol=1e-9)
+        np.testing.assert_allclose(score(plain, GRID), score(turned, GRID), atol=1e-9)
 
 
 @given(seed=st.integers(0, 10_000), noise=st.floats(0.0, 100.0))

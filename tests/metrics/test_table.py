@@ -35,7 +35,8 @@ def printed(rows, width):
         (150.26, 12.31, "150 ± 12"),
         (99.97, 0.00001, "99.97 ± 0.00"),
         (None, None, "–"),
-        (1e-12, None, "1e-12"),
+        (3e-9, None, "3e-09"),
+        (3.5e-18, None, "0"),
     ],
 )
 def test_figures_are_rounded_to_what_their_spread_bears(mean, sd, text):
@@ -69,3 +70,16 @@ def test_a_measure_that_one_model_lacks_is_left_open():
 def test_a_bar_in_a_name_cannot_break_the_table():
     table = markdown_table([Row("s", "drift", "1", 1.0, None, 1, model="a|b")])
     assert table.splitlines()[0] == "| mean ± SD | a\\|b |"
+
+
+def test_figures_of_two_tasks_do_not_hide_each_other():
+    means = {"pour": 0.1, "pick": 0.2}
+    rows = [Row("compare", "drift", "1", mean, None, 5, task=task) for task, mean in means.items()]
+    table = markdown_table(rows).splitlines()
+    assert table[0] == "| mean ± SD | pour: compare | pick: compare |"
+    assert table[2] == "| drift, of motion | 0.100 | 0.200 |"
+
+
+def test_no_rows_are_an_empty_table():
+    assert printed([], 80).strip() == ""
+    assert markdown_table([]) == "| mean ± SD |\n|---|\n"

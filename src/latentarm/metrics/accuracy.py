@@ -44,3 +44,8 @@ def pca_error(train_action: FloatArray, action: FloatArray, latent_dim: int) -> 
     lost = directions[:, : train_action.shape[1] - latent_dim]
     # What the plane cannot hold is the part along the directions of least variance.
     return float(np.sum(((action - mean) @ lost) ** 2) / action.size)
+
+
+def percent_of(baseline: float, error: FloatArray) -> FloatArray:
+    """Errors (S,) in percent of the baseline's; NaN where the baseline has none (PCA with d = m)."""
+    return 100.0 * error / baseline if baseline > 0 else np.full_like(error, np.nan)

@@ -8,8 +8,9 @@ import numpy as np
 
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
-from latentarm.metrics.accuracy import pca_error, reconstruction_error
-from latentarm.metrics.consistency import consistency
+from latentarm.errors import UserError
+from latentarm.metrics.accuracy import pca_error, percent_of, reconstruction_error
+from latentarm.metrics.consistency import consistency, local_consistency
 from latentarm.metrics.contract import DecodesActions, EncodesActions
 from latentarm.metrics.controllability import ReachConfig, reach_goals
 from latentarm.metrics.disentanglement import disentanglement_deg
@@ -125,9 +126,12 @@ def evaluate(
     grid = axis_grid(config.grid)
     states = spread_contexts(episodes, model.context, config.states)
     effects = axis_effects(decoders, states, grid, robot.chain, step_s, config.tool)
-    per_axis = consistency(effects, grid)
-    figures["r2"] = per_axis.mean(axis=1)
-    figures |= {f"r2_axis_{axis}": per_axis[:, axis] for axis in range(per_axis.shape[1])}
+    for name, per_axis in (
+        ("r2", consistency(effects, grid)),
+        ("r2_local", local_consistency(effects, grid)),
+    ):
+        figures[name] = per_axis.mean(axis=1)
+        figures |= {f"{name}_axis_{axis}": per_axis[:, axis] for axis in range(per_axis.shape[1])}
     figures["disentanglement_deg"] = disentanglement_deg(effects)
 
     chosen = evenly_spread(config.latents, len(accuracy.context))
@@ -166,6 +170,8 @@ def _measure_accuracy(
     """Reconstruction errors with and without state noise, beside PCA fitted to the training pairs."""
     noise = model.state_noise_rad if state_noise_rad is None else state_noise_rad
     trained_on = [index for index in range(len(demonstrations.episodes)) if index not in set(held_out)]
+    if not trained_on:
+        raise UserError("Every episode is held out: leave at least one to fit PCA, the baseline, to.")
     how = (model.context, rng, model.actions)
     training = make_pairs(select_episodes(demonstrations, trained_on), model.window, 0.0, *how)
     pairs = make_pairs(select_episodes(demonstrations, held_out), model.window, noise, *how)
@@ -178,7 +184,7 @@ def _measure_accuracy(
     figures = {
         "error": error,
         "noise_free_error": clean_error,
-        "error_percent_of_pca": 100.0 * error / baseline,
-        "noise_free_error_percent_of_pca": 100.0 * clean_error / baseline,
+        "error_percent_of_pca": percent_of(baseline, error),
+        "noise_free_error_percent_of_pca": percent_of(baseline, clean_error),
     }
     return _Accuracy(figures=figures, decoders=decoders, z=clean_z, context=pairs.clean_context)

@@ -16,8 +16,7 @@ UNITS: dict[str, str] = {
     "controllability_state_error": "rad",
     "start_distance_m": "m",
     "r2": "1",
-    "r2_axis_0": "1",
-    "r2_axis_1": "1",
+    "r2_local": "1",
     "disentanglement_deg": "deg",
     "drift": "1",
     "reversal": "1",
@@ -49,8 +48,8 @@ class Subject:
 
 
 def unit_of(measure: str) -> str:
-    """Unit of a measure; further latent axes (``r2_axis_2``, ...) are like the first two."""
-    return UNITS["r2"] if measure.startswith("r2_axis_") else UNITS[measure]
+    """Unit of a measure, of a single latent axis (``r2_axis_0``) too."""
+    return UNITS[measure.rpartition("_axis_")[0] or measure]
 
 
 def summarise(subject: Subject, measure: str, values: ArrayLike) -> Row:

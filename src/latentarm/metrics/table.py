@@ -11,6 +11,7 @@ from latentarm.types import Row
 
 BORDER = 3  # characters between two columns
 ABSENT = "–"
+ROUNDING = 1e-12  # what is smaller is the rounding of a zero
 
 NAMES: dict[str, str] = {
     "error": "error",
@@ -21,6 +22,7 @@ NAMES: dict[str, str] = {
     "controllability_state_error": "joint error then",
     "start_distance_m": "distance at the start",
     "r2": "R², mean of axes",
+    "r2_local": "local R², mean of axes",
     "disentanglement_deg": "angle between axes",
     "drift": "drift, of motion",
     "reversal": "left after z then -z",
@@ -32,11 +34,15 @@ NAMES: dict[str, str] = {
     "final_distance": "final distance",
 }
 
+AXIS_NAMES: dict[str, str] = {"r2": "R²", "r2_local": "local R²"}
+
 
 def format_figure(mean: float | None, sd: float | None) -> str:
     """Mean ± SD, both to the place of the SD's second digit and the mean to at most four digits."""
     if mean is None:
         return ABSENT
+    if abs(mean) < ROUNDING and (sd or 0.0) < ROUNDING:
+        return "0"
     if not sd:
         return _rounded(mean, _places(mean, 3))
     places = min(_places(sd, 2), _places(mean, 4)) if mean else _places(sd, 2)
@@ -63,8 +69,10 @@ def series_name(row: Row) -> str:
 
 def measure_name(row: Row) -> str:
     """A measure's name and unit as people read them."""
-    axis = row.measure.removeprefix("r2_axis_")
-    name = f"R², axis {int(axis) + 1}" if axis.isdigit() else NAMES.get(row.measure, row.measure)
+    measure, _, axis = row.measure.rpartition("_axis_")
+    name = NAMES.get(row.measure, row.measure)
+    if measure in AXIS_NAMES and axis.isdigit():
+        name = f"{AXIS_NAMES[measure]}, axis {int(axis) + 1}"
     return name if row.unit in ("", "1") else f"{name} ({row.unit})"
 
 
@@ -72,7 +80,7 @@ def rich_tables(rows: Sequence[Row], title: str = "", width: int = 100) -> Rende
     """Measures down, models or conditions across; split into several tables where they are too many.
 
     Args:
-        rows: figures of one task.
+        rows: figures; where they are of several tasks, the head names them.
         title: what the table shows.
         width: characters that a line may have.
     """
@@ -112,7 +120,7 @@ def markdown_table(rows: Sequence[Row]) -> str:
     """The same arrangement as a GitHub table, ending in a line break."""
     measures, series, figures = _arranged(rows)
     lines = [
-        "| mean ± SD | " + " | ".join(map(_cell, series)) + " |",
+        "| mean ± SD |" + "".join(f" {_cell(name)} |" for name in series),
         "|---|" + "---:|" * len(series),
     ]
     lines += [
@@ -129,7 +137,12 @@ def _cell(text: str) -> str:
 
 def _arranged(rows: Sequence[Row]) -> tuple[list[str], list[str], dict[tuple[str, str], str]]:
     """Measures and series in order of first appearance, and the figure for each pair."""
-    measures = list(dict.fromkeys(measure_name(row) for row in rows))
-    series = list(dict.fromkeys(series_name(row) for row in rows))
-    figures = {(measure_name(row), series_name(row)): format_figure(row.mean, row.sd) for row in rows}
-    return measures, series, figures
+    many_tasks = len({row.task for row in rows}) > 1
+
+    def place(row: Row) -> tuple[str, str]:
+        name = series_name(row)
+        return measure_name(row), f"{row.task}: {name}" if many_tasks and row.task else name
+
+    measures = list(dict.fromkeys(place(row)[0] for row in rows))
+    series = list(dict.fromkeys(place(row)[1] for row in rows))
+    return measures, series, {place(row): format_figure(row.mean, row.sd) for row in rows}
