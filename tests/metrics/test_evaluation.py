@@ -10,7 +10,7 @@ from latentarm.errors import UserError
 from latentarm.metrics.controllability import ReachConfig
 from latentarm.metrics.evaluation import EvaluationConfig, evaluate
 from latentarm.metrics.results import read_results, write_results
-from latentarm.metrics.summary import Subject
+from latentarm.metrics.summary import HEADLINE, Subject, headline
 from latentarm.robots.planar import planar
 from latentarm.types import Demonstrations, Episode
 
@@ -97,6 +97,7 @@ def test_every_row_says_what_it_is_of_and_can_be_filed(plane_demonstrations, rob
     assert {
         row.n for row in rows.values() if row.measure not in ("disentanglement_deg", "start_distance_m")
     } == {3}
+    assert [row.measure for row in headline(rows.values())] == list(HEADLINE)
     units = {"drift": "1", "controllability_m": "m", "error_percent_of_pca": "%", "error": "rad^2/s^2"}
     assert {measure: rows[measure].unit for measure in units} == units
     write_results(tmp_path / "metrics.json", list(rows.values()))

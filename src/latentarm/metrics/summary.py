@@ -1,5 +1,6 @@
 """From figures per seed or per drive to the rows that every command prints."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,18 @@ UNITS: dict[str, str] = {
 }
 """Unit of every measure of this package; "1" is a plain number or ratio."""
 
+HEADLINE: tuple[str, ...] = (
+    "error_percent_of_pca",
+    "noise_free_error_percent_of_pca",
+    "controllability_m",
+    "r2",
+    "r2_local",
+    "disentanglement_deg",
+    "drift",
+    "reversal",
+)
+"""The measures by which models are compared at a glance; the others are details of these."""
+
 
 @dataclass(frozen=True)
 class Subject:
@@ -50,6 +63,11 @@ class Subject:
 def unit_of(measure: str) -> str:
     """Unit of a measure, of a single latent axis (``r2_axis_0``) too."""
     return UNITS[measure.rpartition("_axis_")[0] or measure]
+
+
+def headline(rows: Iterable[Row]) -> list[Row]:
+    """Only the rows of the `HEADLINE` measures, for a figure or a short table."""
+    return [row for row in rows if row.measure in HEADLINE]
 
 
 def summarise(subject: Subject, measure: str, values: ArrayLike) -> Row:
