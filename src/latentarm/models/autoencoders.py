@@ -8,10 +8,10 @@ from typing import ClassVar, final
 
 from torch import Tensor
 
+from latentarm.models.batches import Batch
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel, conditioned_action, encoder_output
 from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
-from latentarm.models.training import Batch
 
 
 @final

@@ -175,8 +175,8 @@ def _orthonormal(columns: list[FloatArray]) -> list[FloatArray]:
     for raw in columns:
         column = raw
         for other in done:
-            column = column - np.vecdot(column, other, keepdims=True) * other
-        done.append(column / np.sqrt(np.vecdot(column, column, keepdims=True) + NORM_FLOOR))
+            column = column - np.vecdot(column, other)[..., None] * other
+        done.append(column / np.sqrt(np.vecdot(column, column) + NORM_FLOOR)[..., None])
     return done
 
 

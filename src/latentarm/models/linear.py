@@ -6,11 +6,11 @@ from typing import ClassVar, final
 import torch
 from torch import Tensor
 
+from latentarm.models.batches import Batch
 from latentarm.models.decoder import NORM_FLOOR
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.objectives import reconstruction_error
-from latentarm.models.training import Batch
 
 
 @final

@@ -12,6 +12,7 @@ import numpy as np
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import split_episodes
 from latentarm.errors import UserError
+from latentarm.models.batches import TrainingData
 from latentarm.models.decoder import Decoder
 from latentarm.models.layout import LAYOUTS, Dimensions
 from latentarm.models.normaliser import action_normaliser, context_normaliser
@@ -26,7 +27,7 @@ from latentarm.models.scaling import (
     latent_scale,
 )
 from latentarm.models.trained import TrainedModel, TrainingSummary
-from latentarm.models.training import TrainingData, TrainingResult
+from latentarm.models.training import TrainingResult
 from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs
 
 ROWS_AT_ONCE: Final = 4096
@@ -59,7 +60,7 @@ class LatentActionModel(ABC):
         hidden: units of each hidden layer, of encoder and decoder.
         learning_rate: of Adam, at the start.
         epochs: passes over the training pairs, at most.
-        batch_size: pairs per step.
+        batch_size: pairs per step, at most.
         patience: epochs without improvement on the held-out episodes after which a seed stops.
         device: ``cpu``, ``cuda``, or ``auto`` for CUDA where there is one.
         checkpoint_interval_s: shortest time between two checkpoints of a training, s.
@@ -84,9 +85,9 @@ class LatentActionModel(ABC):
     seed: int = 0
     hidden: tuple[int, ...] = (32, 32)
     learning_rate: float = 1e-2
-    epochs: int = 60
+    epochs: int = 40
     batch_size: int = 64
-    patience: int = 20
+    patience: int = 12
     device: Literal["cpu", "cuda", "auto"] = "cpu"
     checkpoint_interval_s: float = 5.0
     trained_: TrainedModel | None = field(default=None, init=False, repr=False)

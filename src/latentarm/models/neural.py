@@ -11,10 +11,11 @@ import torch
 from torch import Tensor
 
 from latentarm.errors import UserError
+from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.layout import LAYOUTS, Dimensions, weight_shapes
 from latentarm.models.model import LatentActionModel, Weights
 from latentarm.models.networks import Networks, mlp, networks_from_arrays
-from latentarm.models.training import Batch, TrainingConfig, TrainingData, TrainingResult, train
+from latentarm.models.training import TrainingConfig, TrainingResult, train
 from latentarm.types import FloatArray
 
 

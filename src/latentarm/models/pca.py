@@ -7,9 +7,10 @@ from typing import ClassVar, final
 import numpy as np
 from sklearn import decomposition
 
+from latentarm.models.batches import TrainingData
 from latentarm.models.layout import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
-from latentarm.models.training import TrainingData, TrainingResult
+from latentarm.models.training import TrainingResult
 from latentarm.types import FloatArray
 
 

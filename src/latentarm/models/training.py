@@ -1,19 +1,21 @@
 """The one training loop: S seeds of any model in one batched fit."""
 
 import math
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from time import monotonic
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 import torch
+from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from torch import Tensor
 
 from latentarm.errors import UserError
+from latentarm.models.batches import Batch, Batches, TrainingData, seed_generator
 from latentarm.models.checkpoint import TrainingState, fingerprint, read_checkpoint, write_checkpoint
 from latentarm.models.layout import Shape
 from latentarm.models.networks import FlatNetworks, Networks
@@ -34,7 +36,7 @@ class TrainingConfig:
     Attributes:
         learning_rate: Adam's, at the start; it falls along half a cosine.
         epochs: passes over the training pairs, at most.
-        batch_size: pairs per step and seed.
+        batch_size: pairs per step and seed, at most.
         patience: a seed has stalled when its held-out loss has not improved for this many epochs.
         checkpoint_interval_s: shortest time between two checkpoints, s.
     """
@@ -44,38 +46,6 @@ class TrainingConfig:
     batch_size: int
     patience: int
     checkpoint_interval_s: float
-
-
-class Batch(NamedTuple):
-    """What one step sees.
-
-    Attributes:
-        context: (S, B, c), normalised.
-        action: (S, B, m), normalised.
-        noise: (S, B, k), standard normal for training and zero for judging; k = 0 where the encoder
-            is deterministic.
-    """
-
-    context: Tensor
-    action: Tensor
-    noise: Tensor
-
-
-@dataclass(frozen=True)
-class TrainingData:
-    """Normalised pairs, the same for every seed.
-
-    Attributes:
-        context: (N, c), training pairs.
-        action: (N, m).
-        held_out_context: (H, c), pairs of the held-out episodes.
-        held_out_action: (H, m).
-    """
-
-    context: FloatArray
-    action: FloatArray
-    held_out_context: FloatArray
-    held_out_action: FloatArray
 
 
 @dataclass(frozen=True)
@@ -93,16 +63,6 @@ class TrainingResult:
     held_out_loss: FloatArray
     best_epoch: IntArray
     history: FloatArray
-
-
-def seed_generator(seed: int, stream: int) -> torch.Generator:
-    """A seed's own source of randomness for one purpose: stream 0 for its weights, e for epoch e.
-
-    A new generator per epoch makes every draw a function of (seed, epoch) alone: not of the seeds
-    beside it, and not of whether the training was cut off in between.
-    """
-    state = np.random.SeedSequence([seed, stream]).generate_state(1, np.uint64)[0]
-    return torch.Generator().manual_seed(int(state) >> 1)
 
 
 def train(
@@ -150,7 +110,7 @@ def train(
     else:
         networks.initialise([seed_generator(seed, 0) for seed in seeds])
 
-    batches = _Batches(data, seeds, config.batch_size, noise_dim, device)
+    batches = Batches(data, seeds, config.batch_size, noise_dim, device)
     written = monotonic()
     with (
         _threads(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())),
@@ -185,47 +145,6 @@ def train(
     )
 
 
-class _Batches:
-    """Shuffled training batches and the held-out pairs, on the device."""
-
-    def __init__(
-        self, data: TrainingData, seeds: Sequence[int], batch_size: int, noise_dim: int, device: torch.device
-    ) -> None:
-        def tensor(values: FloatArray) -> Tensor:
-            return torch.from_numpy(values).float().to(device)
-
-        self._seeds, self._noise_dim, self._device = tuple(seeds), noise_dim, device
-        self._context, self._action = tensor(data.context), tensor(data.action)
-        self._pairs = len(data.context)
-        self.size = min(batch_size, self._pairs)
-        many, held_out = len(seeds), len(data.held_out_context)
-        self.held_out = Batch(
-            context=tensor(data.held_out_context).expand(many, -1, -1).contiguous(),
-            action=tensor(data.held_out_action).expand(many, -1, -1).contiguous(),
-            noise=torch.zeros(many, held_out, noise_dim, device=device),
-        )
-
-    def epoch(self, epoch: int) -> Iterator[Batch]:
-        """Whole batches of one pass; the pairs that do not fill a last one wait for the next shuffle."""
-        many, size = len(self._seeds), self.size
-        steps = self._pairs // size
-        order = torch.empty(steps, many, size, dtype=torch.int64)
-        noise = torch.empty(steps, many, size, self._noise_dim)
-        for index, seed in enumerate(self._seeds):
-            generator = seed_generator(seed, epoch)
-            order[:, index] = torch.randperm(self._pairs, generator=generator)[: steps * size].view(
-                steps, size
-            )
-            noise[:, index] = torch.randn(steps, size, self._noise_dim, generator=generator)
-        order, noise = order.to(self._device).view(steps, many * size), noise.to(self._device)
-        for chosen, drawn in zip(order, noise, strict=True):
-            yield Batch(
-                context=self._context.index_select(0, chosen).view(many, size, -1),
-                action=self._action.index_select(0, chosen).view(many, size, -1),
-                noise=drawn,
-            )
-
-
 def _learning_rate(config: TrainingConfig, epoch: int) -> float:
     """Half a cosine from ``learning_rate`` down to `FINAL_RATE` of it."""
     fall = (1 + math.cos(math.pi * epoch / config.epochs)) / 2
@@ -251,6 +170,7 @@ def _bar(shown: bool) -> Progress:
         TextColumn("epochs"),
         TextColumn("{task.fields[loss]}"),
         TimeRemainingColumn(),
+        console=Console(stderr=True),
         disable=not shown,
         transient=True,
     )

@@ -6,10 +6,10 @@ from typing import ClassVar, final
 import torch
 from torch import Tensor
 
+from latentarm.models.batches import Batch
 from latentarm.models.networks import Networks
 from latentarm.models.neural import NeuralModel, conditioned_action, encoder_output
 from latentarm.models.objectives import reconstruction_error
-from latentarm.models.training import Batch
 
 
 @final

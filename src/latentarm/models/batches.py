@@ -1,0 +1,103 @@
+"""Pairs on their way into the training loop: shuffled, for every seed by itself."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final, NamedTuple, final
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from latentarm.types import FloatArray
+
+FEWEST_STEPS: Final = 16
+"""Steps of an epoch, at least: a small dataset is cut into smaller batches."""
+
+
+class Batch(NamedTuple):
+    """What one step sees.
+
+    Attributes:
+        context: (S, B, c), normalised.
+        action: (S, B, m), normalised.
+        noise: (S, B, k), standard normal for training and zero for judging; k = 0 where the encoder
+            is deterministic.
+    """
+
+    context: Tensor
+    action: Tensor
+    noise: Tensor
+
+
+@dataclass(frozen=True)
+class TrainingData:
+    """Normalised pairs, the same for every seed.
+
+    Attributes:
+        context: (N, c), training pairs.
+        action: (N, m).
+        held_out_context: (H, c), pairs of the held-out episodes.
+        held_out_action: (H, m).
+    """
+
+    context: FloatArray
+    action: FloatArray
+    held_out_context: FloatArray
+    held_out_action: FloatArray
+
+
+def seed_generator(seed: int, stream: int) -> torch.Generator:
+    """A seed's own source of randomness for one purpose: stream 0 for its weights, e for epoch e.
+
+    A new generator per epoch makes every draw a function of (seed, epoch) alone: not of the seeds
+    beside it, and not of whether the training was cut off in between.
+    """
+    state = np.random.SeedSequence([seed, stream]).generate_state(1, np.uint64)[0]
+    return torch.Generator().manual_seed(int(state) >> 1)
+
+
+@final
+class Batches:
+    """Shuffled training batches and the held-out pairs, on the device.
+
+    Attributes:
+        size: B, pairs per step and seed.
+        held_out: all held-out pairs as one batch.
+    """
+
+    def __init__(
+        self, data: TrainingData, seeds: Sequence[int], batch_size: int, noise_dim: int, device: torch.device
+    ) -> None:
+        def tensor(values: FloatArray) -> Tensor:
+            return torch.from_numpy(values).float().to(device)
+
+        self._seeds, self._noise_dim, self._device = tuple(seeds), noise_dim, device
+        self._context, self._action = tensor(data.context), tensor(data.action)
+        self._pairs = len(data.context)
+        self.size = max(1, min(batch_size, self._pairs // FEWEST_STEPS))
+        many, held_out = len(seeds), len(data.held_out_context)
+        self.held_out = Batch(
+            context=tensor(data.held_out_context).expand(many, -1, -1).contiguous(),
+            action=tensor(data.held_out_action).expand(many, -1, -1).contiguous(),
+            noise=torch.zeros(many, held_out, noise_dim, device=device),
+        )
+
+    def epoch(self, epoch: int) -> Iterator[Batch]:
+        """Whole batches of one pass; the pairs that do not fill a last one wait for the next shuffle."""
+        many, size = len(self._seeds), self.size
+        steps = self._pairs // size
+        order = torch.empty(steps, many, size, dtype=torch.int64)
+        noise = torch.empty(steps, many, size, self._noise_dim)
+        for index, seed in enumerate(self._seeds):
+            generator = seed_generator(seed, epoch)
+            order[:, index] = torch.randperm(self._pairs, generator=generator)[: steps * size].view(
+                steps, size
+            )
+            noise[:, index] = torch.randn(steps, size, self._noise_dim, generator=generator)
+        order, noise = order.to(self._device).view(steps, many * size), noise.to(self._device)
+        for chosen, drawn in zip(order, noise, strict=True):
+            yield Batch(
+                context=self._context.index_select(0, chosen).view(many, size, -1),
+                action=self._action.index_select(0, chosen).view(many, size, -1),
+                noise=drawn,
+            )

@@ -1,0 +1,204 @@
+"""The one contract, over every model."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from latentarm.errors import UserError
+from latentarm.models.catalogue import MODELS, load_model
+from latentarm.models.decoder import load_decoder
+from latentarm.models.layout import LAYOUTS
+
+SMALL = {"seeds": 2, "epochs": 3, "hidden": (8, 8), "window": 2}
+
+
+@pytest.fixture(scope="module", params=list(MODELS))
+def name(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def model(name, demonstrations):
+    return MODELS[name](**SMALL).fit(demonstrations)
+
+
+def test_the_tables_name_the_same_models():
+    assert list(MODELS) == list(LAYOUTS) == [model.kind for model in MODELS.values()]
+
+
+def test_all_models_take_the_same_parameters(name):
+    common = {entry.name for entry in fields(MODELS["pca"]) if entry.init}
+    assert common <= {entry.name for entry in fields(MODELS[name]) if entry.init}
+
+
+def test_shapes(model, samples):
+    context, z = samples
+    action = np.ones((30, 4))
+    assert model.encode(context, action).shape == (2, 30, 2)
+    assert model.decode(z, context).shape == (2, 30, 4)
+    assert model.decode(np.stack([z, -z]), context).shape == (2, 30, 4)
+    assert model.collapsed_.shape == (2, 2)
+    assert model.held_out_loss_.shape == (2,)
+    assert model.history_.shape[1] == 2
+
+
+def test_a_stack_of_latents_decodes_seed_by_seed(model, samples):
+    context, z = samples
+    both = model.decode(np.stack([z, -z]), context)
+    np.testing.assert_array_equal(both[0], model.decode(z, context)[0])
+    np.testing.assert_array_equal(both[1], model.decode(-z, context)[1])
+
+
+def test_the_same_seed_gives_the_same_model(name, model, demonstrations, samples):
+    context, z = samples
+    again = MODELS[name](**SMALL).fit(demonstrations)
+    np.testing.assert_array_equal(again.decode(z, context), model.decode(z, context))
+
+
+def test_different_seeds_give_different_models(name, model, samples):
+    context, z = samples
+    first, second = model.decode(z, context)
+    assert np.array_equal(first, second) == (name == "pca")
+
+
+def test_saved_and_loaded_is_the_same(name, model, samples, tmp_path):
+    context, z = samples
+    model.save(tmp_path, run={"dataset": "ring"})
+    loaded = load_model(tmp_path)
+    assert type(loaded) is MODELS[name]
+    assert loaded.parameters() == model.parameters()
+    np.testing.assert_array_equal(loaded.decode(z, context), model.decode(z, context))
+    np.testing.assert_array_equal(
+        loaded.encode(context, z @ np.ones((2, 4))), model.encode(context, z @ np.ones((2, 4)))
+    )
+    np.testing.assert_array_equal(loaded.history_, model.history_)
+    assert loaded.held_out_episodes_ == model.held_out_episodes_
+
+
+def test_the_numpy_runtime_equals_the_model(model, samples, tmp_path):
+    context, z = samples
+    expected = model.decode(z, context)
+    model.save(tmp_path)
+    for seed in range(2):
+        for decoder in (model.decoder(seed), load_decoder(tmp_path, seed)):
+            np.testing.assert_allclose(decoder.decode(z, context), expected[seed], rtol=0, atol=1e-12)
+            assert (decoder.latent_dim, decoder.context_dim, decoder.action_dim) == (2, 4, 4)
+
+
+def test_one_pair_alone_equals_the_same_pair_in_a_batch(model, samples):
+    context, z = samples
+    action = z @ np.ones((2, 4))
+    batch, encoded = model.decode(z, context), model.encode(context, action)
+    decoder = model.decoder(1)
+    for i in (0, 17):
+        one = slice(i, i + 1)
+        np.testing.assert_allclose(model.decode(z[one], context[one]), batch[:, one], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(
+            model.encode(context[one], action[one]), encoded[:, one], rtol=0, atol=1e-9
+        )
+        np.testing.assert_allclose(decoder.decode(z[i], context[i]), batch[1, i], rtol=0, atol=1e-12)
+
+
+def test_leading_axes_of_the_decoder_broadcast(model, samples):
+    context, z = samples
+    decoder = model.decoder()
+    grid = decoder.decode(z[:9, None], context[:5])
+    assert grid.shape == (9, 5, 4)
+    np.testing.assert_allclose(grid[3, 2], decoder.decode(z[3], context[2]), atol=1e-12)
+    np.testing.assert_allclose(decoder.decode(z[:9], context[2]), grid[:, 2], atol=1e-12)
+    np.testing.assert_allclose(decoder.decode(z[3], context[:5]), grid[3], atol=1e-12)
+
+
+def test_unit_inputs_span_what_was_demonstrated(model, demonstrations):
+    from latentarm.demonstrations.pairs import make_pairs
+
+    pairs = make_pairs(demonstrations, 2, 0.0, "state", np.random.default_rng(0))
+    trained_on = ~np.isin(pairs.episode, model.held_out_episodes_)
+    used = np.abs(model.encode(pairs.context[trained_on], pairs.action[trained_on]))
+    np.testing.assert_allclose(np.quantile(used, 0.99, axis=1), 1.0, atol=1e-6)
+
+
+def test_unfitted_says_so(name, samples, tmp_path):
+    context, z = samples
+    fresh = MODELS[name]()
+    for use in (
+        lambda: fresh.decode(z, context),
+        lambda: fresh.encode(context, context),
+        fresh.decoder,
+        lambda: fresh.save(tmp_path),
+        lambda: fresh.collapsed_,
+    ):
+        with pytest.raises(UserError, match="not fitted yet"):
+            use()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("z", "context", "message"),
+    [
+        (np.ones((3, 2)), np.ones((3, 5)), "context has shape"),
+        (np.ones((3, 3)), np.ones((3, 4)), "z has shape"),
+        (np.ones((2, 2)), np.ones((3, 4)), "z has shape"),
+        (np.ones((5, 3, 2)), np.ones((3, 4)), "z has shape"),
+        (np.ones(2), np.ones((1, 4)), "z has shape"),
+        (np.ones((3, 2)), np.full((3, 4), np.nan), "context holds a NaN"),
+        (np.full((3, 2), np.inf), np.ones((3, 4)), "z holds a NaN or an infinity"),
+    ],
+)
+def test_wrong_arrays_are_refused(model, z, context, message):
+    with pytest.raises(UserError, match=message):
+        model.decode(z, context)
+
+
+def test_a_wrong_action_is_refused(model):
+    with pytest.raises(UserError, match="action has shape"):
+        model.encode(np.ones((3, 4)), np.ones((3, 5)))
+
+
+def test_a_seed_that_is_not_there_is_refused(model, tmp_path):
+    model.save(tmp_path)
+    for use in (model.decoder, lambda seed: load_decoder(tmp_path, seed)):
+        with pytest.raises(UserError, match="no seed index 2"):
+            use(2)
+
+
+def test_the_context_may_hold_a_belief(name, demonstrations, tmp_path):
+    model = MODELS[name](**SMALL, context="state_belief").fit(demonstrations)
+    rng = np.random.default_rng(0)
+    z, context = rng.uniform(-1, 1, (20, 2)), rng.uniform(0, 1, (20, 6))
+    model.save(tmp_path)
+    decoder = load_decoder(tmp_path, 1)
+    assert (decoder.context, decoder.context_dim) == ("state_belief", 6)
+    np.testing.assert_allclose(decoder.decode(z, context), model.decode(z, context)[1], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "value"),
+    [
+        ("latent_dim", 0),
+        ("latent_dim", 5),
+        ("seeds", 0),
+        ("window", 2.5),
+        ("learning_rate", float("nan")),
+        ("learning_rate", 0.0),
+        ("state_noise_rad", -1.0),
+        ("held_out_fraction", 1.0),
+        ("hidden", (0,)),
+        ("hidden", [8]),
+        ("context", "goal"),
+        ("device", "tpu"),
+        ("epochs", True),
+    ],
+)
+def test_parameters_that_make_no_sense_are_refused(name, demonstrations, wrong, value):
+    with pytest.raises(UserError, match=r"latent action of 5|parameter " + wrong):
+        MODELS[name](**{**SMALL, wrong: value}).fit(demonstrations)
+
+
+@pytest.mark.parametrize(
+    ("held_out", "message"), [([12], "Episode 12"), ([], "0 of 12"), (list(range(12)), "12 of 12")]
+)
+def test_held_out_episodes_must_leave_some_on_both_sides(name, demonstrations, held_out, message):
+    with pytest.raises(UserError, match=message):
+        MODELS[name](**SMALL).fit(demonstrations, held_out=held_out)

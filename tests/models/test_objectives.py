@@ -1,0 +1,78 @@
+"""Equations 6 to 8, worked by hand."""
+
+import math
+
+import numpy as np
+import pytest
+import torch
+
+from latentarm.demonstrations.pairs import make_pairs
+from latentarm.models.catalogue import MODELS
+from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
+
+
+def test_kl_of_the_prior_itself_is_zero():
+    assert kl_divergence(torch.zeros(1, 3, 2), torch.zeros(1, 3, 2)).item() == 0
+
+
+def test_kl_by_hand():
+    # Two dimensions: N(1, 2^2) and N(-3, 0.5^2). Per dimension (mu^2 + sigma^2 - 1) / 2 - log sigma:
+    # (1 + 4 - 1) / 2 - log 2 and (9 + 0.25 - 1) / 2 + log 2, together 6.125.
+    mean = torch.tensor([[[1.0, -3.0]]], dtype=torch.float64)
+    log_variance = 2 * torch.log(torch.tensor([[[2.0, 0.5]]], dtype=torch.float64))
+    assert kl_divergence(mean, log_variance).item() == pytest.approx(6.125, abs=1e-12)
+
+
+def test_kl_agrees_with_torch_and_averages_over_the_batch():
+    generator = torch.Generator().manual_seed(0)
+    mean = torch.randn(2, 5, 3, generator=generator, dtype=torch.float64)
+    log_variance = torch.randn(2, 5, 3, generator=generator, dtype=torch.float64)
+    posterior = torch.distributions.Normal(mean, (log_variance / 2).exp())
+    prior = torch.distributions.Normal(torch.zeros_like(mean), torch.ones_like(mean))
+    expected = torch.distributions.kl_divergence(posterior, prior).sum(-1).mean(-1)
+    torch.testing.assert_close(kl_divergence(mean, log_variance), expected)
+
+
+def test_reconstruction_error_by_hand():
+    # ‖(1, 2) - (0, 0)‖^2 = 5 and ‖(1, 0) - (1, 3)‖^2 = 9: mean 7, whatever the other seed does.
+    action = torch.tensor([[[1.0, 2.0], [1.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]]])
+    rebuilt = torch.tensor([[[0.0, 0.0], [1.0, 3.0]], [[0.0, 0.0], [0.0, 0.0]]])
+    assert reconstruction_error(action, rebuilt).tolist() == [7.0, 0.0]
+
+
+def test_samples_have_the_mean_and_spread_asked_for():
+    noise = torch.randn(1, 100_000, 1, generator=torch.Generator().manual_seed(1))
+    drawn = sample_latent(torch.full_like(noise, 2.0), torch.full_like(noise, 2 * math.log(3.0)), noise)
+    assert drawn.mean().item() == pytest.approx(2.0, abs=0.05)
+    assert drawn.std().item() == pytest.approx(3.0, abs=0.05)
+
+
+@pytest.mark.parametrize("name", list(MODELS))
+def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
+    """The held-out loss, computed again from what the model encodes and decodes."""
+    model = MODELS[name](seeds=2, epochs=3, hidden=(8,), window=2).fit(demonstrations)
+    pairs = make_pairs(demonstrations, 2, 0.0, "state", np.random.default_rng(0))
+    held_out = np.isin(pairs.episode, model.held_out_episodes_)
+    context, action = pairs.context[held_out], pairs.action[held_out]
+    tensors = model.trained_.tensors
+    speed = tensors["action.scale"]
+
+    def error(wanted, given):
+        return np.square((wanted - given) / speed).sum(-1).mean(-1)
+
+    loss = error(action, model.decode(model.encode(context, action), context))
+    if name in ("vae", "cvae"):
+        seen = np.concatenate(
+            [(context - tensors["context.centre"]) / tensors["context.scale"], action / speed], -1
+        )
+        hidden = seen @ tensors["encoder.0.weight"] + tensors["encoder.0.bias"]
+        hidden = hidden / (1 + np.exp(-hidden))
+        mu, log_variance = np.split(
+            hidden @ tensors["encoder.1.weight"] + tensors["encoder.1.bias"], 2, axis=-1
+        )
+        kl = 0.5 * (mu**2 + np.exp(log_variance) - 1 - log_variance).sum(-1).mean(-1)
+        loss = loss + model.kl_weight * kl
+    if name == "cae_zero":
+        at_rest = model.decode(np.zeros((len(context), 2)), context)
+        loss = loss + model.zero_weight * error(0.0, at_rest)
+    np.testing.assert_allclose(model.held_out_loss_, loss, rtol=1e-4)

@@ -1,0 +1,219 @@
+"""The training loop: many seeds as one, stopping, and going on after a kill."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from latentarm.errors import UserError
+from latentarm.models import training
+from latentarm.models.batches import seed_generator
+from latentarm.models.catalogue import MODELS
+from latentarm.models.optimiser import FlatAdam
+
+NEURAL = [name for name in MODELS if name != "pca"]
+SMALL = {"epochs": 4, "hidden": (8, 8), "window": 2}
+
+
+@pytest.mark.parametrize("name", NEURAL)
+def test_a_seeds_result_does_not_depend_on_the_seeds_beside_it(name, demonstrations, samples):
+    context, z = samples
+    together = MODELS[name](seeds=5, seed=10, **SMALL).fit(demonstrations)
+    alone = MODELS[name](seeds=1, seed=13, **SMALL).fit(demonstrations)
+    np.testing.assert_allclose(alone.decode(z, context)[0], together.decode(z, context)[3], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(alone.held_out_loss_[0], together.held_out_loss_[3], rtol=1e-6)
+
+
+def test_a_seed_that_stalls_early_is_not_changed_by_those_that_go_on(demonstrations, samples):
+    settings = {"epochs": 25, "hidden": (8,), "window": 1, "patience": 1, "learning_rate": 0.1}
+    context, z = samples
+    together = MODELS["cae"](seeds=4, **settings).fit(demonstrations)
+    ends = []
+    for seed in range(4):
+        alone = MODELS["cae"](seeds=1, seed=seed, **settings).fit(demonstrations)
+        np.testing.assert_allclose(
+            alone.decode(z, context)[0], together.decode(z, context)[seed], rtol=0, atol=1e-9
+        )
+        ends.append(len(alone.history_))
+    assert len(set(ends)) > 1, "the seeds should stall at different epochs for this test to say anything"
+    assert len(together.history_) == max(ends) < settings["epochs"]
+
+
+def test_training_lowers_the_loss_and_keeps_the_best_epoch(demonstrations):
+    model = MODELS["cvae"](seeds=3, epochs=15, hidden=(16, 16), window=2).fit(demonstrations)
+    np.testing.assert_array_equal(model.held_out_loss_, model.history_.min(axis=0))
+    np.testing.assert_array_equal(model.trained_.summary.best_epoch, model.history_.argmin(axis=0) + 1)
+    assert (model.held_out_loss_ < 0.7 * model.history_[0]).all()
+
+
+def test_held_out_episodes_leave_the_weights_alone(demonstrations, samples):
+    """What the held-out episodes hold decides when to stop, never where to step."""
+    context, z = samples
+    settings = {**SMALL, "epochs": 1}
+    plain = MODELS["cae"](**settings).fit(demonstrations, held_out=[0, 1])
+    altered = list(demonstrations.episodes)
+    altered[0], altered[1] = altered[1], altered[0]
+    changed = MODELS["cae"](**settings).fit(
+        type(demonstrations)(tuple(altered), demonstrations.rate_hz, demonstrations.joint_names),
+        held_out=[0, 1],
+    )
+    np.testing.assert_array_equal(plain.decode(z, context), changed.decode(z, context))
+
+
+class KilledError(Exception):
+    pass
+
+
+@pytest.mark.parametrize("name", NEURAL)
+def test_resuming_gives_what_an_uninterrupted_training_gives(
+    name, demonstrations, samples, tmp_path, monkeypatch
+):
+    context, z = samples
+    settings = {**SMALL, "epochs": 6, "seeds": 2, "checkpoint_interval_s": 0.0}
+    whole = MODELS[name](**settings).fit(demonstrations)
+    path = tmp_path / "checkpoint.safetensors"
+    write, calls = training.write_checkpoint, []
+
+    def write_then_die(*arguments):
+        write(*arguments)
+        calls.append(1)
+        if len(calls) == 3:
+            raise KilledError
+
+    with monkeypatch.context() as patch:
+        patch.setattr(training, "write_checkpoint", write_then_die)
+        with pytest.raises(KilledError):
+            MODELS[name](**settings).fit(demonstrations, checkpoint=path)
+    resumed = MODELS[name](**settings).fit(demonstrations, checkpoint=path)
+    np.testing.assert_array_equal(resumed.decode(z, context), whole.decode(z, context))
+    np.testing.assert_array_equal(resumed.history_, whole.history_)
+
+
+def test_a_finished_training_is_not_run_again(demonstrations, tmp_path, monkeypatch):
+    path = tmp_path / "checkpoint.safetensors"
+    first = MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    monkeypatch.setattr(FlatAdam, "step", lambda *_: pytest.fail("stepped"))
+    again = MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    np.testing.assert_array_equal(first.held_out_loss_, again.held_out_loss_)
+
+
+KILLED_SCRIPT = """
+import sys
+from pathlib import Path
+import torch
+torch.set_num_threads(1)
+sys.path.insert(0, {tests!r})
+import numpy as np
+from conftest import ring
+from latentarm.models.catalogue import MODELS
+from latentarm.types import Demonstrations
+rng = np.random.default_rng(3)
+demonstrations = Demonstrations(tuple(ring(rng) for _ in range(12)), 20.0, ("a", "b", "c", "d"))
+MODELS["cvae"](epochs={epochs}, hidden=(8, 8), window=2, checkpoint_interval_s=0.0, patience=1000).fit(
+    demonstrations, checkpoint=Path(sys.argv[1]))
+"""
+
+
+def test_a_training_killed_outright_goes_on(demonstrations, samples, tmp_path):
+    context, z = samples
+    epochs = 40
+    path = tmp_path / "checkpoint.safetensors"
+    script = KILLED_SCRIPT.format(tests=str(Path(__file__).parent), epochs=epochs)
+    process = subprocess.Popen([sys.executable, "-c", script, str(path)])
+    deadline = time.monotonic() + 60
+    while not path.exists() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.002)
+    process.send_signal(signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL, "it was over before it could be killed"
+    settings = {"epochs": epochs, "hidden": (8, 8), "window": 2, "patience": 1000}
+    resumed = MODELS["cvae"](**settings).fit(demonstrations, checkpoint=path)
+    whole = MODELS["cvae"](**settings).fit(demonstrations)
+    np.testing.assert_array_equal(resumed.decode(z, context), whole.decode(z, context))
+
+
+@pytest.mark.parametrize(
+    "change", [{"seed": 1}, {"learning_rate": 1e-3}, {"hidden": (8, 7)}, {"data_seed": 1}]
+)
+def test_the_checkpoint_of_another_training_is_refused(demonstrations, tmp_path, change):
+    path = tmp_path / "checkpoint.safetensors"
+    MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    with pytest.raises(UserError, match="checkpoint of another training"):
+        MODELS["cae"](**{**SMALL, **change}).fit(demonstrations, checkpoint=path)
+
+
+@pytest.mark.parametrize("content", [b"", b"not a checkpoint", b"\xff" * 100])
+def test_a_broken_checkpoint_is_refused(demonstrations, tmp_path, content):
+    path = tmp_path / "checkpoint.safetensors"
+    path.write_bytes(content)
+    with pytest.raises(UserError, match="not a whole training checkpoint"):
+        MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+
+
+def test_a_truncated_checkpoint_is_refused(demonstrations, tmp_path):
+    path = tmp_path / "checkpoint.safetensors"
+    MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    path.write_bytes(path.read_bytes()[:-100])
+    with pytest.raises(UserError, match="not a whole training checkpoint"):
+        MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+
+
+def test_divergence_is_said(demonstrations):
+    with pytest.raises(UserError, match="diverged for seed 0"):
+        MODELS["ae"](**{**SMALL, "learning_rate": 1e30}).fit(demonstrations)
+
+
+@pytest.mark.skipif(torch.cuda.is_available(), reason="this machine has CUDA")
+def test_cuda_without_cuda_is_said_and_auto_takes_the_cpu(demonstrations):
+    with pytest.raises(UserError, match="no CUDA on this machine"):
+        MODELS["cae"](**SMALL, device="cuda").fit(demonstrations)
+    MODELS["cae"](**SMALL, device="auto").fit(demonstrations)
+
+
+def test_the_number_of_threads_is_as_before(demonstrations):
+    torch.set_num_threads(2)
+    try:
+        MODELS["cae"](**SMALL).fit(demonstrations)
+        assert torch.get_num_threads() == 2
+    finally:
+        torch.set_num_threads(1)
+
+
+def test_the_progress_bar_stays_off_standard_output(demonstrations, capsys):
+    MODELS["cae"](**SMALL).fit(demonstrations, progress=True)
+    assert capsys.readouterr().out == ""
+
+
+def test_adam_is_torchs_adam():
+    generator = torch.Generator().manual_seed(0)
+    ours = torch.randn(3, 7, generator=generator)
+    theirs = ours.clone().requires_grad_()
+    adam, reference = FlatAdam(ours), torch.optim.Adam([theirs], lr=0.02)
+    for rate in np.linspace(0.02, 0.001, 50):
+        gradient = torch.randn(3, 7, generator=generator)
+        theirs.grad = gradient.clone()
+        reference.param_groups[0]["lr"] = float(rate)
+        reference.step()
+        adam.step(ours, gradient, float(rate))
+    torch.testing.assert_close(ours, theirs.detach())
+
+
+def test_epochs_of_one_seed_are_shuffled_differently_and_reproducibly():
+    first, again, other = (seed_generator(5, epoch) for epoch in (1, 1, 2))
+    order = torch.randperm(100, generator=first)
+    assert torch.equal(order, torch.randperm(100, generator=again))
+    assert not torch.equal(order, torch.randperm(100, generator=other))
+
+
+def test_the_checkpoint_holds_no_pickle(demonstrations, tmp_path):
+    path = tmp_path / "checkpoint.safetensors"
+    MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    content = path.read_bytes()
+    header = json.loads(content[8 : 8 + int.from_bytes(content[:8], "little")])
+    assert set(header) == {"__metadata__", "values", "first", "second", "best"}
+    assert [entry.name for entry in tmp_path.iterdir()] == ["checkpoint.safetensors"]
