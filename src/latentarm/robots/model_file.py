@@ -169,9 +169,11 @@ def _only_end_effector(model: mujoco.MjModel) -> str:
 
 def _limits(model: mujoco.MjModel, reading: Reading, velocity: Mapping[str, float]) -> JointLimits:
     assumed = [SLIDE if slide else HINGE for slide in reading.chain.slide]
-    limited = model.jnt_limited[reading.joints].astype(np.bool_)
+    given = model.jnt_range[reading.joints]
+    # MuJoCo takes a range that is turned round for none at all; here it is refused, not ignored.
+    limited = model.jnt_limited[reading.joints].astype(np.bool_) | (given[:, 0] > given[:, 1])
     free = np.array([[-defaults.range, defaults.range] for defaults in assumed])
-    ranges = np.where(limited[:, None], model.jnt_range[reading.joints], free)
+    ranges = np.where(limited[:, None], given, free)
     names = reading.chain.joint_names
     return JointLimits(
         lower=ranges[:, 0],

@@ -1,0 +1,21 @@
+import subprocess
+import sys
+
+import pytest
+
+LIGHT = [
+    "latentarm.kinematics.chain",
+    "latentarm.kinematics.capsules",
+    "latentarm.kinematics.rotations",
+    "latentarm.robots.limits",
+    "latentarm.robots.robot",
+    "latentarm.robots.arm",
+    "latentarm.robots.simulated",
+]
+
+
+@pytest.mark.parametrize("module", LIGHT)
+def test_what_the_control_loop_imports_loads_no_physics_and_no_learning(module):
+    code = f"import sys, {module}; print(sorted({{'torch', 'mujoco', 'mink', 'scipy'}} & set(sys.modules)))"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
