@@ -4,6 +4,7 @@ import json
 import pickle
 import shutil
 import struct
+import tempfile
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +14,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.importing import import_to
@@ -254,7 +257,9 @@ MALFORMED: dict[str, tuple[Callable[[Path], Path], str]] = {
     "no version": (dataset(info(codebase_version=None)), "the entry 'codebase_version' is missing"),
     "no state feature": (dataset(info(features={})), "has no observation.state"),
     "fps zero": (dataset(info(fps=0)), "rate is 0 Hz"),
-    "fps text": (dataset(info(fps="ten")), "'fps' is missing or not a number"),
+    "fps huge": (dataset(info(fps=10**400)), "'fps' is missing or not a sensible number"),
+    "episodes absurd": (dataset(info(total_episodes=1 << 40)), "over the limit"),
+    "fps text": (dataset(info(fps="ten")), "'fps' is missing or not a sensible number"),
     "zero episodes": (dataset(info(total_episodes=0)), "there are no episodes in it"),
     "too many promised": (dataset(info(total_episodes=3)), "does not list the 3 episodes in order"),
     "absurdly many": (dataset(info(total_frames=1 << 40)), "over the limit"),
@@ -296,7 +301,14 @@ def test_a_malformed_source_is_refused_and_leaves_nothing(tmp_path: Path, arm: R
 def test_the_sentences_are_distinct(tmp_path: Path, arm: Robot) -> None:
     said: dict[str, str] = {}
     for kind, (make, _) in MALFORMED.items():
-        if kind in {"damaged npz", "linked HDF5", "negative shape", "huge npz"}:
+        if kind in {
+            "damaged npz",
+            "linked HDF5",
+            "negative shape",
+            "huge npz",
+            "fps huge",
+            "episodes absurd",
+        }:
             continue  # the same fault for the person as one other
         folder = tmp_path / "in"
         shutil.rmtree(folder, ignore_errors=True)
@@ -305,6 +317,61 @@ def test_the_sentences_are_distinct(tmp_path: Path, arm: Robot) -> None:
             import_to(make(folder), tmp_path / "out", arm)
         said[kind] = str(refusal.value).replace(str(folder), "")
     assert len(set(said.values())) == len(said)
+
+
+@pytest.mark.parametrize("column", ["observation.state.list.element", "timestamp"])
+def test_a_flipped_bit_among_the_samples_is_noticed(tmp_path: Path, column: str) -> None:
+    def flip(path: Path) -> None:
+        group = pq.read_metadata(path / DATA).row_group(0)
+        chunks = {
+            group.column(index).path_in_schema: group.column(index) for index in range(group.num_columns)
+        }
+        start = chunks[column].dictionary_page_offset or chunks[column].data_page_offset
+        content = bytearray((path / DATA).read_bytes())
+        content[start + chunks[column].total_compressed_size - 1] ^= 0x10
+        (path / DATA).write_bytes(bytes(content))
+
+    with pytest.raises(UserError, match="truncated or damaged"):
+        import_to(dataset(flip)(tmp_path), tmp_path / "out")
+
+
+BYTES = st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.binary(max_size=3)), min_size=1, max_size=4)
+
+
+def edited(content: bytes, edits: list[tuple[float, bytes]]) -> bytes:
+    """The content with one byte replaced by others, or by none, at each place."""
+    for place, new in edits:
+        index = int(place * len(content))
+        content = content[:index] + new + content[index + 1 :]
+    return content
+
+
+@given(kind=st.sampled_from(["header", "npz", "csv", "info"]), edits=BYTES)
+@settings(max_examples=150, deadline=None)
+def test_no_edit_of_a_source_is_more_than_refused(kind: str, edits: list[tuple[float, bytes]]) -> None:
+    """Whatever bytes a source holds, it imports or is refused in one sentence: nothing else."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        if kind == "header":
+            source = npz()(folder)
+            with zipfile.ZipFile(source) as archive:
+                members = {member: archive.read(member) for member in archive.namelist()}
+            members["q.npy"] = edited(members["q.npy"][:128], edits) + members["q.npy"][128:]
+            with zipfile.ZipFile(source, "w") as archive:
+                for member, content in members.items():
+                    archive.writestr(member, content)
+        else:
+            source = {
+                "npz": npz(),
+                "csv": csv(HEADER, line(0, 0), line(0, 0.1), line(1, 0), line(1, 0.1)),
+                "info": dataset(lambda path: None),
+            }[kind](folder)
+            target = source / "meta/info.json" if kind == "info" else source
+            target.write_bytes(edited(target.read_bytes(), edits))
+        try:
+            import_to(source, folder / "out")
+        except UserError:
+            assert not (folder / "out").exists()
 
 
 def test_the_unspoilt_sources_are_fine(tmp_path: Path, arm: Robot) -> None:

@@ -8,6 +8,7 @@ order; otherwise every column that is not named above is a joint, in the order o
 """
 
 import csv
+import math
 from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -140,4 +141,5 @@ def _mean_rate(episodes: Sequence[Episode]) -> float:
     steps = sum(len(episode.timestamp) - 1 for episode in episodes)
     elapsed = sum(float(episode.timestamp[-1]) for episode in episodes)
     rate = steps / elapsed if elapsed > 0 else 0.0
-    return float(round(rate)) if abs(rate - round(rate)) < 0.01 * rate else rate
+    whole = math.floor(rate + 0.5) if math.isfinite(rate) else 0
+    return float(whole) if abs(rate - whole) < 0.01 * rate else rate

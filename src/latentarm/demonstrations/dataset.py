@@ -14,9 +14,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from latentarm.demonstrations.folders import locked, remove_parts, staged_folder
+from latentarm.demonstrations.folders import locked, remove_files, remove_parts, staged_folder
 from latentarm.demonstrations.info import (
     ACTION,
+    CHUNK_FILES,
+    DATA_FILE_MB,
     DATA_PATTERN,
     EPISODES_PATTERN,
     INFO_PATH,
@@ -64,7 +66,8 @@ def write_dataset(demonstrations: Demonstrations, path: Path) -> None:
     tasks: list[str] = []
     samples: list[Table] = []
     rows: list[Table] = []
-    frames = 0
+    places: list[tuple[int, int]] = []
+    frames = written = 0
     for index, episode in enumerate(demonstrations.episodes):
         if episode.task not in tasks:
             tasks.append(episode.task)
@@ -72,7 +75,9 @@ def write_dataset(demonstrations: Demonstrations, path: Path) -> None:
             episode, features, episode_index=index, first_index=frames, task_index=tasks.index(episode.task)
         )
         samples.append(sample_table(columns))
-        rows.append(episode_row(columns, episode.task, data_place=(0, 0), episodes_place=(0, 0)))
+        written += samples[-1].nbytes
+        places.append(divmod(written // (DATA_FILE_MB * 1024**2), CHUNK_FILES))
+        rows.append(episode_row(columns, episode.task, data_place=places[-1], episodes_place=(0, 0)))
         frames += len(episode.timestamp)
     info = Info(
         episodes=len(samples),
@@ -84,7 +89,9 @@ def write_dataset(demonstrations: Demonstrations, path: Path) -> None:
         goals=demonstrations.goals,
     )
     with staged_folder(path) as staging:
-        _write_tables(staging / _place(DATA_PATTERN, (0, 0)), samples)
+        for place in sorted(set(places)):
+            held = [table for table, where in zip(samples, places, strict=True) if where == place]
+            _write_tables(staging / _place(DATA_PATTERN, place), held)
         _write_state(staging, pa.concat_tables(rows), (0, 0), tasks, info)
 
 
@@ -191,9 +198,7 @@ def _remove_uncommitted(path: Path, rows: Table) -> None:
     """Delete what a killed writer left: temporary files, and data files that no episode lies in."""
     remove_parts(path)
     committed = {path / _place(DATA_PATTERN, place) for place in _data_places(rows)}
-    for data in (path / "data").glob("*/*.parquet"):
-        if data not in committed:
-            data.unlink()
+    remove_files(set((path / "data").glob("*/*.parquet")) - committed)
 
 
 def _data_to_extend(path: Path, info: Info, rows: Table, added: Table) -> tuple[tuple[int, int], list[Table]]:
@@ -216,7 +221,11 @@ def _data_to_extend(path: Path, info: Info, rows: Table, added: Table) -> tuple[
 
 def _write_tables(path: Path, tables: list[Table]) -> None:
     """Write tables of one schema to one Parquet file, each as its own row group."""
-    with written_whole(path) as part, pq.ParquetWriter(part, tables[0].schema) as writer:
+    schema = tables[0].schema
+    with (
+        written_whole(path) as part,
+        pq.ParquetWriter(part, schema, write_page_checksum=True) as writer,
+    ):
         for table in tables:
             writer.write_table(table)
 

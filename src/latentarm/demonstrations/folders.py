@@ -3,7 +3,7 @@
 import fcntl
 import os
 import shutil
-from collections.abc import Generator
+from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -26,8 +26,10 @@ def locked(folder: Path) -> Generator[None]:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             same = os.path.samestat(os.fstat(descriptor), folder.stat())
-        except OSError as error:
+        except (BlockingIOError, FileNotFoundError) as error:
             raise UserError(f"{folder} is being written by another program; wait for it.") from error
+        except OSError as error:
+            raise UserError(f"{folder} cannot be locked: {error.strerror or error}.") from error
         if not same:
             raise UserError(f"{folder} is being written by another program; wait for it.")
         yield
@@ -73,16 +75,33 @@ def staged_folder(destination: Path) -> Generator[Path]:
                 check_vacant(destination)
                 staging.replace(destination)
                 sync_folder(destination.parent)
-            finally:
+            except BaseException:
                 shutil.rmtree(staging, ignore_errors=True)
+                raise
     except OSError as error:
         raise UserError(f"{destination} cannot be written: {error.strerror or error}.") from error
 
 
 def remove_parts(folder: Path) -> None:
-    """Delete what killed writers left in ``folder``: temporary files that were never renamed."""
-    for part in folder.rglob(".*.part"):
-        part.unlink(missing_ok=True)
+    """Delete what killed writers left in ``folder``: temporary files that were never renamed.
+
+    Raises:
+        UserError: one of them cannot be deleted.
+    """
+    remove_files(folder.rglob(".*.part"))
+
+
+def remove_files(paths: Iterable[Path]) -> None:
+    """Delete files.
+
+    Raises:
+        UserError: one of them cannot be deleted.
+    """
+    for path in paths:
+        try:
+            path.unlink(missing_ok=True)
+        except OSError as error:
+            raise UserError(f"{path} cannot be deleted: {error.strerror or error}.") from error
 
 
 def _clear(folder: Path) -> None:

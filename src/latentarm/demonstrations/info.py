@@ -12,13 +12,14 @@ from typing import Any, Final, TypeVar, cast, final
 
 import numpy as np
 
-from latentarm.demonstrations.bounds import MAX_JSON_BYTES, check_bytes
+from latentarm.demonstrations.bounds import MAX_JSON_BYTES, check_bytes, check_values
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Goal, Pose
 
 CODEBASE_VERSION: Final = "v3.0"
 STATE: Final = "observation.state"
 ACTION: Final = "action"
+MAX_RATE_HZ: Final = 1e9
 INFO_PATH: Final = Path("meta/info.json")
 CHUNK_FILES: Final = 1000
 DATA_FILE_MB: Final = 100
@@ -152,7 +153,8 @@ def read_info(root: Path) -> Info:
         root: the dataset's folder.
 
     Raises:
-        UserError: there is none, it is another version's, or it does not say what it must.
+        UserError: there is none, it is another version's, it does not say what it must, or it
+            promises more than an import may hold.
     """
     path = root / INFO_PATH
     if not path.is_file():
@@ -178,11 +180,13 @@ def read_info(root: Path) -> Info:
     if state is None:
         raise UserError(f"{path}: the dataset has no {STATE} of floats, so it holds no joint positions.")
     rate = mapping.get("fps")
-    if isinstance(rate, bool) or not isinstance(rate, int | float):
-        raise UserError(f"{path}: the rate 'fps' is missing or not a number.")
+    if isinstance(rate, bool) or not isinstance(rate, int | float) or not abs(rate) < MAX_RATE_HZ:
+        raise UserError(f"{path}: the rate 'fps' is missing or not a sensible number.")
+    episodes, frames = _count(mapping, "total_episodes", path), _count(mapping, "total_frames", path)
+    check_values(path, "it", max(episodes, frames) * (len(INDEX_DTYPES) + sum(one.width for one in features)))
     return Info(
-        episodes=_count(mapping, "total_episodes", path),
-        frames=_count(mapping, "total_frames", path),
+        episodes=episodes,
+        frames=frames,
         tasks=_count(mapping, "total_tasks", path),
         rate_hz=float(rate),
         robot=robot if isinstance(robot, str) else "",
@@ -246,5 +250,5 @@ def _read_goals(ours: object, path: Path) -> tuple[Goal, ...]:
             )
             for entry in cast(Mapping[str, Any], ours).get("goals", [])
         )
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise UserError(f"{path}: its goals are damaged.") from error

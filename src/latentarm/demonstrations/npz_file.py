@@ -8,6 +8,7 @@ taken for actions.
 """
 
 import math
+import tokenize
 import zipfile
 import zlib
 from pathlib import Path
@@ -109,7 +110,10 @@ def _declared_count(archive: zipfile.ZipFile, member: zipfile.ZipInfo, source: P
         if version not in {(1, 0), (2, 0)}:
             raise UserError(f"{source}: the array '{key}' is of an unknown format version.")
         read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
-        shape, _, dtype = read_header(stream)
+        try:
+            shape, _, dtype = read_header(stream)
+        except (SyntaxError, tokenize.TokenError) as error:
+            raise UserError(f"{source}: the array '{key}' has a damaged header.") from error
         header_bytes = stream.tell()
     if dtype.hasobject:
         raise UserError(f"{source}: the array '{key}' holds pickled objects, which are never opened.")

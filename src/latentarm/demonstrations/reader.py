@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.info import ACTION, DATA_PATTERN, STATE, Info
 from latentarm.demonstrations.tables import TASK_COLUMN, Table, float_column, integer_column, read_table
 from latentarm.errors import UserError
@@ -21,10 +21,10 @@ def read_tasks(root: Path) -> list[str]:
     """
     path = root / "meta/tasks.parquet"
     table = read_table(path, ["task_index", TASK_COLUMN])
-    texts = table.column(TASK_COLUMN).to_pylist()
+    texts = ["; ".join(text) for text in _texts(table.column(TASK_COLUMN), path)]
     if integer_column(table, "task_index", path).tolist() != list(range(len(texts))):
         raise UserError(f"{path} is damaged: its tasks are not numbered from zero.")
-    return [str(text) for text in texts]
+    return texts
 
 
 def committed_episodes(root: Path, info: Info) -> Table:
@@ -46,7 +46,8 @@ def committed_episodes(root: Path, info: Info) -> Table:
         rows = pa.concat_tables(tables, promote_options="default").slice(0, info.episodes)
     except pa.ArrowException as error:
         raise UserError(f"{folder} is damaged: its tables do not fit each other.") from error
-    if integer_column(rows, "episode_index", folder).tolist() != list(range(info.episodes)):
+    index = integer_column(rows, "episode_index", folder)
+    if not np.array_equal(index, np.arange(info.episodes)):
         raise UserError(f"{folder} is damaged: it does not list the {info.episodes} episodes in order.")
     return rows
 
@@ -63,7 +64,6 @@ def read_episodes(root: Path, info: Info) -> tuple[Episode, ...]:
     """
     if info.episodes == 0:
         return ()
-    check_values(root / "meta/info.json", "it", info.frames * sum(feature.width for feature in info.features))
     rows = committed_episodes(root, info)
     folder = root / "meta/episodes"
     length, chunk, file = (
@@ -73,7 +73,7 @@ def read_episodes(root: Path, info: Info) -> tuple[Episode, ...]:
         raise UserError(
             f"{folder} is damaged: its episodes hold {length.sum()} samples and not {info.frames}."
         )
-    tasks = ["; ".join(names or ()) for names in rows.column("tasks").to_pylist()]
+    tasks = ["; ".join(names) for names in _texts(rows.column("tasks"), folder)]
     episodes: list[Episode] = []
     while len(episodes) < info.episodes:
         first = len(episodes)
@@ -82,6 +82,15 @@ def read_episodes(root: Path, info: Info) -> tuple[Episode, ...]:
         path = root / DATA_PATTERN.format(chunk_index=int(chunk[first]), file_index=int(file[first]))
         episodes += _read_file(path, info, first, length[first:stop].tolist(), tasks[first:stop])
     return tuple(episodes)
+
+
+def _texts(column: Any, path: Path) -> list[list[str]]:
+    """A column of texts, or of lists of them."""
+    try:
+        entries = column.to_pylist()
+    except UnicodeDecodeError as error:
+        raise UserError(f"{path} is damaged: its texts are not UTF-8.") from error
+    return [list(map(str, entry)) if isinstance(entry, list) else [str(entry)] for entry in entries]
 
 
 def _read_file(

@@ -5,6 +5,9 @@ appended) or ``data/demo_*/obs/joint_states`` (LIBERO), rad. There are no timest
 from the control frequency in the environment's arguments. Recorded actions in such files mostly
 are scaled end-effector displacements; they are kept only where the environment's arguments say
 that one arm was driven by a ``JOINT_VELOCITY`` controller, and are then scaled to rad/s.
+
+The HDF5 library is not hardened: a file that was damaged on purpose may end the whole process. Even
+then nothing is left at the destination of an import, which is written only after all was read.
 """
 
 import json
@@ -18,7 +21,7 @@ import h5py
 import numpy as np
 
 from latentarm.demonstrations.bounds import MAX_JSON_BYTES, check_values
-from latentarm.demonstrations.info import default_joint_names
+from latentarm.demonstrations.info import MAX_RATE_HZ, default_joint_names
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
 
@@ -52,14 +55,15 @@ def read_robomimic(
             numbers = sorted(int(demo[1]) for demo in demos if demo)
             if not numbers:
                 raise UserError(f"{source} has no demonstrations: there is no group data/demo_0.")
+            demonstrated = [_group(data, f"demo_{number}", source) for number in numbers]
+            check_values(source, "it", sum(_declared_count(demo) for demo in demonstrated))
             rate = _rate(arguments, source) if rate_hz is None else rate_hz
             scale = 1.0 if actions == "joint_velocity" else _velocity_scale(arguments)
             what = task or str(arguments.get("env_name", source.stem))
             episodes = tuple(
-                _episode(_group(data, f"demo_{number}", source), index, rate, what, scale, source)
-                for index, number in enumerate(numbers)
+                _episode(demo, index, rate, what, scale, source) for index, demo in enumerate(demonstrated)
             )
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, OverflowError) as error:
         raise UserError(f"{source} is not a whole HDF5 file; it is truncated or damaged.") from error
     width = episodes[0].state.shape[1]
     return Demonstrations(episodes=episodes, rate_hz=rate, joint_names=default_joint_names(width))
@@ -88,13 +92,23 @@ def _array(parent: h5py.Group, name: str, source: Path) -> FloatArray | None:
         return None
     if member.is_virtual or member.external or member.dtype.kind not in "fiu" or member.ndim != 2:
         raise UserError(f"{source}: {_path(parent, name)} is not a plain table of numbers.")
-    check_values(source, _path(parent, name), math.prod(member.shape))
     return np.asarray(member[()], dtype=np.float64)
+
+
+def _declared_count(demo: h5py.Group) -> int:
+    """Numbers that one demonstration's tables declare, whatever lies behind them."""
+    observations = _member(demo, "obs")
+    members = [_member(demo, "actions")]
+    if isinstance(observations, h5py.Group):
+        members += [_member(observations, key) for key in (*STATE_KEYS, SECOND_ARM_KEY)]
+    return sum(math.prod(member.shape or ()) for member in members if isinstance(member, h5py.Dataset))
 
 
 def _environment(data: h5py.Group, source: Path) -> Mapping[str, Any]:
     text = data.attrs.get("env_args", "{}")
     try:
+        if isinstance(text, bytes):
+            text = text.decode()
         if not isinstance(text, str) or len(text) > MAX_JSON_BYTES:
             raise ValueError
         arguments = json.loads(text)
@@ -112,7 +126,7 @@ def _nested(mapping: Mapping[str, Any], *keys: str) -> Any:
 
 def _rate(arguments: Mapping[str, Any], source: Path) -> float:
     rate = _nested(arguments, "env_kwargs", "control_freq")
-    if not isinstance(rate, int | float):
+    if isinstance(rate, bool) or not isinstance(rate, int | float) or abs(rate) >= MAX_RATE_HZ:
         raise UserError(f"{source} does not say its control frequency; say the sampling rate.")
     if not (math.isfinite(rate) and rate > 0):
         raise UserError(

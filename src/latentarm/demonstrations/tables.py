@@ -178,7 +178,7 @@ def read_table(path: Path, columns: Sequence[str] | None = None) -> Table:
         UserError: it is missing, damaged, too large, or lacks a column.
     """
     try:
-        with pq.ParquetFile(path, memory_map=False) as stored:
+        with pq.ParquetFile(path, page_checksum_verification=True) as stored:
             if columns is not None:
                 for name in columns:
                     if name not in stored.schema_arrow.names:
@@ -187,7 +187,7 @@ def read_table(path: Path, columns: Sequence[str] | None = None) -> Table:
             return stored.read(columns=None if columns is None else list(columns), use_threads=False)
     except FileNotFoundError as error:
         raise UserError(f"{path} is missing; the dataset is damaged.") from error
-    except (pa.ArrowException, OSError) as error:
+    except (pa.ArrowException, OSError, ValueError) as error:
         raise UserError(f"{path} is not a whole Parquet file; it is truncated or damaged.") from error
 
 

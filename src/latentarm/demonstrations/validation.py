@@ -48,6 +48,10 @@ def validate(demonstrations: Demonstrations, source: str, limits: JointLimits | 
             f"{source}: the states have {demonstrations.dof} joints, but the robot has {limits.lower.size}; "
             "choose the robot that was recorded."
         )
+    if not _is_text(demonstrations.robot):
+        raise UserError(
+            f"{source}: the robot's name {demonstrations.robot!a} is not text that a file can hold."
+        )
     if not demonstrations.episodes:
         raise UserError(f"{source}: there are no episodes in it.")
     for index, goal in enumerate(demonstrations.goals):
