@@ -1,1 +1,1 @@
-"""Algorithm 1 online: one step, its safety filters, the loop, the recorder. NumPy alone."""
+"""Algorithm 1 online, behind its safety filters: NumPy alone, neither torch nor MuJoCo."""

@@ -1,4 +1,4 @@
-"""What turns a person's inputs into commanded actions."""
+"""The contract of whatever turns a person's input into an action."""
 
 from abc import ABC, abstractmethod
 
@@ -6,44 +6,44 @@ from latentarm.types import Context, FloatArray
 
 
 class Controller(ABC):
-    """Maps inputs ``u`` to latent actions ``z`` and those to actions ``a_h``; keeps no state.
+    """Turns inputs into actions; stateless, and batched over the leading axes of its input.
 
-    ``u`` and ``z`` may carry leading batch axes; the context is one for all of them, so that many
-    candidate inputs can be asked about in one call.
+    Batches matter: the belief asks what *other* inputs would have done, and a simulated operator
+    asks the same of every mode.
     """
 
     @property
     @abstractmethod
     def modes(self) -> tuple[str, ...]:
-        """Names of the modes that the person can switch between, in order; at least one."""
+        """Names of the modes that the person switches between; at least one."""
 
     @property
     @abstractmethod
     def input_dim(self) -> int:
-        """Number of input axes d."""
+        """Number of axes d of the person's input."""
 
     @abstractmethod
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        """The alignment ``z = f(u, c)`` (equation 4).
+        """Alignment ``z = f(u, c)`` (Algorithm 1, line 6).
 
         Args:
             u: (..., d), each entry in [-1, 1].
-            context: state and belief.
+            context: the state and the belief, for one moment.
             mode: index into `modes`.
 
         Returns:
-            (..., d).
+            (..., d), ``z``.
         """
 
     @abstractmethod
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
-        """The commanded action ``a_h = phi(z, c)`` (equation 1).
+        """Decoding ``a_h = phi(z, c)`` (Algorithm 1, line 7).
 
         Args:
             z: (..., d).
-            context: state and belief.
+            context: the state and the belief, for one moment.
             mode: index into `modes`.
 
         Returns:
-            (..., n), rad/s.
+            (..., n), joint velocities, rad/s.
         """

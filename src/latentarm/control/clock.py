@@ -1,0 +1,58 @@
+"""Time for the loop: real, or simulated."""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from typing import final
+
+
+class Clock(ABC):
+    """A monotonic clock that can wait."""
+
+    @abstractmethod
+    def now_s(self) -> float:
+        """Time since some fixed moment, s; never goes back."""
+
+    @abstractmethod
+    def wait_until(self, time_s: float) -> None:
+        """Return at ``time_s``, or at once if that has passed."""
+
+
+@final
+class MonotonicClock(Clock):
+    """The machine's own monotonic clock."""
+
+    def now_s(self) -> float:
+        """See the base class."""
+        return time.monotonic()
+
+    def wait_until(self, time_s: float) -> None:
+        """See the base class."""
+        left = time_s - time.monotonic()
+        if left > 0.0:
+            time.sleep(left)
+
+
+@final
+class SimulatedClock(Clock):
+    """Time that passes only when somebody waits, so that a minute's drive takes as long as it computes.
+
+    Args:
+        followers: called with every span that passes, s, such as a simulated arm's ``advance``.
+    """
+
+    def __init__(self, followers: Sequence[Callable[[float], None]] = ()) -> None:
+        self._now_s = 0.0
+        self._followers = tuple(followers)
+
+    def now_s(self) -> float:
+        """See the base class."""
+        return self._now_s
+
+    def wait_until(self, time_s: float) -> None:
+        """See the base class."""
+        span = time_s - self._now_s
+        if span > 0.0:
+            self._now_s = time_s
+            for follower in self._followers:
+                follower(span)

@@ -1,0 +1,92 @@
+"""From a journal to the native dataset."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from latentarm.control.journal import JournalEpisode, read_journal
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations, Episode, FloatArray
+
+_SHORTEST = 2
+"""An episode with fewer samples has no motion in it."""
+
+
+def demonstrations_of(episodes: Sequence[JournalEpisode], *, source: str) -> Demonstrations:
+    """Recorded episodes as a dataset, with everything that a step decided as further features.
+
+    The command is the action. Further features: ``input.u``, ``latent.z``, ``action.human``,
+    ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief`` and
+    ``observation.environment_state`` (position and rotation matrix of every goal, row by row).
+    Time starts at each episode's first sample. What was cut short stays in the journal.
+
+    Args:
+        episodes: what `read_journal` returned.
+        source: what errors name, such as the journal's path.
+
+    Raises:
+        UserError: no episode is complete and long enough, or the episodes are of different robots or goals.
+    """
+    kept = [episode for episode in episodes if episode.complete and len(episode.records) >= _SHORTEST]
+    if not kept:
+        raise UserError(f"{source} holds no complete episode: end an episode while recording it.")
+    first = kept[0].header
+    names = [goal.name for goal in first.goals]
+    for episode in kept:
+        header = episode.header
+        if header.joint_names != first.joint_names or [goal.name for goal in header.goals] != names:
+            raise UserError(f"{source} holds episodes of different robots or goals: record them apart.")
+    return Demonstrations(
+        episodes=tuple(_episode(episode) for episode in kept),
+        rate_hz=first.rate_hz,
+        joint_names=first.joint_names,
+        robot=first.robot,
+        goals=first.goals,
+    )
+
+
+def export_journal(journal: Path, dataset: Path) -> int:
+    """Write a journal's complete episodes to a new dataset, which appears whole or not at all.
+
+    Args:
+        journal: what a `Recorder` wrote.
+        dataset: a folder that does not exist yet.
+
+    Returns:
+        How many episodes were left out because they were cut short.
+
+    Raises:
+        UserError: see `read_journal`, `demonstrations_of` and `write_dataset`.
+    """
+    # pyarrow is slow to load and needless for driving.
+    from latentarm.demonstrations.dataset import write_dataset
+
+    episodes = read_journal(journal)
+    demonstrations = demonstrations_of(episodes, source=str(journal))
+    write_dataset(demonstrations, dataset)
+    return len(episodes) - len(demonstrations.episodes)
+
+
+def _episode(recorded: JournalEpisode) -> Episode:
+    records, goals = recorded.records, recorded.header.goals
+    time_s = np.array([record.time_s for record in records])
+    extras: dict[str, FloatArray] = {
+        "input.u": np.stack([record.input for record in records]),
+        "latent.z": np.stack([record.latent for record in records]),
+        "action.human": np.stack([record.action_human for record in records]),
+        "action.assist": np.stack([record.action_assist for record in records]),
+        "assist.alpha": np.array([[record.alpha] for record in records]),
+        "mode": np.array([[float(record.mode)] for record in records]),
+    }
+    if goals:
+        extras["belief"] = np.stack([record.belief for record in records])
+        poses = [np.concatenate([goal.pose.position, goal.pose.rotation.ravel()]) for goal in goals]
+        extras["observation.environment_state"] = np.tile(np.concatenate(poses), (len(records), 1))
+    return Episode(
+        state=np.stack([record.state for record in records]),
+        timestamp=time_s - time_s[0],
+        action=np.stack([record.command.velocity for record in records]),
+        task=recorded.header.task,
+        extras=extras,
+    )

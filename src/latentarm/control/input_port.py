@@ -1,0 +1,101 @@
+"""Where inputs arrive from another thread: the latest wins, and only fresh ones count."""
+
+import math
+import secrets
+import threading
+from abc import ABC, abstractmethod
+from collections import OrderedDict
+from typing import final
+
+import numpy as np
+
+from latentarm.control.clock import Clock
+from latentarm.types import FloatArray, Input
+
+NONCE_LIFE_S = 0.2
+"""An input must echo a nonce that was issued no longer ago than this."""
+
+_KEPT_NONCES = 1024
+
+
+class InputSource(ABC):
+    """Gives the loop the person's newest input, without ever waiting for it."""
+
+    @abstractmethod
+    def latest(self, now_s: float) -> tuple[Input, float]:
+        """The newest input and its age, s.
+
+        Args:
+            now_s: the loop's clock.
+
+        Returns:
+            The input, and for how long it has been the newest; infinite where there is none.
+        """
+
+
+@final
+class InputPort(InputSource):
+    """Takes inputs from any thread; freshness is judged by this side's clock alone.
+
+    The loop's side issues nonces. Whoever sends inputs echoes the newest nonce that it has seen, with a
+    sequence number that grows. So a message that was held up anywhere on its way, there or back, is
+    recognised without believing a sender's time stamp. At most one input is kept. A press of the
+    mode switch is not lost when a later input replaces it before the loop has looked.
+
+    Args:
+        input_dim: number of axes d.
+        clock: the loop's clock.
+    """
+
+    def __init__(self, input_dim: int, clock: Clock) -> None:
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._issued: OrderedDict[str, float] = OrderedDict()
+        self._sequence = -1
+        self._u: FloatArray = np.zeros(input_dim)
+        self._switch = False
+        self._pressed = False
+        self._issued_s = self._received_s = -math.inf
+
+    def issue_nonce(self) -> str:
+        """A new nonce for the sender to echo, 128 random bits in hexadecimal."""
+        nonce = secrets.token_hex(16)
+        with self._lock:
+            self._issued[nonce] = self._clock.now_s()
+            while len(self._issued) > _KEPT_NONCES:
+                self._issued.popitem(last=False)
+        return nonce
+
+    def offer(self, given: Input, nonce: str, sequence: int) -> bool:
+        """Hand in an input.
+
+        Args:
+            given: what the person does.
+            nonce: the newest nonce that the sender has seen.
+            sequence: number of this input; must grow.
+
+        Returns:
+            Whether it was taken; False where it is stale.
+        """
+        u = np.array(given.u)
+        with self._lock:
+            now_s = self._clock.now_s()
+            issued_s = self._issued.get(nonce)
+            if issued_s is None or now_s - issued_s > NONCE_LIFE_S or sequence <= self._sequence:
+                return False
+            self._sequence = sequence
+            self._u = u
+            self._switch = bool(given.switch_mode)
+            self._pressed |= self._switch
+            self._issued_s, self._received_s = issued_s, now_s
+            return True
+
+    def latest(self, now_s: float) -> tuple[Input, float]:
+        """See the base class. An input whose nonce has grown too old in the meantime is infinitely old."""
+        with self._lock:
+            switch = self._switch or self._pressed
+            self._pressed = False
+            age_s = now_s - self._received_s
+            if now_s - self._issued_s > NONCE_LIFE_S:
+                age_s = math.inf
+            return Input(self._u, switch), max(age_s, 0.0)

@@ -1,0 +1,123 @@
+"""Reading a journal, whole or cut short."""
+
+import json
+import sqlite3
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, final
+
+import numpy as np
+
+from latentarm.control.recorder import EpisodeHeader, check_is_journal
+from latentarm.errors import UserError
+from latentarm.types import Command, Goal, Pose, StepRecord, Stop
+
+_PARTS = 8
+_MOST_FIGURES = 100_000
+
+
+@final
+@dataclass(frozen=True)
+class JournalEpisode:
+    """One recorded episode.
+
+    Attributes:
+        header: what its samples share.
+        records: its steps, in order.
+        complete: whether the recording was ended, rather than cut short.
+    """
+
+    header: EpisodeHeader
+    records: tuple[StepRecord, ...]
+    complete: bool
+
+
+def read_journal(path: Path) -> list[JournalEpisode]:
+    """Every episode of a journal, with every acknowledged sample; the file is not changed.
+
+    Args:
+        path: what a `Recorder` wrote. Its ``-wal`` file, where one is left, belongs to it.
+
+    Returns:
+        The episodes; those cut short by a kill have ``complete`` False.
+
+    Raises:
+        UserError: there is no such file, it is damaged, or it is no journal.
+    """
+    if not path.is_file():
+        raise UserError(f"There is no journal {path}.")
+    try:
+        with closing(sqlite3.connect(f"file:{_quoted(path)}?mode=ro", uri=True)) as database:
+            check_is_journal(database, path, may_be_empty=False)
+            (verdict,) = database.execute("PRAGMA quick_check(1)").fetchone()
+            if verdict != "ok":
+                raise UserError(f"The journal {path} is damaged ({verdict}): restore it from a copy.")
+            rows = database.execute("SELECT id, about, complete FROM episodes ORDER BY id").fetchall()
+            return [_episode(database, path, *row) for row in rows]
+    except sqlite3.Error as error:
+        raise UserError(f"The journal {path} cannot be read ({error}): restore it from a copy.") from error
+
+
+def _quoted(path: Path) -> str:
+    """The path as SQLite's URIs want it."""
+    return str(path.absolute()).replace("%", "%25").replace("?", "%3f").replace("#", "%23")
+
+
+def _episode(
+    database: sqlite3.Connection, path: Path, number: int, about: str, complete: int
+) -> JournalEpisode:
+    samples = database.execute(
+        "SELECT figures, stop, limited_by FROM samples WHERE episode = ? ORDER BY number", (number,)
+    ).fetchall()
+    try:
+        header = _header(json.loads(about))
+        records = tuple(_record(*sample) for sample in samples)
+    except (ValueError, KeyError, TypeError) as error:
+        raise UserError(f"Episode {number} of the journal {path} is damaged ({error}).") from error
+    return JournalEpisode(header, records, bool(complete))
+
+
+def _header(about: dict[str, Any]) -> EpisodeHeader:
+    return EpisodeHeader(
+        robot=str(about["robot"]),
+        joint_names=tuple(str(name) for name in about["joint_names"]),
+        rate_hz=float(about["rate_hz"]),
+        task=str(about["task"]),
+        modes=tuple(str(mode) for mode in about["modes"]),
+        goals=tuple(_goal(goal) for goal in about["goals"]),
+    )
+
+
+def _goal(goal: dict[str, Any]) -> Goal:
+    pose = Pose(np.array(goal["position"], dtype=np.float64), np.array(goal["rotation"], dtype=np.float64))
+    return Goal(str(goal["name"]), np.array(goal["configuration"], dtype=np.float64), pose)
+
+
+def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:
+    values = np.frombuffer(figures, dtype=np.float64)
+    widths = values[:_PARTS]
+    if len(widths) < _PARTS or not (widths >= 0).all() or widths.sum() != len(values) - _PARTS:
+        raise ValueError("a sample has the wrong length")
+    if len(values) > _MOST_FIGURES:
+        raise ValueError("a sample is too long")
+    parts = np.split(values[_PARTS:], np.cumsum(widths.astype(np.int64))[:-1])
+    scalars, state, given, latent, human, assist, belief, velocity = parts
+    time_s, alpha, mode, duration_s = scalars.tolist()
+    return StepRecord(
+        time_s=time_s,
+        state=state,
+        input=given,
+        latent=latent,
+        action_human=human,
+        action_assist=assist,
+        alpha=alpha,
+        belief=belief,
+        mode=int(mode),
+        command=Command(
+            velocity=velocity,
+            duration_s=duration_s,
+            stop=None if stop is None else Stop(stop),
+            limited_by=tuple(limited_by.split(",")) if limited_by else (),
+        ),
+    )

@@ -1,0 +1,139 @@
+"""The fixed-rate loop: input in, one step, command out."""
+
+import math
+import queue
+import threading
+from collections.abc import Callable, Sequence
+from typing import final
+
+from latentarm.control.clock import Clock
+from latentarm.control.deadlines import DeadlineLog, DeadlineStatistics
+from latentarm.control.input_port import InputSource
+from latentarm.control.step import Step
+from latentarm.robots.arm import Arm
+from latentarm.types import StepRecord, Stop
+
+
+@final
+class ControlLoop:
+    """Runs a `Step` at a fixed rate, in the thread that calls `run`.
+
+    Tick k is due at ``start + k period``: a late tick does not shift the ones after it. A tick that begins
+    after the last command has run out finds an arm that has already stopped by itself: the watchdog
+    stops it for good, until the person enables it again. Ticks that were missed altogether are
+    skipped, never caught up.
+
+    The command is sent before observers see the record, so that a slow recorder costs slack, not lag.
+
+    `enable`, `stop` and `finish` may be called from any thread. They wait for nothing; a stop is
+    looked at first in the next tick, whatever else is queued.
+
+    Args:
+        step: Algorithm 1.
+        arm: what is driven.
+        source: where inputs come from.
+        clock: the time.
+        observers: called with every record, in the loop's thread.
+    """
+
+    def __init__(
+        self,
+        step: Step,
+        arm: Arm,
+        source: InputSource,
+        clock: Clock,
+        observers: Sequence[Callable[[StepRecord], None]] = (),
+    ) -> None:
+        self._step = step
+        self._arm = arm
+        self._source = source
+        self._clock = clock
+        self._observers = tuple(observers)
+        self._period_s = step.dt_s
+        self._log = DeadlineLog(self._period_s)
+        self._start_s = self._sent_s = 0.0
+        self._next = 0
+        self._finished = threading.Event()
+        self._stop_reasons: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._enable_asked = threading.Event()
+        self._refusal: Stop | None = None
+
+    @property
+    def refusal(self) -> Stop | None:
+        """Why the newest `enable` was refused, or None."""
+        return self._refusal
+
+    def enable(self) -> None:
+        """The person's explicit action; carried out after the next tick's input is known."""
+        self._enable_asked.set()
+
+    def stop(self, reason: str) -> None:
+        """Stop the arm, from the next tick on.
+
+        Args:
+            reason: one short sentence for the person.
+        """
+        self._enable_asked.clear()
+        self._stop_reasons.put(reason)
+
+    def finish(self) -> None:
+        """Stop the arm, and return from `run` once it is at rest."""
+        self._finished.set()
+
+    def statistics(self) -> DeadlineStatistics:
+        """How punctual the loop has been."""
+        return self._log.statistics()
+
+    def run(self, ticks: int | None = None) -> DeadlineStatistics:
+        """Run for so many ticks, or until `finish`; then bring the arm to rest.
+
+        Args:
+            ticks: how many, or None for no end.
+
+        Returns:
+            How punctual the loop was.
+        """
+        self._step.reset(self._arm.state())
+        self._start_s = self._sent_s = self._clock.now_s()
+        self._next = 0
+        try:
+            while not self._finished.is_set() and (ticks is None or self._log.ticks < ticks):
+                self._tick(self._observers)
+            self._come_to_rest(self._observers)
+        finally:
+            # Also when an observer or the person's Ctrl-C has broken in: ramped, never a step.
+            try:
+                self._come_to_rest(())
+            finally:
+                self._arm.stop()
+        return self.statistics()
+
+    def _come_to_rest(self, observers: Sequence[Callable[[StepRecord], None]]) -> None:
+        self._step.stop("The loop has ended.")
+        while not self._step.at_rest:
+            self._tick(observers)
+
+    def _tick(self, observers: Sequence[Callable[[StepRecord], None]]) -> None:
+        """Wait for the next tick, and do it."""
+        due_s = self._start_s + self._next * self._period_s
+        self._clock.wait_until(due_s)
+        now_s = self._clock.now_s()
+        overrun = now_s - self._sent_s > self._step.hold_s
+        if overrun:
+            self._arm.stop()
+            self._step.halted("The loop was too late; the arm has stopped by itself.")
+        while not self._stop_reasons.empty():
+            self._step.stop(self._stop_reasons.get())
+        given, age_s = self._source.latest(now_s)
+        record = self._step(given, age_s, self._arm.state(), now_s)
+        self._arm.send(record.command)
+        self._sent_s = self._clock.now_s()
+        self._log.add(now_s - due_s, self._sent_s - due_s, overrun=overrun)
+        if self._enable_asked.is_set():
+            self._enable_asked.clear()
+            self._refusal = self._step.enable()
+        for observe in observers:
+            observe(record)
+        # The next tick whose due time lies ahead.
+        elapsed_s = self._clock.now_s() - self._start_s
+        self._next = max(self._next + 1, math.ceil(elapsed_s / self._period_s - 1e-9))

@@ -1,0 +1,219 @@
+"""The live journal of a drive: SQLite, readable after a kill at any moment."""
+
+import json
+import sqlite3
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import final
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.types import FloatArray, Goal, StepRecord
+
+SCHEMA_VERSION = 1
+
+_SCHEMA = """
+CREATE TABLE episodes (
+    id INTEGER PRIMARY KEY,
+    about TEXT NOT NULL,
+    complete INTEGER NOT NULL DEFAULT 0
+);
+CREATE TABLE samples (
+    episode INTEGER NOT NULL REFERENCES episodes (id),
+    number INTEGER NOT NULL,
+    figures BLOB NOT NULL,
+    stop TEXT,
+    limited_by TEXT NOT NULL,
+    PRIMARY KEY (episode, number)
+) WITHOUT ROWID;
+"""
+
+
+@final
+@dataclass(frozen=True)
+class EpisodeHeader:
+    """What all samples of an episode share.
+
+    Attributes:
+        robot: name or model path of the robot.
+        joint_names: n names.
+        rate_hz: nominal rate of the loop.
+        task: what was done, in words.
+        goals: the discrete goals ``G``.
+        modes: names of the controller's modes.
+    """
+
+    robot: str
+    joint_names: tuple[str, ...]
+    rate_hz: float
+    task: str = ""
+    goals: tuple[Goal, ...] = ()
+    modes: tuple[str, ...] = ("",)
+
+
+@final
+class Recorder:
+    """Writes every step of a drive to a journal, one small transaction each.
+
+    `record` returns when its sample is acknowledged: committed to the write-ahead log, and so in the
+    operating system's hands. A killed process loses none of them. Against a power cut the file stays
+    readable and whole episodes are safe: `end_episode` flushes everything to the disk before it marks the
+    episode complete. Samples of the episode under way may then be lost from its end.
+
+    Nothing waits for the disk between `begin_episode` and `end_episode` (the log is not folded into
+    the file meanwhile), so a commit costs tens of microseconds and the loop can record in its own
+    thread.
+
+    Args:
+        path: the journal, a new file or one that `Recorder` wrote.
+
+    Raises:
+        UserError: the file cannot be written, or is no journal.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._episode: int | None = None
+        self._number = 0
+        self._widths: tuple[int, ...] = ()
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._database = sqlite3.connect(path, isolation_level=None, timeout=1.0, check_same_thread=False)
+        except (OSError, sqlite3.Error) as error:
+            raise _unwritable(path, error) from error
+        try:
+            self._open()
+        except sqlite3.Error as error:
+            self._database.close()
+            raise _unwritable(path, error) from error
+        except UserError:
+            self._database.close()
+            raise
+
+    def _open(self) -> None:
+        check_is_journal(self._database, self._path, may_be_empty=True)
+        self._database.execute("PRAGMA journal_mode = WAL")
+        self._database.execute("PRAGMA synchronous = FULL")
+        self._database.execute("PRAGMA wal_autocheckpoint = 0")
+        (version,) = self._database.execute("PRAGMA user_version").fetchone()
+        if version == 0:
+            self._database.executescript(
+                f"BEGIN IMMEDIATE; {_SCHEMA} PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;"
+            )
+
+    def begin_episode(self, header: EpisodeHeader) -> None:
+        """Begin an episode; one that is still under way stays incomplete.
+
+        Raises:
+            UserError: the journal cannot be written.
+        """
+        about = {
+            "robot": header.robot,
+            "joint_names": list(header.joint_names),
+            "rate_hz": header.rate_hz,
+            "task": header.task,
+            "modes": list(header.modes),
+            "goals": [
+                {
+                    "name": goal.name,
+                    "configuration": goal.configuration.tolist(),
+                    "position": goal.pose.position.tolist(),
+                    "rotation": goal.pose.rotation.tolist(),
+                }
+                for goal in header.goals
+            ],
+        }
+        try:
+            cursor = self._database.execute("INSERT INTO episodes (about) VALUES (?)", (json.dumps(about),))
+            self._database.execute("PRAGMA synchronous = NORMAL")
+        except sqlite3.Error as error:
+            raise _unwritable(self._path, error) from error
+        self._episode = cursor.lastrowid
+        self._number = 0
+        self._widths = ()
+
+    def record(self, record: StepRecord) -> None:
+        """Write one step; it is acknowledged when this returns.
+
+        Raises:
+            UserError: the journal cannot be written (the disk is full), or no episode is under way, or
+                the record's shapes differ from those before.
+        """
+        if self._episode is None:
+            raise UserError(f"{self._path} has no episode under way: begin one before recording.")
+        parts = figures_of(record)
+        widths = tuple(len(part) for part in parts)
+        if self._number and widths != self._widths:
+            raise UserError(f"A record for {self._path} has other shapes than those before it.")
+        stop = record.command.stop
+        row = (
+            self._episode,
+            self._number,
+            np.concatenate([np.array(widths, dtype=np.float64), *parts]).tobytes(),
+            None if stop is None else stop.reason,
+            ",".join(record.command.limited_by),
+        )
+        try:
+            self._database.execute("INSERT INTO samples VALUES (?, ?, ?, ?, ?)", row)
+        except sqlite3.Error as error:
+            raise _unwritable(self._path, error) from error
+        self._widths = widths
+        self._number += 1
+
+    def end_episode(self) -> None:
+        """Flush everything to the disk and mark the episode complete.
+
+        Raises:
+            UserError: the journal cannot be written, or no episode is under way.
+        """
+        if self._episode is None:
+            raise UserError(f"{self._path} has no episode under way: begin one before ending it.")
+        try:
+            # FULL: this commit waits until it, and so every sample before it in the log, is on the disk.
+            self._database.execute("PRAGMA synchronous = FULL")
+            self._database.execute("UPDATE episodes SET complete = 1 WHERE id = ?", (self._episode,))
+            self._database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        except sqlite3.Error as error:
+            raise _unwritable(self._path, error) from error
+        self._episode = None
+
+    def close(self) -> None:
+        """Close the journal; an episode that is under way stays incomplete."""
+        self._episode = None
+        with suppress(sqlite3.Error):  # everything acknowledged is written already
+            self._database.close()
+
+
+def figures_of(record: StepRecord) -> Sequence[FloatArray]:
+    """The numbers of a record, in the journal's order: times and scalars first, then arrays."""
+    return (
+        np.array([record.time_s, record.alpha, float(record.mode), record.command.duration_s]),
+        record.state,
+        record.input,
+        record.latent,
+        record.action_human,
+        record.action_assist,
+        record.belief,
+        record.command.velocity,
+    )
+
+
+def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: bool) -> None:
+    """See that an open database is a journal of ours.
+
+    Raises:
+        UserError: it is not, or of a later version.
+    """
+    (version,) = database.execute("PRAGMA user_version").fetchone()
+    (tables,) = database.execute("SELECT count(*) FROM sqlite_master").fetchone()
+    if version == SCHEMA_VERSION or (may_be_empty and version == 0 and tables == 0):
+        return
+    raise UserError(f"{path} is not a journal of this program's version: choose another file.")
+
+
+def _unwritable(path: Path, error: OSError | sqlite3.Error) -> UserError:
+    reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+    return UserError(f"The journal {path} cannot be written: {reason}.")

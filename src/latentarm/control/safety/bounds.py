@@ -1,0 +1,113 @@
+"""The configured limits together with a robot and the loop's period: what the filters work with."""
+
+import math
+from typing import final
+
+import numpy as np
+
+from latentarm.control.safety.brake import Brake
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
+
+STOPPED_WITHIN_S = 0.15
+"""From the last fresh input to a command of zero."""
+
+BUFFER_M = 1e-3
+"""Shaping aims this far short of every distance, so that the check behind it rarely has to act."""
+
+BUFFER_RAD = 2e-3
+"""The same for joint positions."""
+
+
+@final
+class Bounds:
+    """Limits in joint space, and the times that follow from them.
+
+    Args:
+        config: what the person set.
+        robot: whose hardware limits hold.
+        dt_s: the loop's period, s.
+
+    Attributes:
+        config: as given.
+        dt_s: as given.
+        dof: number of joints n.
+        speed: largest speed of a joint, rad/s.
+        lower: (n,), lowest joint position, margin taken off, rad.
+        upper: (n,), highest joint position, margin taken off, rad.
+        soft_limits: (2, n), where shaping stops the joints: lowest, highest, rad.
+        acceleration: (n,), for ordinary motion, rad/s².
+        jerk: (n,), for ordinary motion, rad/s³.
+        stop_acceleration: (n,), for stops, rad/s².
+        stop_jerk: (n,), for stops, rad/s³.
+        hold_s: how long one command lasts, s.
+        stop_s: the longest stop, s.
+        reach_s: an upper bound of the distance that a command and its brake cover, over its speed, s.
+        damping_per_s: approach speed per distance left; ordinary motion can always slow down this fast.
+        nearest_m: distance that shaping keeps from obstacles and from the arm itself, m.
+        horizon_s: a distance that a speed does not use up in this time does not limit that speed, s.
+
+    Raises:
+        UserError: a figure is above what the hardware can do, or stopping takes too long.
+    """
+
+    def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
+        if not (math.isfinite(dt_s) and 0.001 <= dt_s <= 0.05):
+            raise UserError(
+                f"The loop's period is {dt_s} s: it must be from 0.001 to 0.05 s (1000 to 20 Hz)."
+            )
+        hardware = robot.limits
+        names = robot.joint_names
+        slowest = int(np.argmin(hardware.velocity))
+        if config.joint_speed > hardware.velocity[slowest]:
+            raise UserError(
+                f"The safety limit joint_speed is {config.joint_speed:g} rad/s, above the"
+                f" {hardware.velocity[slowest]:g} rad/s that joint {names[slowest]!r} of {robot.name} can do:"
+                " set it lower."
+            )
+        if config.link_speed > robot.tool_speed_limit:
+            raise UserError(
+                f"The safety limit link_speed is {config.link_speed:g} m/s, above the"
+                f" {robot.tool_speed_limit:g} m/s that {robot.name} can do: set it lower."
+            )
+        self.config = config
+        self.dt_s = dt_s
+        self.dof = robot.dof
+        self.speed = config.joint_speed
+        self.lower = hardware.lower + config.joint_margin
+        self.upper = hardware.upper - config.joint_margin
+        for joint in np.flatnonzero(self.lower + 2 * BUFFER_RAD >= self.upper):
+            raise UserError(
+                f"The safety limit joint_margin is {config.joint_margin:g} rad, which leaves joint"
+                f" {names[joint]!r} of {robot.name} no room between its limits: set it lower."
+            )
+        self.soft_limits = np.stack([self.lower + BUFFER_RAD, self.upper - BUFFER_RAD])
+        self.acceleration = config.acceleration_fraction * hardware.acceleration
+        self.jerk = config.jerk_fraction * hardware.jerk
+        self.stop_acceleration = config.stop_fraction * hardware.acceleration
+        self.stop_jerk = config.stop_fraction * hardware.jerk
+        self.hold_s = config.command_periods * dt_s
+        self.stop_s = self._longest_stop_s()
+        needed = config.input_timeout_s + dt_s + self.stop_s
+        if needed > STOPPED_WITHIN_S:
+            raise UserError(
+                f"From the last fresh input the command would take {1000 * needed:.0f} ms to reach zero"
+                f" (input_timeout_s {1000 * config.input_timeout_s:.0f} ms, one period {1000 * dt_s:.0f} ms,"
+                f" stopping {1000 * self.stop_s:.0f} ms), but only {1000 * STOPPED_WITHIN_S:.0f} ms are safe:"
+                " lower joint_speed or input_timeout_s, or raise stop_fraction or the rate."
+            )
+        self.reach_s = self.hold_s + self.stop_s
+        self.damping_per_s = float((self.acceleration / self.speed).min())
+        self.nearest_m = config.clearance + BUFFER_M
+        self.horizon_s = max(1.0 / self.damping_per_s, self.reach_s)
+
+    def brake(self, velocity: np.ndarray, acceleration: np.ndarray) -> Brake:
+        """The stop from a velocity (n,), rad/s, and an acceleration (n,), rad/s²."""
+        return Brake(velocity, acceleration, self.stop_acceleration, self.stop_jerk)
+
+    def _longest_stop_s(self) -> float:
+        """All joints at full speed is the longest phase two, full deceleration the longest phase one."""
+        full = np.full(self.dof, self.speed)
+        settle = float((self.stop_acceleration / self.stop_jerk).max())
+        return settle + self.brake(full, np.zeros(self.dof)).ramp_s

@@ -1,0 +1,38 @@
+"""Room between the arm and everything else, itself included."""
+
+from typing import final
+
+import numpy as np
+
+from latentarm.control.safety.bounds import BUFFER_M
+from latentarm.control.safety.filter import SafetyFilter, Situation
+from latentarm.control.safety.halfspaces import slide, unbent
+from latentarm.types import FloatArray
+
+
+@final
+class Clearance(SafetyFilter):
+    """Damps the approach to obstacles and to the arm itself with the distance left; the rest goes through.
+
+    Where a distance is already too small, only motion that does not make it smaller is left.
+    """
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "clearance"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
+        """See the base class."""
+        contacts = situation.contacts(np.abs(velocity))
+        if contacts is None:
+            return velocity
+        bounds = situation.bounds
+        rows = contacts.row.reshape(-1, bounds.dof)
+        room = np.maximum(contacts.height.ravel() - bounds.config.clearance, 0.0)
+        floor = -bounds.damping_per_s * np.maximum(room - BUFFER_M, 0.0)
+        velocity = slide(velocity, rows, floor)
+        speed = np.abs(velocity)
+        bend = situation.surroundings.proximity.curvature[contacts.pair] @ speed @ speed
+        share = unbent(velocity, rows, room, np.repeat(bend, 2), bounds.reach_s)
+        return velocity if share == 1.0 else share * velocity

@@ -1,0 +1,123 @@
+"""The limits that a person sets, checked like any other input."""
+
+import math
+from dataclasses import dataclass, fields
+from typing import final
+
+import numpy as np
+
+from latentarm.control.safety.obstacles import checked_obstacle
+from latentarm.errors import UserError
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.types import FloatArray
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """A box, along the axes of the base frame, that the tool and every link point must stay in.
+
+    Attributes:
+        lower: (3,), m.
+        upper: (3,), m.
+
+    Raises:
+        UserError: a bound is not a finite number, or lower is not below upper.
+    """
+
+    lower: FloatArray
+    upper: FloatArray
+
+    def __post_init__(self) -> None:
+        for name in ("lower", "upper"):
+            given = np.asarray(getattr(self, name))
+            if given.shape != (3,) or given.dtype.kind not in "iuf" or not np.isfinite(given).all():
+                raise UserError(f"The workspace's {name} corner must be three finite numbers in m.")
+            value = given.astype(np.float64)
+            value.flags.writeable = False
+            object.__setattr__(self, name, value)
+        if not (self.lower < self.upper).all():
+            raise UserError("The workspace's lower corner must be below its upper corner on every axis.")
+
+
+@final
+@dataclass(frozen=True)
+class SafetyConfig:
+    """How fast and how close the arm may go; far below what its hardware can do.
+
+    Figures that need no robot are checked here; `latentarm.control.safety.bounds.Bounds` checks the
+    rest against the hardware when a robot and the loop's period are known.
+
+    Attributes:
+        joint_speed: largest speed of a joint, rad/s.
+        link_speed: largest speed of any point of the arm, m/s.
+        acceleration_fraction: share of the hardware's acceleration for ordinary motion, in (0, 1].
+        jerk_fraction: share of the hardware's jerk for ordinary motion, in (0, 1].
+        stop_fraction: share of the hardware's acceleration and jerk for a stop, in (0, 1]. A stop is
+            ramped too, only harder.
+        joint_margin: distance kept from the hardware's joint limits, rad.
+        clearance: distance kept from obstacles and from the arm itself, m.
+        input_timeout_s: how long the last fresh input counts, s. With the stopping ramp and one
+            period of the loop it must fit into 0.15 s.
+        dead_zone: inputs no longer than this are zero, in [0, 0.5].
+        command_periods: for how many periods of the loop one command lasts; past that the arm stops
+            by itself. At least 1.5, so that an ordinary delay does not stop it.
+        workspace: where the arm may be, or None for anywhere.
+        obstacles: what the arm must keep clear of.
+
+    Raises:
+        UserError: a figure is not a number, not finite, or out of its range.
+    """
+
+    joint_speed: float = 0.5
+    link_speed: float = 0.25
+    acceleration_fraction: float = 0.2
+    jerk_fraction: float = 0.2
+    stop_fraction: float = 0.8
+    joint_margin: float = 0.1
+    clearance: float = 0.02
+    input_timeout_s: float = 0.04
+    dead_zone: float = 0.02
+    command_periods: float = 2.5
+    workspace: Workspace | None = None
+    obstacles: tuple[Obstacle, ...] = ()
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            if field.name in _RANGES:
+                object.__setattr__(self, field.name, _figure(field.name, getattr(self, field.name)))
+        if self.stop_fraction < max(self.acceleration_fraction, self.jerk_fraction):
+            raise UserError(
+                "The safety limit stop_fraction must be at least acceleration_fraction and jerk_fraction:"
+                " a stop may not be softer than ordinary motion."
+            )
+        object.__setattr__(self, "obstacles", tuple(checked_obstacle(item) for item in self.obstacles))
+
+
+_RANGES: dict[str, tuple[float, float, str]] = {
+    # name: (above or at, at most, unit); a lowest figure of 0 is itself refused except where noted below
+    "joint_speed": (0.0, 10.0, "rad/s"),
+    "link_speed": (0.0, 5.0, "m/s"),
+    "acceleration_fraction": (0.0, 1.0, "of the hardware's"),
+    "jerk_fraction": (0.0, 1.0, "of the hardware's"),
+    "stop_fraction": (0.0, 1.0, "of the hardware's"),
+    "joint_margin": (0.0, 1.0, "rad"),
+    "clearance": (0.0, 0.5, "m"),
+    "input_timeout_s": (0.0, 0.15, "s"),
+    "dead_zone": (0.0, 0.5, "of full input"),
+    "command_periods": (1.5, 10.0, "periods"),
+}
+_MAY_TOUCH = ("dead_zone", "command_periods")
+
+
+def _figure(name: str, value: object) -> float:
+    """The figure as a float inside its range, or a `UserError` that names it."""
+    lowest, highest, unit = _RANGES[name]
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        raise UserError(f"The safety limit {name} must be a number, not {value!r}.")
+    figure = float(value)
+    inside = lowest <= figure <= highest if name in _MAY_TOUCH else lowest < figure <= highest
+    if not math.isfinite(figure) or not inside:
+        bounds = f"{'at least' if name in _MAY_TOUCH else 'above'} {lowest:g} and at most {highest:g} {unit}"
+        raise UserError(f"The safety limit {name} is {figure:g}: it must be {bounds}.")
+    return figure

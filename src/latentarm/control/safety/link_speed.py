@@ -1,0 +1,25 @@
+"""No point of the arm faster than allowed."""
+
+from typing import final
+
+from latentarm.control.safety.filter import SafetyFilter, Situation
+from latentarm.types import FloatArray
+
+HEADROOM = 0.95
+"""Shaping aims for this share of the limit: the rest is for what turning links add before the next tick."""
+
+
+@final
+class LinkSpeed(SafetyFilter):
+    """Slows the whole arm down until no point on any link, nor the tool, is too fast."""
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "link speed"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
+        """See the base class."""
+        limit = HEADROOM * situation.bounds.config.link_speed
+        fastest = float(situation.placement.speeds(velocity).max(initial=0.0))
+        return velocity if fastest <= limit else velocity * (limit / fastest)

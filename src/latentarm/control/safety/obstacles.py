@@ -1,0 +1,100 @@
+"""Obstacles as the safety filters take them: checked, and the usual ones by name."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+from latentarm.types import FloatArray
+
+_FAR_M = 100.0
+"""Coordinates beyond this are a mistake in units, not an obstacle."""
+
+
+def table(height: float) -> HalfSpace:
+    """A table top (or floor) that fills everything below ``height``, m, in the base frame.
+
+    Raises:
+        UserError: the height is not finite.
+    """
+    plane = HalfSpace(name="table", point=np.array([0.0, 0.0, height]), normal=np.array([0.0, 0.0, 1.0]))
+    checked_obstacle(plane)
+    return plane
+
+
+def checked_obstacle(obstacle: Obstacle) -> Obstacle:
+    """The obstacle with float arrays, or a sentence about what is wrong with it.
+
+    Raises:
+        UserError: a figure is not finite or absurd, a size is not positive, a normal is not of unit
+            length, or a rotation is not one.
+    """
+    name = obstacle.name
+    match obstacle:
+        case HalfSpace():
+            return replace(
+                obstacle, point=_point(name, "point", obstacle.point), normal=_unit(name, obstacle.normal)
+            )
+        case Sphere():
+            return replace(
+                obstacle,
+                centre=_point(name, "centre", obstacle.centre),
+                radius=_size(name, "radius", obstacle.radius),
+            )
+        case Capsule():
+            return replace(
+                obstacle,
+                start=_point(name, "start", obstacle.start),
+                end=_point(name, "end", obstacle.end),
+                radius=_size(name, "radius", obstacle.radius),
+            )
+        case Box():
+            extents = _point(name, "half_extents", obstacle.half_extents)
+            for extent in extents:
+                _size(name, "half_extents", float(extent))
+            return replace(
+                obstacle,
+                centre=_point(name, "centre", obstacle.centre),
+                rotation=_rotation(name, obstacle.rotation),
+                half_extents=extents,
+            )
+
+
+def _numbers(name: str, field: str, value: FloatArray, shape: tuple[int, ...]) -> FloatArray:
+    given = np.asarray(value)
+    if given.shape != shape or given.dtype.kind not in "iuf" or not np.isfinite(given).all():
+        count = "×".join(map(str, shape))
+        raise UserError(f"The obstacle {name!r} needs {count} finite numbers as its {field}.")
+    return given.astype(np.float64)
+
+
+def _point(name: str, field: str, value: FloatArray) -> FloatArray:
+    point = _numbers(name, field, value, (3,))
+    if np.abs(point).max() > _FAR_M:
+        raise UserError(f"The obstacle {name!r} has its {field} over {_FAR_M:g} m away: give metres.")
+    return point
+
+
+def _unit(name: str, value: FloatArray) -> FloatArray:
+    normal = _numbers(name, "normal", value, (3,))
+    if abs(float(normal @ normal) - 1.0) > 1e-6:
+        raise UserError(f"The obstacle {name!r} needs a normal of length 1.")
+    return normal / np.sqrt(normal @ normal)
+
+
+def _rotation(name: str, value: FloatArray) -> FloatArray:
+    rotation = _numbers(name, "rotation", value, (3, 3))
+    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0.0:
+        raise UserError(f"The obstacle {name!r} needs a rotation matrix as its rotation.")
+    return rotation
+
+
+def _size(name: str, field: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        raise UserError(f"The obstacle {name!r} needs a number as its {field}.")
+    if not 0.0 < value <= _FAR_M:
+        raise UserError(
+            f"The obstacle {name!r} has {field} {value}: it must be above 0 and at most {_FAR_M:g} m."
+        )
+    return float(value)

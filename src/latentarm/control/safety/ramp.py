@@ -1,0 +1,66 @@
+"""No jumps: acceleration and jerk stay within their limits."""
+
+from typing import final
+
+import numpy as np
+from ruckig import ControlInterface, InputParameter, Result, Ruckig, Synchronization, Trajectory
+
+from latentarm.control.safety.bounds import Bounds
+from latentarm.control.safety.filter import SafetyFilter, Situation
+from latentarm.types import FloatArray, Stop
+
+
+@final
+class Ramp(SafetyFilter):
+    """Leads from the last command towards the wanted one at limited acceleration and jerk.
+
+    All joints arrive together: in proportion where the way is straight, so that no mix of old and new
+    velocity moves any point faster than the faster of the two.
+
+    Args:
+        bounds: the limits.
+    """
+
+    def __init__(self, bounds: Bounds) -> None:
+        self._dt_s = bounds.dt_s
+        self._generator = Ruckig(bounds.dof)
+        self._trajectory = Trajectory(bounds.dof)
+        wanted = InputParameter(bounds.dof)
+        wanted.control_interface = ControlInterface.Velocity
+        wanted.synchronization = Synchronization.Phase
+        wanted.max_acceleration = bounds.acceleration.tolist()
+        wanted.max_jerk = bounds.jerk.tolist()
+        self._wanted = wanted
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "ramp"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
+        """See the base class."""
+        ramped = self.ramped(velocity, situation.velocity, situation.acceleration)
+        return ramped if isinstance(ramped, Stop) else ramped[0]
+
+    def ramped(
+        self, target: FloatArray, velocity: FloatArray, acceleration: FloatArray
+    ) -> tuple[FloatArray, FloatArray] | Stop:
+        """Velocity and acceleration one period later.
+
+        Args:
+            target: (n,), what is wanted, rad/s.
+            velocity: (n,), the last command, rad/s.
+            acceleration: (n,), at the last command, rad/s².
+
+        Returns:
+            Velocity (n,), rad/s, and acceleration (n,), rad/s²; or a stop where no ramp exists.
+        """
+        wanted = self._wanted
+        wanted.current_velocity = velocity.tolist()
+        wanted.current_acceleration = acceleration.tolist()
+        wanted.target_velocity = target.tolist()
+        result = self._generator.calculate(wanted, self._trajectory)
+        if result not in (Result.Working, Result.Finished):
+            return Stop("No smooth way to the wanted velocity was found.")
+        _, velocities, accelerations = self._trajectory.at_time(self._dt_s)
+        return np.array(velocities), np.array(accelerations)

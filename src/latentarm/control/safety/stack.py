@@ -1,0 +1,154 @@
+"""The filters in their order, and the check behind them."""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from latentarm.control.safety.body import Body
+from latentarm.control.safety.bounds import Bounds
+from latentarm.control.safety.brake import Brake
+from latentarm.control.safety.clearance import Clearance
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.safety.filter import SafetyFilter, Situation, Surroundings
+from latentarm.control.safety.finite import Finite
+from latentarm.control.safety.freshness import Freshness
+from latentarm.control.safety.guard import Guard
+from latentarm.control.safety.joint_position import JointPosition
+from latentarm.control.safety.joint_velocity import JointVelocity
+from latentarm.control.safety.link_speed import LinkSpeed
+from latentarm.control.safety.ramp import Ramp
+from latentarm.control.safety.workspace import WorkspaceBox
+from latentarm.robots.robot import Robot
+from latentarm.types import FloatArray, Stop
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """What came out of the stack.
+
+    Attributes:
+        velocity: (n,), rad/s.
+        limited_by: names of the filters that changed what was asked for.
+        stop: why the arm is being stopped, or None.
+    """
+
+    velocity: FloatArray
+    limited_by: tuple[str, ...] = ()
+    stop: Stop | None = None
+
+
+@final
+class SafetyStack:
+    """Shapes what is wanted, ramps it, and lets it out only with a proven stop.
+
+    Three things may leave, in this order of preference: the shaped and ramped velocity; an ordinary
+    slowing down; the stop that was proven with the command before. See `Guard` for the proof.
+
+    Args:
+        config: the limits.
+        robot: the arm.
+        dt_s: the loop's period, s.
+
+    Raises:
+        UserError: the limits do not suit the robot or the period, see `Bounds`.
+    """
+
+    def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
+        self.bounds = Bounds(config, robot, dt_s)
+        self._surroundings = Surroundings(self.bounds, Body(robot))
+        position, velocity = JointPosition(), JointVelocity()
+        self._first: tuple[SafetyFilter, ...] = (Finite(), Freshness(), velocity, position)
+        self._sliding: tuple[SafetyFilter, ...] = (Clearance(), WorkspaceBox())
+        # Sliding along one thing can turn joints towards their limits, or speed one up.
+        self._after_sliding: tuple[SafetyFilter, ...] = (position, velocity)
+        self._last: tuple[SafetyFilter, ...] = (LinkSpeed(),)
+        self._ramp = Ramp(self.bounds)
+        self._guard = Guard()
+        self._rest = np.zeros(robot.dof)
+        self._velocity = self._rest
+        self._acceleration = self._rest
+        self._brake: Brake | None = None
+        self._braking_s = 0.0
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the last command was to stand still."""
+        return not (self._velocity.any() or self._acceleration.any())
+
+    def reset(self) -> None:
+        """Begin anew from an arm that stands still."""
+        self._velocity = self._acceleration = self._rest
+        self._brake = None
+
+    def command(self, wanted: FloatArray, state: FloatArray, input_age_s: float) -> Passed:
+        """The next command.
+
+        Args:
+            wanted: (n,), rad/s, any floats.
+            state: (n,), measured joint positions, rad, finite.
+            input_age_s: age of the newest input, s.
+
+        Returns:
+            A velocity that keeps all limits, or a stop that is under way.
+        """
+        situation = Situation(self._surroundings, state, self._velocity, self._acceleration, input_age_s)
+        limited_by: list[str] = []
+        shaped = self._shaped(wanted, situation, limited_by)
+        if isinstance(shaped, Stop):
+            return Passed(self.stop(), tuple(limited_by), shaped)
+        if self.at_rest and not shaped.any():
+            self._brake = None
+            return Passed(self._rest, tuple(limited_by))
+        for target in (shaped, self._rest):
+            ramped = self._ramp.ramped(target, self._velocity, self._acceleration)
+            if isinstance(ramped, Stop):
+                return Passed(self.stop(), (self._ramp.name,), ramped)
+            velocity, acceleration = ramped
+            objection = self._guard.objection(velocity, self.bounds.brake(velocity, acceleration), situation)
+            if objection is None:
+                self._velocity, self._acceleration = velocity, acceleration
+                self._brake = None
+                if not np.array_equal(velocity, shaped):
+                    limited_by.append(self._ramp.name)
+                return Passed(velocity, tuple(limited_by))
+            if objection not in limited_by:
+                limited_by.append(objection)
+        return Passed(self.stop(), tuple(limited_by))
+
+    def _shaped(self, wanted: FloatArray, situation: Situation, limited_by: list[str]) -> FloatArray | Stop:
+        """Through all filters but the ramp; ``limited_by`` gets the names of those that changed something."""
+        velocity = self._through(self._first, wanted, situation, limited_by)
+        if isinstance(velocity, Stop):
+            return velocity
+        slid = self._through(self._sliding, velocity, situation, limited_by)
+        if not isinstance(slid, Stop) and slid is not velocity:
+            slid = self._through(self._after_sliding, slid, situation, limited_by)
+        return slid if isinstance(slid, Stop) else self._through(self._last, slid, situation, limited_by)
+
+    @staticmethod
+    def _through(
+        filters: tuple[SafetyFilter, ...], velocity: FloatArray, situation: Situation, limited_by: list[str]
+    ) -> FloatArray | Stop:
+        for safety_filter in filters:
+            result = safety_filter.apply(velocity, situation)
+            if result is not velocity and safety_filter.name not in limited_by:
+                limited_by.append(safety_filter.name)
+            if isinstance(result, Stop):
+                return result
+            velocity = result
+        return velocity
+
+    def stop(self) -> FloatArray:
+        """Begin the proven stop, or go on with it.
+
+        Returns:
+            (n,), the next velocity, rad/s.
+        """
+        if self._brake is None:
+            self._brake = self.bounds.brake(self._velocity, self._acceleration)
+            self._braking_s = 0.0
+        self._braking_s += self.bounds.dt_s
+        self._velocity, self._acceleration = self._brake.at(self._braking_s)
+        return self._velocity

@@ -1,0 +1,310 @@
+"""Algorithm 1, lines 6 to 10, as one step that every loop, simulation and page goes through."""
+
+import math
+from collections.abc import Sequence
+from typing import final
+
+import numpy as np
+
+from latentarm.assistance.action import assistive_action
+from latentarm.assistance.belief import BoltzmannBelief
+from latentarm.assistance.blending import Arbitration, blend
+from latentarm.control.controller import Controller
+from latentarm.control.engagement import Engagement
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.safety.freshness import Freshness
+from latentarm.control.safety.stack import Passed, SafetyStack
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
+from latentarm.types import Command, Context, FloatArray, Goal, Input, StepRecord, Stop
+
+_ABSURD = 2.0
+"""Inputs a little past 1 are a stick's corner and are cut off; past this the interface is broken."""
+
+
+@final
+class Step:
+    """From the person's input to a safe command, once per period.
+
+    Lines of Algorithm 1: ``z = f(u, c)``, ``a_h = phi(z, c)``, ``a_r = Σ b(g) (g - s)``,
+    ``a = (1 - alpha) a_h + alpha a_r``, and the belief's update for the next step. What they want then
+    passes the `SafetyStack`; nothing else can move the arm.
+
+    The arm starts disengaged. After a neutral input, `enable` engages it. Whatever stops it (the
+    operator, an input that is too old, a number that is not one, a controller that fails) disengages it
+    again: a ramped stop, then neutral, then `enable`::
+
+        step.reset(arm.state())
+        step(neutral, 0.0, arm.state(), now)
+        step.enable()
+
+    An input within the dead zone wants no motion, whatever the decoder makes of zero, and no help.
+    No input of any kind and no failing controller raises an exception here.
+
+    Args:
+        robot: the arm.
+        controller: what turns inputs into actions.
+        safety: the limits.
+        goals: the discrete goals ``G``, for assistance.
+        belief: how inputs change the belief over goals; None keeps the belief uniform.
+        arbitration: how much the robot helps; None never helps.
+        dt_s: the loop's period, s.
+
+    Raises:
+        UserError: the limits do not suit the robot or the period, or assistance lacks goals.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        controller: Controller,
+        safety: SafetyConfig,
+        goals: Sequence[Goal] = (),
+        belief: BoltzmannBelief | None = None,
+        arbitration: Arbitration | None = None,
+        dt_s: float = 0.01,
+    ) -> None:
+        if (belief is not None or arbitration is not None) and not goals:
+            raise UserError("Assistance needs at least one goal: name goals, or leave assistance out.")
+        if belief is not None and len(belief.initial()) != len(goals):
+            raise UserError(f"The belief is over {len(belief.initial())} goals, but {len(goals)} are given.")
+        self._dof = robot.dof
+        self._controller = controller
+        self._stack = SafetyStack(safety, robot, dt_s)
+        self._goals = np.array([goal.configuration for goal in goals], dtype=np.float64).reshape(
+            -1, robot.dof
+        )
+        self._belief_rule = belief
+        self._arbitration = arbitration
+        self._config = safety
+        self._hold_s = self._stack.bounds.hold_s
+        # The belief counts evidence per its own period, whatever the loop's.
+        self._ticks_per_update = 1 if belief is None else max(1, round(belief.period_s / dt_s))
+        self._no_motion = np.zeros(robot.dof)
+        self._no_input = np.zeros(controller.input_dim)
+        self._engagement = Engagement()
+        self._mode = 0
+        self._switch_held = False
+        self._since_update = 0
+        self._belief = self._first_belief()
+
+    @property
+    def dt_s(self) -> float:
+        """The loop's period, s."""
+        return self._stack.bounds.dt_s
+
+    @property
+    def hold_s(self) -> float:
+        """How long each command lasts, s; without a new one the arm stops by itself."""
+        return self._hold_s
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the last command was to stand still."""
+        return self._stack.at_rest
+
+    @property
+    def mode(self) -> int:
+        """Index of the controller's mode."""
+        return self._mode
+
+    @property
+    def belief(self) -> FloatArray:
+        """(G,), the belief that the next step will use."""
+        return self._belief
+
+    @property
+    def stopped(self) -> Stop | None:
+        """Why the arm may not move, or None where it may."""
+        return self._engagement.stopped
+
+    def reset(self, state: FloatArray) -> None:
+        """Begin a new episode from an arm that stands still: disengaged, first mode, first belief.
+
+        Args:
+            state: (n,), measured joint positions, rad.
+
+        Raises:
+            UserError: the state is not n finite numbers.
+        """
+        if self._joint_positions(state) is None:
+            raise UserError(f"A state of this arm is {self._dof} finite joint positions.")
+        self._stack.reset()
+        self._engagement = Engagement()
+        self._mode = 0
+        self._switch_held = False
+        self._since_update = 0
+        self._belief = self._first_belief()
+
+    def enable(self) -> Stop | None:
+        """Let the arm move, if the newest input was neutral.
+
+        Returns:
+            None where the arm may move now, else why it may not.
+        """
+        return self._engagement.enable()
+
+    def stop(self, reason: str) -> None:
+        """Stop the arm from the next step on.
+
+        Args:
+            reason: one short sentence for the person.
+        """
+        self._engagement.stop(Stop(reason))
+
+    def halted(self, reason: str) -> None:
+        """The arm has come to rest by itself, for a command ran out: take note, and stay stopped.
+
+        Args:
+            reason: one short sentence for the person.
+        """
+        self._engagement.stop(Stop(reason))
+        self._stack.reset()
+
+    def __call__(self, given: Input, input_age_s: float, state: FloatArray, time_s: float) -> StepRecord:
+        """One pass through Algorithm 1.
+
+        Args:
+            given: the person's newest input.
+            input_age_s: for how long it has been the newest, by the loop's own clock, s.
+            state: (n,), measured joint positions, rad.
+            time_s: the loop's clock, s.
+
+        Returns:
+            What was read and decided; its command is what the arm must be sent.
+        """
+        q = self._joint_positions(state)
+        if q is None:
+            self.stop("The arm's joint positions are not finite numbers.")
+            return self._record(time_s, self._no_motion, Passed(self._stack.stop()))
+        u = self._usable(given, input_age_s)
+        if isinstance(u, Stop):
+            self._engagement.stop(u)
+            return self._record(time_s, q, Passed(self._stack.stop()))
+        neutral = not u.any()
+        self._engagement.saw(neutral)
+        self._switch(given.switch_mode)
+        if self._engagement.stopped is not None:
+            return self._record(time_s, q, Passed(self._stack.stop()))
+        if neutral:
+            return self._record(time_s, q, self._passed(self._no_motion, q, input_age_s))
+        return self._driven(u, input_age_s, q, time_s)
+
+    def _driven(self, u: FloatArray, input_age_s: float, q: FloatArray, time_s: float) -> StepRecord:
+        """Lines 6 to 10 for an input that wants motion."""
+        context = Context(state=q, belief=self._belief)
+        belief = self._belief
+        a_r, alpha = self._no_motion, 0.0
+        try:
+            # What overflows here is caught as not finite below.
+            with np.errstate(all="ignore"):
+                z = np.asarray(self._controller.latent(u, context, self._mode), dtype=np.float64)
+                a_h = np.asarray(self._controller.action(z, context, self._mode), dtype=np.float64)
+                wanted = a_h
+                if a_h.shape == q.shape and z.shape == u.shape and len(self._goals):
+                    a_r, alpha = self._help(u, q)
+                    wanted = blend(a_h, a_r, alpha)
+                    self._update_belief(u, context)
+        except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
+            stop = Stop(f"The controller failed ({type(error).__name__}: {error}).")
+            return self._record(time_s, q, self._refused(stop), u)
+        if z.shape != u.shape or a_h.shape != q.shape:
+            stop = Stop("The controller gave a latent action or an action of the wrong size.")
+            return self._record(time_s, q, self._refused(stop), u)
+        passed = self._passed(wanted, q, input_age_s)
+        command = self._command(passed)
+        return StepRecord(time_s, q, u, z, a_h, a_r, alpha, belief, self._mode, command)
+
+    def _help(self, u: FloatArray, q: FloatArray) -> tuple[FloatArray, float]:
+        """Assistive action (equation 3) and arbitration."""
+        if self._arbitration is None:
+            return self._no_motion, 0.0
+        alpha = float(self._arbitration.alpha(u, self._belief))
+        if not 0.0 <= alpha <= 1.0:
+            raise ValueError(f"an arbitration of {alpha} is not in [0, 1]")
+        return assistive_action(q, self._belief, self._goals), alpha
+
+    def _update_belief(self, u: FloatArray, context: Context) -> None:
+        """Line 10, at the belief's own rate."""
+        self._since_update += 1
+        if self._belief_rule is None or self._since_update < self._ticks_per_update:
+            return
+        self._since_update = 0
+
+        def action_of(inputs: FloatArray) -> FloatArray:
+            z = self._controller.latent(inputs, context, self._mode)
+            return self._controller.action(z, context, self._mode)
+
+        updated = self._belief_rule.update(context.belief, u, context.state, action_of)
+        if not np.isfinite(updated).all():
+            raise ValueError("the belief is not finite")
+        self._belief = updated
+
+    def _passed(self, wanted: FloatArray, q: FloatArray, input_age_s: float) -> Passed:
+        """Through the safety stack; a refusal disengages."""
+        passed = self._stack.command(wanted, q, input_age_s)
+        if passed.stop is not None:
+            self._engagement.stop(passed.stop)
+        return passed
+
+    def _refused(self, stop: Stop) -> Passed:
+        self._engagement.stop(stop)
+        return Passed(self._stack.stop())
+
+    def _usable(self, given: Input, input_age_s: float) -> FloatArray | Stop:
+        """The input as (d,) floats in [-1, 1], zero within the dead zone, or why it cannot be used."""
+        stale = Freshness.refusal(input_age_s, self._config.input_timeout_s)
+        if stale is not None:
+            return stale
+        try:
+            u = np.asarray(given.u)
+        except ValueError:  # a ragged list
+            u = np.asarray(None)
+        if u.shape != self._no_input.shape or u.dtype.kind not in "iuf":
+            return Stop(f"The input must be {len(self._no_input)} numbers.")
+        values = [float(value) for value in u.tolist()]
+        # Written so that a value that is not a number fails too.
+        if not all(abs(value) <= _ABSURD for value in values):
+            return Stop("The input is outside [-1, 1].")
+        if math.hypot(*values) <= self._config.dead_zone:
+            return self._no_input
+        return np.array([min(max(value, -1.0), 1.0) for value in values])
+
+    def _joint_positions(self, state: FloatArray) -> FloatArray | None:
+        """The state as a private copy of (n,) floats, or None where it is not that."""
+        q = np.asarray(state)
+        if q.shape != (self._dof,) or q.dtype.kind not in "iuf" or not np.isfinite(q).all():
+            return None
+        return q.astype(np.float64)
+
+    def _switch(self, wanted: bool) -> None:
+        """Next mode when the switch goes down; holding it changes nothing more."""
+        if wanted and not self._switch_held:
+            self._mode = (self._mode + 1) % len(self._controller.modes)
+        self._switch_held = bool(wanted)
+
+    def _first_belief(self) -> FloatArray:
+        if self._belief_rule is not None:
+            return self._belief_rule.initial()
+        count = len(self._goals)
+        return np.full(count, 1.0 / count) if count else np.zeros(0)
+
+    def _command(self, passed: Passed) -> Command:
+        return Command(passed.velocity, self._hold_s, self._engagement.stopped, passed.limited_by)
+
+    def _record(
+        self, time_s: float, q: FloatArray, passed: Passed, u: FloatArray | None = None
+    ) -> StepRecord:
+        """A step without motion wanted."""
+        return StepRecord(
+            time_s=time_s,
+            state=q,
+            input=self._no_input if u is None else u,
+            latent=self._no_input,
+            action_human=self._no_motion,
+            action_assist=self._no_motion,
+            alpha=0.0,
+            belief=self._belief,
+            mode=self._mode,
+            command=self._command(passed),
+        )
