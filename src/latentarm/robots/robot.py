@@ -1,6 +1,6 @@
 """A robot as everything else sees it; importing this loads no physics engine."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, final
 
 from latentarm.kinematics.capsules import Capsules
@@ -35,7 +35,7 @@ class Robot:
     home: FloatArray
     capsules: Capsules
     self_pairs: IntArray
-    mjcf: str
+    mjcf: str = field(repr=False)
     tool_speed_limit: float
     model_path: str | None = None
 
