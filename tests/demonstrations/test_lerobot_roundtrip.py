@@ -108,6 +108,7 @@ def environment() -> Path:
     ready = folder / "ready"
     if not ready.exists():
         venv.create(folder, with_pip=True, clear=True)
+        (folder / ".gitignore").write_text("*\n")
         constraint = folder / "constraint.txt"
         constraint.write_text("torch==2.10.0\n")
         pip = [str(python), "-m", "pip", "install", "--quiet", "--constraint", str(constraint), VERSION]
