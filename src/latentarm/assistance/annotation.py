@@ -15,10 +15,9 @@ _STANDSTILL = 0.02
 
 def annotate(
     demonstrations: Demonstrations,
-    beta: float = 10.0,
+    beta: float = 20.0,
     horizon_s: float = 0.5,
     floor: float = 0.01,
-    region: float = 0.3,
 ) -> Demonstrations:
     """Add the belief over the demonstrations' own goals to every episode as ``extras["belief"]``.
 
@@ -29,10 +28,9 @@ def annotate(
 
     Args:
         demonstrations: with at least one goal; no episode is changed in place.
-        beta: rationality, 1/rad.
+        beta: rationality, 1/rad².
         horizon_s: look-ahead, s.
         floor: smallest probability of any goal.
-        region: radius about a goal in which every move is as likely, rad.
 
     Returns:
         The same demonstrations with beliefs (T, G).
@@ -43,9 +41,7 @@ def annotate(
     if not demonstrations.goals:
         raise UserError("The demonstrations name no goals, so there is no belief to compute along them.")
     goals = np.stack([goal.configuration for goal in demonstrations.goals])
-    belief = BoltzmannBelief(
-        goals, beta, horizon_s, period_s=1 / demonstrations.rate_hz, floor=floor, region=region
-    )
+    belief = BoltzmannBelief(goals, beta, horizon_s, period_s=1 / demonstrations.rate_hz, floor=floor)
     return replace(
         demonstrations, episodes=tuple(_annotated(episode, belief) for episode in demonstrations.episodes)
     )

@@ -23,12 +23,14 @@ class BoltzmannBelief:
     Equation 9, ``b'(g) ∝ P(u | s, g) b(g)``, with the likelihood::
 
         P(u | s, g) = exp(-beta D(g, s + a_h(u) tau)) / Σ_{u' in U} exp(-beta D(g, s + a_h(u') tau))
-        D(g, s)     = max(‖g - s‖ - region, 0)
+        D(g, s)     = ‖g - s‖²
 
     ``U`` holds what the person could have given with the same effort: ``u`` turned through eight
     equal angles for a 2-axis input, ``{u, -u}`` for one axis, ``u`` and ``±‖u‖`` along every axis
-    for more. A zero input is no evidence. Within ``region`` of a goal the person is taken to be
-    manipulating there, so that moving about does not speak against that goal.
+    for more. A zero input is no evidence. The distance is squared, as in the person's reward in
+    section 8.2, for a reason: what tells two goals apart is then only the motion along the line
+    between them, so that someone who has arrived and stabs or scoops, which leads away from every
+    goal alike, does not seem to have changed their mind.
 
     A person decides once per look-ahead ``tau``: an update every ``period_s`` counts as the share
     ``period_s / tau`` of a decision, so the belief does not depend on the rate of the loop.
@@ -36,12 +38,11 @@ class BoltzmannBelief:
 
     Args:
         goals: (G, n), the goals' configurations, rad.
-        beta: rationality, 1/rad; 0 learns nothing.
+        beta: rationality, 1/rad²; 0 learns nothing.
         horizon_s: the look-ahead tau, s.
         period_s: time between updates, s.
         prior: (G,), the belief before any input; uniform where None.
         floor: smallest probability of any goal, in [0, 1/G).
-        region: radius about a goal in which every input is as likely, rad.
 
     Raises:
         UserError: a parameter is not finite or out of its range.
@@ -50,19 +51,17 @@ class BoltzmannBelief:
     def __init__(
         self,
         goals: FloatArray | Sequence[FloatArray],
-        beta: float = 10.0,
+        beta: float = 20.0,
         horizon_s: float = 0.5,
         period_s: float = 0.05,
         prior: FloatArray | None = None,
         floor: float = 0.01,
-        region: float = 0.3,
     ) -> None:
         self.goals = np.ascontiguousarray(goals, dtype=float)
         if self.goals.ndim != 2 or not self.goals.size or not np.isfinite(self.goals).all():
             raise UserError("A belief needs at least one goal, each a finite configuration in rad.")
         for name, value, positive in (
             ("beta", beta, False),
-            ("region", region, False),
             ("horizon_s", horizon_s, True),
             ("period_s", period_s, True),
         ):
@@ -75,7 +74,6 @@ class BoltzmannBelief:
         self.horizon_s = horizon_s
         self.period_s = period_s
         self.floor = floor
-        self.region = region
         self._prior = self._checked_prior(prior)
 
     def initial(self) -> FloatArray:
@@ -111,13 +109,13 @@ class BoltzmannBelief:
         """
         with np.errstate(over="ignore", invalid="ignore"):
             away = self.goals - (state + self.horizon_s * actions)[:, None]
-            distance = np.maximum(np.sqrt((away * away).sum(axis=-1)) - self.region, 0.0)
+            distance = (away * away).sum(axis=-1)
         if not np.isfinite(distance).all():
             return belief
         return self._posterior(belief, distance)
 
     def _posterior(self, belief: FloatArray, distance: FloatArray) -> FloatArray:
-        """Bayes' rule in log space, from distances (K, G) of which the first row was chosen."""
+        """Bayes' rule in log space, from distances D (K, G) of which the first row was chosen."""
         # Relative to the chosen row: log P = -log Σ exp(beta (D_chosen - D)), shifted by its largest term.
         gained = self.beta * (distance[0] - distance)
         largest = gained.max(axis=0)

@@ -52,7 +52,7 @@ class FixedAlpha(Arbitration):
         full_at: ‖u‖ from which help is full; below, alpha shrinks in proportion, to zero at zero.
     """
 
-    value: float = 0.4
+    value: float = 0.15
     full_at: float = 0.3
 
     def __post_init__(self) -> None:
