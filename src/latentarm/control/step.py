@@ -21,6 +21,9 @@ from latentarm.types import Command, Context, FloatArray, Goal, Input, StepRecor
 _ABSURD = 2.0
 """Inputs a little past 1 are a stick's corner and are cut off; past this the interface is broken."""
 
+_ASTRAY = 2.0 * math.pi
+"""Joints this far past their limits, rad, were never there: the reading is wrong."""
+
 
 @final
 class Step:
@@ -69,6 +72,8 @@ class Step:
         if belief is not None and len(belief.initial()) != len(goals):
             raise UserError(f"The belief is over {len(belief.initial())} goals, but {len(goals)} are given.")
         self._dof = robot.dof
+        self._lowest = robot.limits.lower - _ASTRAY
+        self._highest = robot.limits.upper + _ASTRAY
         self._controller = controller
         self._stack = SafetyStack(safety, robot, dt_s)
         self._goals = np.array([goal.configuration for goal in goals], dtype=np.float64).reshape(
@@ -125,10 +130,10 @@ class Step:
             state: (n,), measured joint positions, rad.
 
         Raises:
-            UserError: the state is not n finite numbers.
+            UserError: the state is not n numbers near the joints' limits.
         """
         if self._joint_positions(state) is None:
-            raise UserError(f"A state of this arm is {self._dof} finite joint positions.")
+            raise UserError(f"A state of this arm is {self._dof} joint positions near their limits.")
         self._stack.reset()
         self._engagement = Engagement()
         self._mode = 0
@@ -175,7 +180,7 @@ class Step:
         """
         q = self._joint_positions(state)
         if q is None:
-            self.stop("The arm's joint positions are not finite numbers.")
+            self.stop("The arm's joint positions are not numbers near its limits.")
             return self._record(time_s, self._no_motion, Passed(self._stack.stop()))
         u = self._usable(given, input_age_s)
         if isinstance(u, Stop):
@@ -273,7 +278,10 @@ class Step:
     def _joint_positions(self, state: FloatArray) -> FloatArray | None:
         """The state as a private copy of (n,) floats, or None where it is not that."""
         q = np.asarray(state)
-        if q.shape != (self._dof,) or q.dtype.kind not in "iuf" or not np.isfinite(q).all():
+        if q.shape != (self._dof,) or q.dtype.kind not in "iuf":
+            return None
+        # Written so that a value that is not a number fails too.
+        if not ((q >= self._lowest) & (q <= self._highest)).all():
             return None
         return q.astype(np.float64)
 

@@ -23,6 +23,10 @@ from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, Stop
 
 
+_SAME_RAD_S = 1e-9
+"""Velocities that differ by no more than this differ by rounding."""
+
+
 @final
 @dataclass(frozen=True, slots=True)
 class Passed:
@@ -110,7 +114,7 @@ class SafetyStack:
             if objection is None:
                 self._velocity, self._acceleration = velocity, acceleration
                 self._brake = None
-                if not np.array_equal(velocity, shaped):
+                if float(np.abs(velocity - shaped).max()) > _SAME_RAD_S:
                     limited_by.append(self._ramp.name)
                 return Passed(velocity, tuple(limited_by))
             if objection not in limited_by:

@@ -1,0 +1,144 @@
+import os
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+from latentarm.control.controller import Controller
+from latentarm.kinematics.capsules import segment_distance
+from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+from latentarm.robots.panda import panda
+from latentarm.robots.planar import planar
+from latentarm.robots.robot import Robot
+from latentarm.types import Context, FloatArray
+
+settings.register_profile("thorough", max_examples=10_000, deadline=None)
+if os.environ.get("HYPOTHESIS_PROFILE") == "thorough":
+    settings.load_profile("thorough")
+
+
+@pytest.fixture(scope="session")
+def arm() -> Robot:
+    return panda()
+
+
+@pytest.fixture(scope="session")
+def two_arms() -> Robot:
+    return planar(n_links=5, arms=2)
+
+
+class Scripted(Controller):
+    """Does what it is told to: ``action(z) = z @ matrix``, or what ``answer`` returns."""
+
+    def __init__(self, matrix: FloatArray, modes: tuple[str, ...] = ("only",)) -> None:
+        self.matrix = matrix
+        self._modes = modes
+        self.answer: Callable[[Context], object] | None = None
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        return self._modes
+
+    @property
+    def input_dim(self) -> int:
+        return len(self.matrix)
+
+    def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
+        return u
+
+    def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
+        if self.answer is not None:
+            return self.answer(context)  # type: ignore[return-value]
+        return z @ self.matrix
+
+
+@pytest.fixture(scope="session")
+def scripted() -> type[Scripted]:
+    return Scripted
+
+
+class Oracle:
+    """Distances and speeds worked out anew and slowly, in ways that the safety filters do not use."""
+
+    def __init__(self, robot: Robot, obstacles: Sequence[Obstacle] = ()) -> None:
+        self.robot = robot
+        self.obstacles = tuple(obstacles)
+        capsules, chain = robot.capsules, robot.chain
+        # A capsule that turns about its own axis alone cannot come nearer to anything.
+        rng = np.random.default_rng(0)
+        q = rng.uniform(robot.limits.lower, robot.limits.upper, (8, robot.dof))
+        starts, ends = capsules.placed(chain, chain.link_transforms(q))
+        spread = np.maximum(np.ptp(starts, axis=0).max(-1), np.ptp(ends, axis=0).max(-1))
+        self.moving = np.flatnonzero((capsules.link >= 0) & (spread > 1e-9))
+        moves = [set(np.flatnonzero(chain.moves[link])) if link >= 0 else set() for link in capsules.link]
+        self.pairs = np.array(
+            [(i, j) for i, j in robot.self_pairs if moves[i] != moves[j]], dtype=np.int64
+        ).reshape(-1, 2)
+
+    def ends(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return self.robot.capsules.placed(self.robot.chain, self.robot.chain.link_transforms(q))
+
+    def distances(self, q: FloatArray) -> FloatArray:
+        """(..., pairs): the arm's own pairs, then every moving capsule to every obstacle."""
+        starts, ends = self.ends(q)
+        radius = self.robot.capsules.radius
+        i, j = self.pairs.T
+        own, _, _ = segment_distance(
+            starts[..., i, :], ends[..., i, :], starts[..., j, :], ends[..., j, :]
+        )
+        found = [own - radius[i] - radius[j]]
+        a, b, r = starts[..., self.moving, :], ends[..., self.moving, :], radius[self.moving]
+        for item in self.obstacles:
+            match item:
+                case HalfSpace():
+                    low = np.minimum((a - item.point) @ item.normal, (b - item.point) @ item.normal)
+                    found.append(low - r)
+                case Sphere():
+                    centre = np.broadcast_to(item.centre, a.shape)
+                    found.append(segment_distance(a, b, centre, centre)[0] - r - item.radius)
+                case Capsule():
+                    start, end = np.broadcast_to(item.start, a.shape), np.broadcast_to(item.end, a.shape)
+                    found.append(segment_distance(a, b, start, end)[0] - r - item.radius)
+                case Box():
+                    found.append(box_distance(a, b, item) - r)
+        return np.concatenate(found, axis=-1)
+
+    def clearance(self, q: FloatArray) -> FloatArray:
+        return self.distances(q).min(axis=-1)
+
+    def link_speed(self, q: FloatArray, velocity: FloatArray) -> float:
+        """Fastest capsule end or tool, by central differences."""
+        step = 1e-6
+        fast = []
+        for sign in (1.0, -1.0):
+            at = q + sign * step * velocity
+            transforms = self.robot.chain.link_transforms(at)
+            starts, ends = self.robot.capsules.placed(self.robot.chain, transforms)
+            tools = [
+                self.robot.chain.tool_pose(transforms, tool).position[None]
+                for tool in range(len(self.robot.chain.tools))
+            ]
+            fast.append(np.concatenate([starts, ends, *tools]))
+        return float(np.linalg.norm((fast[0] - fast[1]) / (2 * step), axis=-1).max())
+
+
+def box_distance(a: FloatArray, b: FloatArray, box: Box) -> FloatArray:
+    """Distance of segments to a box by ternary search; zero inside."""
+    a, b = (a - box.centre) @ box.rotation, (b - box.centre) @ box.rotation
+
+    def at(s: FloatArray) -> FloatArray:
+        outside = np.maximum(np.abs(a + s[..., None] * (b - a)) - box.half_extents, 0.0)
+        return np.sqrt((outside**2).sum(-1))
+
+    low, high = np.zeros(a.shape[:-1]), np.ones(a.shape[:-1])
+    for _ in range(80):
+        left, right = low + (high - low) / 3, high - (high - low) / 3
+        nearer = at(left) < at(right)
+        low, high = np.where(nearer, low, left), np.where(nearer, right, high)
+    return np.minimum(np.minimum(at(low), at(high)), np.minimum(at(0 * low), at(0 * low + 1)))
+
+
+@pytest.fixture(scope="session")
+def oracle() -> type[Oracle]:
+    return Oracle

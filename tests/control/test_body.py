@@ -1,0 +1,100 @@
+"""The proven bounds on how the arm's points move hold, in every configuration that is tried."""
+
+import numpy as np
+import pytest
+
+from latentarm.control.safety.body import Body, Placement
+
+
+@pytest.fixture(params=["arm", "two_arms", "jaco_like"])
+def body(request):
+    name = request.param if request.param != "jaco_like" else "gantry"
+    return Body(request.getfixturevalue(name))
+
+
+@pytest.fixture(scope="session")
+def gantry():
+    """A robot that slides before it turns and turns before it slides."""
+    mujoco = pytest.importorskip("mujoco")
+    from latentarm.robots.assemble import assemble
+    from latentarm.robots.limits import JointLimits
+
+    text = """
+    <mujoco><compiler angle="radian"/><worldbody>
+      <body><joint name="rail" type="slide" axis="1 0 0" range="-0.5 0.5"/>
+        <geom type="capsule" fromto="0 0 0 0 0 0.3" size="0.05" mass="1"/>
+        <body pos="0 0 0.4"><joint name="turn" axis="0 1 0" range="-2 2"/>
+          <geom type="capsule" fromto="0 0 0 0.4 0 0" size="0.04" mass="1"/>
+          <body pos="0.4 0.1 0"><joint name="push" type="slide" axis="1 0 0" range="0 0.3"/>
+            <geom type="capsule" fromto="0 0 0 0.1 0 0" size="0.03" mass="1"/>
+            <body pos="0.1 0 0"><joint name="wrist" axis="0 0 1" range="-2 2"/>
+              <geom type="capsule" fromto="0 0 0 0.2 0 0" size="0.03" mass="1"/>
+              <site name="tool" pos="0.2 0.05 0"/>
+    </body></body></body></body></worldbody></mujoco>"""
+    del mujoco
+    limits = JointLimits(
+        lower=np.array([-0.5, -2.0, 0.0, -2.0]),
+        upper=np.array([0.5, 2.0, 0.3, 2.0]),
+        velocity=np.full(4, 2.0),
+        acceleration=np.full(4, 10.0),
+        jerk=np.full(4, 1000.0),
+    )
+    return assemble("gantry", text, ["tool"], limits, np.array([0.0, 0.3, 0.1, 0.2]), 2.0)
+
+
+def random_states(body, count, seed):
+    limits = body.robot.limits
+    return np.random.default_rng(seed).uniform(limits.lower, limits.upper, (count, body.robot.dof))
+
+
+def test_jacobian_agrees_with_differences(body):
+    for q in random_states(body, 20, 1):
+        placed = Placement(body, q)
+        for joint in range(body.robot.dof):
+            step = np.zeros(body.robot.dof)
+            step[joint] = 1e-6
+            moved = (Placement(body, q + step).points - Placement(body, q - step).points) / 2e-6
+            np.testing.assert_allclose(placed.jacobian[joint, :3].T, moved, atol=1e-8)
+
+
+def test_levers_bound_the_speed_of_every_point(body):
+    for q in random_states(body, 300, 2):
+        moved = np.linalg.norm(Placement(body, q).jacobian[:, :3], axis=1)
+        assert (moved.T <= body.lever + 1e-9).all()
+
+
+def test_levers_are_not_wildly_pessimistic(body):
+    fastest = np.max(
+        [np.linalg.norm(Placement(body, q).jacobian[:, :3], axis=1).T for q in random_states(body, 2000, 3)],
+        axis=0,
+    )
+    assert (body.lever <= 2.5 * fastest + 0.05).all()
+
+
+def test_curvature_bounds_how_far_paths_bend(body):
+    rng = np.random.default_rng(4)
+    for q in random_states(body, 300, 5):
+        way = rng.normal(size=body.robot.dof) * 0.05
+        placed = Placement(body, q)
+        straight = placed.points + np.tensordot(way, placed.jacobian[:, :3], axes=1).T
+        bent = np.linalg.norm(Placement(body, q + way).points - straight, axis=1)
+        size = np.abs(way)
+        assert (bent <= 0.5 * (body.point_curvature @ size @ size) + 1e-12).all()
+
+
+def test_speeds_bound_the_whole_surface(body):
+    rng = np.random.default_rng(6)
+    capsules, chain = body.robot.capsules, body.robot.chain
+    for q in random_states(body, 100, 7):
+        velocity = rng.normal(size=body.robot.dof) * 0.3
+        bound = Placement(body, q).speeds(velocity)
+        before, after = chain.link_transforms(q - 1e-6 * velocity), chain.link_transforms(q + 1e-6 * velocity)
+        for index, capsule in enumerate(body.capsule):
+            along = rng.uniform(0, 1, (50, 1))
+            out = rng.normal(size=(50, 3))
+            out *= capsules.radius[capsule] / np.linalg.norm(out, axis=1, keepdims=True)
+            local = capsules.start[capsule] * (1 - along) + capsules.end[capsule] * along + out
+            link = np.full(50, capsules.link[capsule])
+            moved = chain.points(after, link, local) - chain.points(before, link, local)
+            fastest = np.linalg.norm(moved / 2e-6, axis=1).max()
+            assert fastest <= max(bound[index], bound[index + body.count]) + 1e-7

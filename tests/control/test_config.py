@@ -1,0 +1,129 @@
+import math
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from latentarm.control.safety.bounds import STOPPED_WITHIN_S, Bounds
+from latentarm.control.safety.config import SafetyConfig, Workspace
+from latentarm.control.safety.obstacles import table
+from latentarm.errors import UserError
+from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+
+FIGURES = [field.name for field in fields(SafetyConfig) if field.name not in ("workspace", "obstacles")]
+
+
+@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, -1.0, 1e308, "0.5", None, True, [0.1]])
+def test_what_is_no_limit_is_refused_by_name(name, bad):
+    with pytest.raises(UserError, match=name):
+        SafetyConfig(**{name: bad})
+
+
+@pytest.mark.parametrize("name", [name for name in FIGURES if name != "dead_zone"])
+def test_zero_is_no_limit(name):
+    with pytest.raises(UserError, match=name):
+        SafetyConfig(**{name: 0.0})
+
+
+def test_defaults_are_the_ones_that_were_laid_down(arm):
+    bounds = Bounds(SafetyConfig(), arm, 0.01)
+    assert bounds.speed == 0.5
+    assert bounds.config.link_speed == 0.25
+    assert bounds.config.clearance == 0.02
+    np.testing.assert_allclose(bounds.acceleration, 0.2 * arm.limits.acceleration)
+    np.testing.assert_allclose(bounds.jerk, 0.2 * arm.limits.jerk)
+    np.testing.assert_allclose(bounds.lower, arm.limits.lower + 0.1)
+    np.testing.assert_allclose(bounds.upper, arm.limits.upper - 0.1)
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        ({"joint_speed": 2.4}, "joint_speed"),
+        ({"link_speed": 1.8}, "link_speed"),
+        ({"joint_margin": 1.0, "joint_speed": 0.1}, None),
+        ({"stop_fraction": 0.3}, "stop_fraction"),
+        ({"input_timeout_s": 0.1}, "input_timeout_s"),
+    ],
+)
+def test_limits_that_do_not_suit_the_robot_are_refused(arm, change, named):
+    config = replace(SafetyConfig(), **change)
+    if named is None:
+        Bounds(config, arm, 0.01)
+        return
+    with pytest.raises(UserError, match=named):
+        Bounds(config, arm, 0.01)
+
+
+def test_a_margin_that_leaves_no_room_is_refused(arm):
+    narrow = replace(arm, limits=replace(arm.limits, upper=arm.limits.lower + 0.15))
+    with pytest.raises(UserError, match="joint_margin"):
+        Bounds(SafetyConfig(), narrow, 0.01)
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.01, math.nan, 1.0, 1e-6])
+def test_absurd_periods_are_refused(arm, dt):
+    with pytest.raises(UserError, match="period"):
+        Bounds(SafetyConfig(), arm, dt)
+
+
+@given(
+    st.floats(0.01, 2.1), st.floats(0.1, 1.0), st.floats(0.005, 0.14), st.sampled_from([0.005, 0.01, 0.02, 0.05])
+)
+@settings(deadline=None)
+def test_a_config_that_is_accepted_stops_in_time(arm, speed, stop, timeout, dt):
+    try:
+        config = SafetyConfig(
+            joint_speed=speed, stop_fraction=stop, input_timeout_s=timeout, acceleration_fraction=0.1, jerk_fraction=0.1
+        )
+        bounds = Bounds(config, arm, dt)
+    except UserError as error:
+        assert "lower joint_speed" in str(error)
+        return
+    worst = bounds.brake(np.full(7, speed), bounds.acceleration).duration_s
+    assert timeout + dt + worst <= STOPPED_WITHIN_S + 1e-9
+
+
+def test_a_softer_stop_than_ordinary_motion_is_refused():
+    with pytest.raises(UserError, match="stop_fraction"):
+        SafetyConfig(acceleration_fraction=0.9)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        lambda: Workspace(np.array([0.0, 0.0, 1.0]), np.array([1.0, 1.0, 1.0])),
+        lambda: Workspace(np.array([0.0, 0.0, np.nan]), np.ones(3)),
+        lambda: Workspace(np.zeros(2), np.ones(2)),
+    ],
+)
+def test_a_workspace_that_is_no_box_is_refused(bad):
+    with pytest.raises(UserError, match="workspace"):
+        bad()
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        Sphere("thing", np.zeros(3), 0.0),
+        Sphere("thing", np.zeros(3), math.nan),
+        Sphere("thing", np.array([0.0, math.inf, 0.0]), 0.1),
+        Sphere("thing", np.array([500.0, 0.0, 0.0]), 0.1),
+        Capsule("thing", np.zeros(3), np.zeros(2), 0.1),
+        HalfSpace("thing", np.zeros(3), np.array([0.0, 0.0, 2.0])),
+        Box("thing", np.zeros(3), np.diag([1.0, 1.0, -1.0]), np.ones(3)),
+        Box("thing", np.zeros(3), np.eye(3), np.array([1.0, 0.0, 1.0])),
+    ],
+)
+def test_obstacles_that_are_none_are_refused_by_name(bad):
+    with pytest.raises(UserError, match="thing"):
+        SafetyConfig(obstacles=(bad,))
+
+
+def test_a_table_is_a_plane_at_its_height():
+    assert table(0.2).point[2] == 0.2
+    with pytest.raises(UserError, match="table"):
+        table(math.nan)

@@ -1,0 +1,134 @@
+"""What the guard lets pass is safe along the whole path, measured densely and in another way."""
+
+import numpy as np
+from hypothesis import event, given, settings
+from hypothesis import strategies as st
+
+from latentarm.control.safety.body import Body
+from latentarm.control.safety.bounds import Bounds
+from latentarm.control.safety.config import SafetyConfig, Workspace
+from latentarm.control.safety.filter import Situation, Surroundings
+from latentarm.control.safety.guard import Guard
+from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+
+
+def beside(robot, q, rng, oracle):
+    """Obstacles of every kind, 15 to 60 mm away from some capsule of the arm."""
+    measure = oracle(robot)
+    starts, ends = measure.ends(q)
+    found = []
+    for kind in rng.choice(4, size=3):
+        capsule = rng.choice(measure.moving)
+        out = rng.normal(size=3)
+        out /= np.linalg.norm(out)
+        at = starts[capsule] + rng.uniform() * (ends[capsule] - starts[capsule])
+        gap = robot.capsules.radius[capsule] + rng.uniform(0.015, 0.06)
+        if kind == 0:
+            low = max(starts[measure.moving] @ out) if rng.uniform() < 0.5 else at @ out
+            found.append(HalfSpace("plane", point=out * (low + gap), normal=-out))
+        elif kind == 1:
+            found.append(Sphere("ball", centre=at + out * (gap + 0.05), radius=0.05))
+        elif kind == 2:
+            along = np.cross(out, rng.normal(size=3)) * 0.1
+            middle = at + out * (gap + 0.02)
+            found.append(Capsule("rod", start=middle - along, end=middle + along, radius=0.02))
+        else:
+            turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+            turn *= np.sign(np.linalg.det(turn))
+            found.append(
+                Box("box", centre=at + out * (gap + 0.08), rotation=turn, half_extents=rng.uniform(0.02, 0.08, 3))
+            )
+    return tuple(found)
+
+
+def path_states(q, velocity, brake, hold_s):
+    """Joint positions while the command lasts and the brake follows, early or late."""
+    for held in (0.4 * hold_s, hold_s):
+        hold = np.linspace(0.0, held, 12)[:, None] * velocity
+        times = np.linspace(0.0, brake.duration_s, 120)
+        speeds = np.array([brake.at(float(t))[0] for t in times])
+        braking = np.concatenate([np.zeros((1, len(q))), np.cumsum(0.5 * (speeds[1:] + speeds[:-1]) * times[1], axis=0)])
+        yield q + hold, np.broadcast_to(velocity, (12, len(q)))
+        yield q + hold[-1] + braking, speeds
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from(["arm", "two_arms"]))
+@settings(deadline=None)
+def test_what_passes_is_safe_all_the_way(arm, two_arms, oracle, seed, name):
+    robot = arm if name == "arm" else two_arms
+    rng = np.random.default_rng(seed)
+    lower, upper = robot.limits.lower, robot.limits.upper
+    q = rng.uniform(lower, upper)
+    # Near limits too, and outside them.
+    q = np.where(rng.uniform(size=robot.dof) < 0.2, rng.choice([lower + 0.1, upper - 0.1]), q)
+    q += rng.normal(size=robot.dof) * 0.005
+    obstacles = beside(robot, q, rng, oracle)
+    workspace = None
+    if rng.uniform() < 0.5:
+        measure = oracle(robot)
+        ends = np.concatenate(measure.ends(q))[np.r_[measure.moving, measure.moving + len(robot.capsules)]]
+        workspace = Workspace(ends.min(0) - rng.uniform(-0.002, 0.02, 3), ends.max(0) + rng.uniform(-0.002, 0.02, 3))
+    config = SafetyConfig(obstacles=obstacles, workspace=workspace)
+    bounds = Bounds(config, robot, 0.01)
+    surroundings = Surroundings(bounds, Body(robot))
+    measure = oracle(robot, obstacles)
+    before = measure.distances(q)
+    passed = 0
+    for _ in range(20):
+        velocity = rng.normal(size=robot.dof) * rng.choice([0.01, 0.1, 0.25])
+        velocity = np.clip(velocity, -0.5, 0.5) * (rng.uniform(size=robot.dof) < 0.7)
+        acceleration = rng.uniform(-1, 1, robot.dof) * bounds.acceleration * rng.choice([0.0, 1.0, 4.0])
+        brake = bounds.brake(velocity, acceleration)
+        if Guard().objection(velocity, brake, Situation(surroundings, q, velocity, acceleration)):
+            continue
+        passed += 1
+        for states, speeds in path_states(q, velocity, brake, bounds.hold_s):
+            assert (states <= np.maximum(upper - 0.1, q) + 1e-9).all()
+            assert (states >= np.minimum(lower + 0.1, q) - 1e-9).all()
+            # Boxes are measured without depth, so a box that the arm is inside of counts as touched.
+            least = np.minimum(config.clearance, before)
+            assert (measure.distances(states) >= least - 1e-6).all()
+            for state, speed in list(zip(states, speeds, strict=True))[::20]:
+                assert measure.link_speed(state, speed) <= config.link_speed + 1e-6
+            if workspace is not None:
+                starts, ends = measure.ends(states)
+                points = np.concatenate([starts[:, measure.moving], ends[:, measure.moving]], axis=1)
+                first = points[0] if (states[0] == q).all() else None
+                if first is not None:
+                    start_points = first
+                assert (points >= np.minimum(workspace.lower, start_points) - 1e-6).all()
+                assert (points <= np.maximum(workspace.upper, start_points) + 1e-6).all()
+    event(f"passed {passed > 0}")
+
+
+def test_rest_is_always_allowed(arm):
+    bounds = Bounds(SafetyConfig(), arm, 0.01)
+    surroundings = Surroundings(bounds, Body(arm))
+    rest = np.zeros(7)
+    for q in (arm.home, arm.limits.upper + 1.0, np.full(7, 100.0)):
+        assert Guard().objection(rest, bounds.brake(rest, rest), Situation(surroundings, q, rest, rest)) is None
+
+
+def test_what_goes_too_far_or_too_fast_is_named(arm):
+    plane = HalfSpace("plane", point=np.array([0, 0, 0.1]), normal=np.array([0.0, 0.0, 1.0]))
+    surroundings = Surroundings(Bounds(SafetyConfig(obstacles=(plane,)), arm, 0.01), Body(arm))
+
+    def objection(q, velocity):
+        rest = np.zeros(7)
+        brake = surroundings.bounds.brake(velocity, rest)
+        return Guard().objection(velocity, brake, Situation(surroundings, q, rest, rest))
+
+    at_limit = arm.home.copy()
+    at_limit[0] = arm.limits.upper[0] - 0.101
+    turn = np.array([0.1, 0, 0, 0, 0, 0, 0])
+    assert objection(at_limit, turn) == "joint position"
+    assert objection(at_limit, -turn) is None
+    stretched = np.array([0.0, 1.2, 0.0, -0.3, 0.0, 1.5, 0.0])
+    assert objection(stretched, turn * 4) == "link speed"
+    down = np.array([0, 0.2, 0, 0, 0, 0, 0])
+    assert objection(arm.home, down) in (None, "clearance")
+    nearer = arm.home.copy()
+    while objection(nearer, down) is None:
+        nearer = nearer + 0.01 * down
+    assert objection(nearer, down) == "clearance"
+    assert objection(nearer, -down) is None

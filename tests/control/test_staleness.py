@@ -1,0 +1,63 @@
+"""From the last fresh input: zero command within 150 ms, at rest within 400 ms, ramped."""
+
+import numpy as np
+import pytest
+
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.step import Step
+from latentarm.types import Input
+
+
+@pytest.mark.parametrize("dt", [0.005, 0.01, 0.02])
+@pytest.mark.parametrize("seed", range(12))
+def test_silence_stops_the_arm_in_time(arm, scripted, dt, seed):
+    rng = np.random.default_rng(seed)
+    matrix = rng.uniform(-1.0, 1.0, (2, 7)) * rng.choice([0.1, 1.0])
+    step = Step(arm, scripted(matrix), SafetyConfig(), dt_s=dt)
+    q = arm.home
+    step(Input(np.zeros(2)), 0.0, q, 0.0)
+    step.enable()
+    push = Input(rng.choice([-1.0, 1.0], 2))
+    now = 0.0
+    for _ in range(int(rng.uniform(0.1, 1.5) / dt)):
+        now += dt
+        velocity = step(push, 0.0, q, now).command.velocity
+        q = q + velocity * dt
+    assert np.abs(velocity).max() > 0.005
+    # The last input arrives somewhere between two ticks.
+    fresh = now + rng.uniform(0.0, dt)
+    zero_at = slow_at = None
+    before = velocity
+    for _ in range(int(0.5 / dt)):
+        now += dt
+        record = step(push, now - fresh, q, now)
+        velocity = record.command.velocity
+        q = q + velocity * dt
+        assert (np.abs(velocity - before) <= step._stack.bounds.stop_acceleration * dt + 1e-9).all()
+        before = velocity
+        if zero_at is None and not velocity.any():
+            zero_at = now
+        if slow_at is None and np.abs(velocity).max() < 0.01:
+            slow_at = now
+    assert not velocity.any()
+    assert zero_at - fresh <= 0.150 + 1e-9
+    assert slow_at - fresh <= 0.400
+
+
+def test_even_at_full_speed_of_every_joint(two_arms, scripted):
+    """The planar arms reach the joint speed limit where the Panda's links are too fast for it."""
+    config = SafetyConfig(link_speed=1.5, clearance=0.001)
+    step = Step(two_arms, scripted(np.tile([0.5, -0.5], (2, 5))), config)
+    q = two_arms.home
+    step(Input(np.zeros(2)), 0.0, q, 0.0)
+    step.enable()
+    for _ in range(30):
+        velocity = step(Input(np.array([1.0, 0.0])), 0.0, q, 0.0).command.velocity
+        q = q + velocity * 0.01
+    assert np.abs(velocity).max() == pytest.approx(0.5, abs=0.01)
+    ticks = 0
+    while velocity.any():
+        ticks += 1
+        velocity = step(Input(np.array([1.0, 0.0])), ticks * 0.01, q, 0.0).command.velocity
+        q = q + velocity * 0.01
+    assert ticks * 0.01 <= 0.150
