@@ -1,0 +1,53 @@
+import hypothesis.extra.numpy as hnp
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.latent import LatentController
+from latentarm.robots.catalogue import load_robot
+from latentarm.types import Context
+
+BELIEF = np.array([0.5, 0.3, 0.2])
+
+
+@pytest.fixture(params=["state_decoder", "belief_decoder", "panda", "planar"])
+def steered(request, panda):
+    """A controller and its robot."""
+    if request.param.endswith("decoder"):
+        return LatentController(request.getfixturevalue(request.param)), panda
+    robot = panda if request.param == "panda" else load_robot("planar")
+    return EndEffectorController(robot), robot
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_a_batch_of_inputs_is_steered_as_each_alone(steered, data):
+    controller, robot = steered
+    u = data.draw(hnp.arrays(float, (2, 3, controller.input_dim), elements=st.floats(-1, 1)))
+    share = data.draw(hnp.arrays(float, robot.dof, elements=st.floats(0, 1)))
+    limits = robot.limits
+    context = Context(limits.lower + share * (limits.upper - limits.lower), BELIEF)
+    for mode in range(len(controller.modes)):
+        z = controller.latent(u, context, mode)
+        action = controller.action(z, context, mode)
+        assert z.shape == u.shape
+        assert action.shape == (2, 3, robot.dof)
+        assert np.isfinite(action).all()
+        alone = controller.action(controller.latent(u[1, 2], context, mode), context, mode)
+        assert alone == pytest.approx(action[1, 2], abs=1e-12)
+
+
+def test_the_modes_have_names(steered):
+    controller, _ = steered
+    assert len(set(controller.modes)) == len(controller.modes) >= 1
+    assert all(controller.modes)
+
+
+def test_steering_leaves_the_context_alone(steered):
+    controller, robot = steered
+    context = Context(robot.home.copy(), BELIEF.copy())
+    controller.action(np.ones(2), context, 0)
+    assert np.array_equal(context.state, robot.home)
+    assert np.array_equal(context.belief, BELIEF)
