@@ -10,7 +10,7 @@ from torch import Tensor
 
 from latentarm.models.batches import Batch
 from latentarm.models.networks import Networks, mlp
-from latentarm.models.neural import NeuralModel, conditioned_action, encoder_output
+from latentarm.models.neural import NeuralModel, conditioned_action, encoder_output, posterior
 from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
 
 
@@ -47,13 +47,13 @@ class VAE(NeuralModel):
     kl_weight: float = 0.1
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
-        mean, log_variance = encoder_output(networks, batch.context, batch.action).chunk(2, dim=-1)
+        mean, log_variance = posterior(networks, batch.context, batch.action)
         latent = sample_latent(mean, log_variance, batch.noise)
         error = reconstruction_error(batch.action, self._action(networks, latent, batch.context))
         return error + self.kl_weight * kl_divergence(mean, log_variance)
 
     def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
-        return encoder_output(networks, context, action).chunk(2, dim=-1)[0]
+        return posterior(networks, context, action)[0]
 
     def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
         return mlp(networks["decoder"], latent)
@@ -92,13 +92,13 @@ class CVAE(NeuralModel):
     kl_weight: float = 0.1
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
-        mean, log_variance = encoder_output(networks, batch.context, batch.action).chunk(2, dim=-1)
+        mean, log_variance = posterior(networks, batch.context, batch.action)
         latent = sample_latent(mean, log_variance, batch.noise)
         error = reconstruction_error(batch.action, self._action(networks, latent, batch.context))
         return error + self.kl_weight * kl_divergence(mean, log_variance)
 
     def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
-        return encoder_output(networks, context, action).chunk(2, dim=-1)[0]
+        return posterior(networks, context, action)[0]
 
     def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
         return conditioned_action(networks, latent, context)

@@ -85,9 +85,9 @@ class LatentActionModel(ABC):
     seed: int = 0
     hidden: tuple[int, ...] = (32, 32)
     learning_rate: float = 1e-2
-    epochs: int = 40
-    batch_size: int = 64
-    patience: int = 12
+    epochs: int = 30
+    batch_size: int = 32
+    patience: int = 10
     device: Literal["cpu", "cuda", "auto"] = "cpu"
     checkpoint_interval_s: float = 5.0
     trained_: TrainedModel | None = field(default=None, init=False, repr=False)

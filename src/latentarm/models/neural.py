@@ -98,6 +98,12 @@ def encoder_output(networks: Networks, context: Tensor, action: Tensor) -> Tenso
     return mlp(networks["encoder"], torch.cat([context, action], dim=-1))
 
 
+def posterior(networks: Networks, context: Tensor, action: Tensor) -> tuple[Tensor, Tensor]:
+    """Mean and log variance of a Gaussian encoder, each (S, B, d)."""
+    mean, log_variance = encoder_output(networks, context, action).chunk(2, dim=-1)
+    return mean, log_variance
+
+
 def conditioned_action(networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
     """The decoder network on (z, c): (S, B, d) and (S, B, c) to (S, B, m)."""
     return mlp(networks["decoder"], torch.cat([latent, context], dim=-1))
