@@ -30,13 +30,13 @@ class BoltzmannConfig:
         switch_s: a switch takes this long, during which the input is zero, s.
     """
 
-    beta: float = 5000.0
+    beta: float = 2000.0
     horizon_s: float = 0.5
     rotation_weight: float = 0.2
     magnitudes: tuple[float, ...] = (0.2, 0.6, 1.0)
     directions: int = 8
     decision_s: float = 0.1
-    switch_cost: float = 0.02
+    switch_cost: float = 0.015
     switch_s: float = 0.8
 
     def __post_init__(self) -> None:
@@ -87,7 +87,8 @@ class BoltzmannOperator(Operator):
 
         p(u) ∝ exp(-beta ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
 
-    over a grid of inputs: none, and every direction at every magnitude. Distance between poses is
+    over a grid of inputs: none, at which the arm stands still whatever the decoder makes of zero, and
+    every direction at every magnitude. Distance between poses is
     ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks one step ahead only, as in the paper:
     they can get stuck where no single input brings the tool closer.
 
@@ -151,9 +152,12 @@ class BoltzmannOperator(Operator):
         """
         inputs = self._grid(controller.input_dim)
         modes = range(len(controller.modes))
-        actions = [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
+        actions = np.stack(
+            [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
+        )
+        actions[:, 0] = 0.0  # the arm of a person who lets go stands still, whatever phi(0, c) is
         # One call over all modes: (M, K, n).
-        reached = self._chain.forward(context.state + self._config.horizon_s * np.stack(actions))
+        reached = self._chain.forward(context.state + self._config.horizon_s * actions)
         angle = self._config.rotation_weight * angle_between(reached.rotation, target.rotation)
         cost = ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
         best_other = min((float(cost[m].min()) for m in modes if m != mode), default=np.inf)
