@@ -7,12 +7,12 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import HalfSpace, Obstacle
-from latentarm.kinematics.rotations import angle_between
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import Hand, demonstrate
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.task import Task
+from latentarm.tasks.tolerance import within
 from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Pose
 
 TABLE_HEIGHT = 0.0
@@ -33,11 +33,11 @@ SCOOP_TILT = 0.45
 SCOOP_SWEEP = (-0.03, 0.04)
 """Where a scoop enters and leaves the food, m outwards from its middle."""
 
-REACHED_DISTANCE = 0.03
-"""A waypoint is reached within this distance, m, ..."""
+START_SPREAD = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
+"""How far each joint may start from the ready pose, rad: mostly turned about the base."""
 
-REACHED_ANGLE = np.deg2rad(20.0)
-"""... and this angle, rad. Both were set before any result was seen."""
+NEXT_BITE = 0.15
+"""Share of demonstrations that begin above another item, as when one bite follows another."""
 
 _VIA = 3
 """Configurations between the ends of a stab or scoop, so that the tool follows a line."""
@@ -78,10 +78,9 @@ class TableTop(Task):
         """Above each item, the fork upright."""
         return self._goals
 
-    def sample_start(self, rng: np.random.Generator) -> FloatArray:
+    def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
         """About the ready pose, above and before the items: (7,), rad."""
-        spread = np.array([0.3, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1])
-        return self.robot.home + rng.uniform(-spread, spread)
+        return self.robot.home + rng.uniform(-START_SPREAD, START_SPREAD)
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
         """The pose above the item, then the end of the stab or scoop.
@@ -95,9 +94,7 @@ class TableTop(Task):
 
     def reached(self, pose: Pose, waypoint: Pose) -> bool:
         """Within 0.03 m and 20 degrees."""
-        distance = np.linalg.norm(pose.position - waypoint.position)
-        angle = angle_between(pose.rotation, waypoint.rotation)
-        return bool(distance <= REACHED_DISTANCE and angle <= REACHED_ANGLE)
+        return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
         """Reach and manipulate, goals and manners in turn, as a simulated person would.
@@ -120,7 +117,11 @@ class TableTop(Task):
         goal = index % len(ITEMS)
         manner = self.manners[index // len(ITEMS) % len(self.manners)]
         strokes = (self.goals[goal].configuration[None], self._manipulation(goal, manner))
-        state = demonstrate(self.robot.chain, self.sample_start(rng), strokes, hand, rng)
+        start = self.sample_start(goal, rng)
+        if rng.random() < NEXT_BITE:
+            other = (goal + rng.integers(1, len(ITEMS))) % len(ITEMS)
+            start = self.goals[other].configuration + rng.normal(0.0, hand.spread, self.robot.dof)
+        state = demonstrate(self.robot.chain, start, strokes, hand, rng)
         return Episode(
             state=state,
             timestamp=np.arange(len(state)) / hand.rate_hz,

@@ -39,8 +39,13 @@ class Task(ABC):
         """What the arm must keep clear of."""
 
     @abstractmethod
-    def sample_start(self, rng: np.random.Generator) -> FloatArray:
-        """A state to begin from, (n,), rad."""
+    def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
+        """A state to begin from on the way to a goal, (n,), rad.
+
+        Args:
+            goal: index into `goals`.
+            rng: source of all variation.
+        """
 
     @abstractmethod
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:

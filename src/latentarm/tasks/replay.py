@@ -1,0 +1,123 @@
+"""Where demonstrations began and ended, as a task: to see whether a model can do what people did."""
+
+from dataclasses import replace
+from typing import final
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.kinematics.rotations import angle_between
+from latentarm.robots.robot import Robot
+from latentarm.tasks.task import Task
+from latentarm.tasks.tolerance import within
+from latentarm.types import Demonstrations, FloatArray, Goal, Pose
+
+WAYPOINT_SPACING = 0.25
+"""Way of the tool between two waypoints, m, a radian of turning counted as `RADIAN`."""
+
+RADIAN = 0.2
+"""What a radian of turning counts as way, m."""
+
+STILL = 0.02
+"""Joint speed below which the arm rests at an episode's ends, rad/s."""
+
+
+@final
+class Replay(Task):
+    """Drive the way that demonstrations went, from where they began, through poses along them.
+
+    A goal is where an episode ended. Episodes that training never saw make this the honest test of
+    a model on real demonstrations, for which nothing else is known of the task.
+
+    Args:
+        robot: the arm that was recorded.
+        demonstrations: the episodes to follow, at least one that moves.
+
+    Raises:
+        UserError: no episode moves.
+    """
+
+    def __init__(self, robot: Robot, demonstrations: Demonstrations) -> None:
+        self._robot = robot
+        self._demonstrations = demonstrations
+        moving = [_moving(one.state, one.timestamp) for one in demonstrations.episodes]
+        self._paths = tuple(path for path in moving if len(path) > 1)
+        if not self._paths:
+            raise UserError("None of these episodes moves, so there is nothing to follow.")
+
+    @property
+    def name(self) -> str:
+        """``held_out``."""
+        return "held_out"
+
+    @property
+    def robot(self) -> Robot:
+        """The arm that was recorded."""
+        return self._robot
+
+    @property
+    def goals(self) -> tuple[Goal, ...]:
+        """Where each episode ended."""
+        chain = self._robot.chain
+        return tuple(
+            Goal(f"end {index + 1}", path[-1], chain.forward(path[-1]))
+            for index, path in enumerate(self._paths)
+        )
+
+    @property
+    def manners(self) -> tuple[str, ...]:
+        """One: the way the person went."""
+        return ("follow",)
+
+    @property
+    def obstacles(self) -> tuple[()]:
+        """None: nothing is known of the place."""
+        return ()
+
+    def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
+        """Where the goal's episode began, (n,), rad."""
+        return self._path(goal)[0]
+
+    def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
+        """Poses along the goal's episode, the last one its end.
+
+        Raises:
+            UserError: there is no such goal or manner.
+        """
+        if manner not in self.manners:
+            raise UserError(f"A demonstration can be followed, not {manner!r}.")
+        path = self._path(goal)
+        poses = self._robot.chain.forward(path)
+        turned = angle_between(poses.rotation[1:], poses.rotation[:-1])
+        way = np.cumsum(np.linalg.norm(np.diff(poses.position, axis=0), axis=1) + RADIAN * turned)
+        count = max(1, round(way[-1] / WAYPOINT_SPACING))
+        at = np.searchsorted(way, way[-1] * np.arange(1, count + 1) / count - 1e-9) + 1
+        return tuple(Pose(poses.position[index], poses.rotation[index]) for index in at)
+
+    def reached(self, pose: Pose, waypoint: Pose) -> bool:
+        """Within 0.03 m and 20 degrees."""
+        return within(pose, waypoint)
+
+    def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
+        """The first of the episodes as they are.
+
+        Raises:
+            UserError: there are not so many.
+        """
+        if not 1 <= episodes <= len(self._demonstrations.episodes):
+            raise UserError(
+                f"There are {len(self._demonstrations.episodes)} episodes to follow, not {episodes}."
+            )
+        return replace(self._demonstrations, episodes=self._demonstrations.episodes[:episodes])
+
+    def _path(self, goal: int) -> FloatArray:
+        if not 0 <= goal < len(self._paths):
+            raise UserError(f"There are episodes 0 to {len(self._paths) - 1} to follow, not {goal}.")
+        return self._paths[goal]
+
+
+def _moving(state: FloatArray, timestamp: FloatArray) -> FloatArray:
+    """The states (T, n) without the rest at either end; no more than one where nothing moves."""
+    speed = np.abs(np.diff(state, axis=0)).max(axis=1) / np.diff(timestamp)
+    moves = np.flatnonzero(speed > STILL)
+    return state[moves[0] : moves[-1] + 2] if len(moves) else state[:1]
