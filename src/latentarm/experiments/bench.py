@@ -1,0 +1,167 @@
+"""`latentarm bench`: ratios that say whether the online step fits a 1 kHz arm and whether seeds train together.
+
+Everything is timed in one run on one machine, interleaved where two figures are compared, because
+absolute times depend on what else the machine does.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from latentarm.assistance.belief import BoltzmannBelief
+from latentarm.assistance.blending import FixedAlpha
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.step import Step
+from latentarm.controllers.latent import LatentController
+from latentarm.kinematics.obstacles import Sphere
+from latentarm.models.autoencoders import CVAE
+from latentarm.robots.simulated import SimulatedArm
+from latentarm.tasks.table_top import TableTop
+from latentarm.types import Demonstrations, Episode, FloatArray, Input, Row
+
+PAIRS = 10_000
+SEEDS = 10
+EPOCHS = 10
+RATE_HZ = 1000.0
+WARM_UP = 500
+TORCH_EVERY = 10
+"""The torch decoder is timed once in so many steps, between two of them."""
+
+
+def run_bench(repeats: int, seed: int, progress: bool) -> list[Row]:
+    """Time the online step and the batched fit.
+
+    Args:
+        repeats: online steps that are timed.
+        seed: of the demonstrations, the models and the inputs.
+        progress: show a bar while fitting.
+
+    Returns:
+        One row per figure; where many times were taken, the row gives their number.
+    """
+    task = TableTop()
+    demonstrations = task.demonstrate(12, np.random.default_rng(seed))
+    fits, model = _time_fits(demonstrations, seed, progress)
+    return [*_time_step(task, model, repeats, seed), *fits]
+
+
+def _time_step(task: TableTop, model: CVAE, repeats: int, seed: int) -> list[Row]:
+    """The whole step (7 DoF, 2-D z, 3 goals, all filters, a table and an obstacle) beside torch's decoder."""
+    rng = np.random.default_rng(seed)
+    dt_s = 1.0 / RATE_HZ
+    goals = [goal.configuration for goal in task.goals]
+    obstacle = Sphere("cup", np.array([0.35, 0.45, 0.2]), 0.06)
+    step = Step(
+        task.robot,
+        LatentController(model.decoder(0)),
+        SafetyConfig(obstacles=(*task.obstacles, obstacle)),
+        goals=task.goals,
+        # An update in every step: nothing that the step can do is left out of its time.
+        belief=BoltzmannBelief(goals, period_s=dt_s),
+        arbitration=FixedAlpha(),
+        dt_s=dt_s,
+    )
+    arm = SimulatedArm(task.robot, task.robot.home, dt_s)
+    step.reset(arm.state())
+    step(Input(np.zeros(2)), 0.0, arm.state(), 0.0)
+    step.enable()
+    decode = _torch_decoder(model)
+    step_s: list[float] = []
+    torch_s: list[float] = []
+    u = np.zeros(2)
+    for tick in range(repeats + WARM_UP):
+        if tick % 100 == 0:
+            u = rng.uniform(-1.0, 1.0, 2)
+        state, given = arm.state(), Input(u)
+        began = time.perf_counter()
+        record = step(given, 0.0, state, tick * dt_s)
+        step_s.append(time.perf_counter() - began)
+        arm.send(record.command)
+        arm.advance()
+        if tick % TORCH_EVERY == 0:
+            torch_s.append(decode(u, state))
+    step_us = 1e6 * np.array(step_s[WARM_UP:])
+    torch_us = 1e6 * np.array(torch_s[WARM_UP // TORCH_EVERY :])
+    median, torch_median = float(np.median(step_us)), float(np.median(torch_us))
+    return [
+        _row("online_step_median_us", "us", median, len(step_us)),
+        _row("online_step_p99_us", "us", float(np.percentile(step_us, 99)), len(step_us)),
+        _row("torch_decoder_median_us", "us", torch_median, len(torch_us)),
+        _row("online_step_over_torch_decoder", "1", median / torch_median, len(step_us)),
+    ]
+
+
+def _torch_decoder(model: CVAE) -> Callable[[FloatArray, FloatArray], float]:
+    """Layers of the decoder's sizes as torch eager modules; a call returns how long they took, s.
+
+    How long they take does not depend on their weights. Making the input tensor, which a loop in torch
+    would have to do as well, is not timed.
+    """
+    import torch
+
+    dof = TableTop().robot.dof
+    sizes = (model.latent_dim + dof, *model.hidden, dof)
+    modules: list[torch.nn.Module] = []
+    for inputs, outputs in pairwise(sizes):
+        modules += [torch.nn.Linear(inputs, outputs), torch.nn.SiLU()]
+    network = torch.nn.Sequential(*modules[:-1])
+
+    def timed(u: FloatArray, state: FloatArray) -> float:
+        inputs = torch.tensor(np.concatenate([u, state]), dtype=torch.float32)[None]
+        with torch.no_grad():
+            began = time.perf_counter()
+            network(inputs)
+            return time.perf_counter() - began
+
+    return timed
+
+
+def _time_fits(demonstrations: Demonstrations, seed: int, progress: bool) -> tuple[list[Row], CVAE]:
+    """Ten seeds in one fit beside the same ten in turn: the same pairs, steps and final losses."""
+    few = _about(demonstrations, PAIRS)
+    began = time.perf_counter()
+    together = _model(SEEDS, seed)
+    together.fit(few, progress=progress)
+    batched_s = time.perf_counter() - began
+    began = time.perf_counter()
+    alone = [_model(1, seed + offset) for offset in range(SEEDS)]
+    for model in alone:
+        model.fit(few, progress=progress)
+    sequential_s = time.perf_counter() - began
+    loss = np.concatenate([model.held_out_loss_ for model in alone])
+    rows = [
+        _row("batched_fit_s", "s", batched_s, 1),
+        _row("sequential_fit_s", "s", sequential_s, 1),
+        _row("sequential_over_batched", "1", sequential_s / batched_s, 1),
+        _loss_row("batched_fit_loss", together.held_out_loss_),
+        _loss_row("sequential_fit_loss", loss),
+    ]
+    return rows, together
+
+
+def _model(seeds: int, seed: int) -> CVAE:
+    # Patience as long as the training: both ways take the same number of steps.
+    return CVAE(seeds=seeds, seed=seed, data_seed=0, epochs=EPOCHS, patience=EPOCHS)
+
+
+def _about(demonstrations: Demonstrations, count: int) -> Demonstrations:
+    """Whole episodes with about so many context-action pairs left for training."""
+    held_out = CVAE.held_out_fraction
+    per_sample = 2 * CVAE.window
+    kept: list[Episode] = []
+    for episode in demonstrations.episodes:
+        kept.append(episode)
+        if sum(len(one.state) for one in kept) * per_sample * (1 - held_out) >= count:
+            break
+    return replace(demonstrations, episodes=tuple(kept))
+
+
+def _loss_row(measure: str, loss: FloatArray) -> Row:
+    return Row("bench", measure, "1", float(loss.mean()), float(loss.std(ddof=1)), len(loss), model="cvae")
+
+
+def _row(measure: str, unit: str, value: float, count: int) -> Row:
+    return Row("bench", measure, unit, value, None, count)

@@ -1,0 +1,169 @@
+"""`latentarm demo`: from demonstrations to a driven arm in a few minutes, on embedded defaults.
+
+A simulated person demonstrates eating from a table with three food items. A cVAE and a
+state-conditioned linear decoder learn 2-D latent actions from that. Then a simulated operator reaches
+each item and stabs or scoops at it: with latent actions, with latent actions and shared autonomy, and
+with today's mode switching.
+"""
+
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+
+from latentarm.control.controller import Controller
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.latent import LatentController
+from latentarm.demonstrations.dataset import write_dataset
+from latentarm.errors import UserError
+from latentarm.experiments.arm_figure import draw_task
+from latentarm.experiments.drive_figures import draw_drives, draw_inputs
+from latentarm.experiments.driving import drive_all
+from latentarm.experiments.evaluating import evaluate_run
+from latentarm.experiments.simulation import Setup, Trace
+from latentarm.experiments.training import TrainConfig, train_run
+from latentarm.files import write_text
+from latentarm.metrics.drives import drive_rows
+from latentarm.metrics.results import write_results
+from latentarm.metrics.summary import Subject
+from latentarm.metrics.table import markdown_table
+from latentarm.models.decoder import load_decoder
+from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.tasks.table_top import TableTop
+from latentarm.types import Row
+
+MODELS = ("cvae", "scl")
+EPISODES = 60
+SEEDS = 3
+EPOCHS = 8
+TIME_LIMIT_S = 60.0
+
+
+@dataclass(frozen=True)
+class DemoConfig:
+    """What `latentarm demo` was asked for.
+
+    Attributes:
+        out: a new folder for everything that the demo writes.
+        drives: simulated drives for each goal and condition.
+        seed: of everything random.
+        jobs: processes that drive side by side; -1 is one per core.
+        quiet: show no progress.
+    """
+
+    out: Path
+    drives: int = 20
+    seed: int = 0
+    jobs: int = -1
+    quiet: bool = False
+
+
+def run_demo(config: DemoConfig) -> list[Row]:
+    """Run the whole demo and write what it made to ``config.out``.
+
+    Returns:
+        Figures of the drives: mean and SD over all goals.
+
+    Raises:
+        UserError: the folder holds something else, or cannot be written.
+    """
+    _clear(config.out)
+    console = Console(stderr=True, quiet=config.quiet)
+    task = TableTop()
+    console.print(f"1/3  A simulated person demonstrates eating {EPISODES} times.")
+    demonstrations = task.demonstrate(EPISODES, np.random.default_rng(config.seed))
+    write_dataset(demonstrations, config.out / "demonstrations")
+    draw_task(task, demonstrations, config.out / "task.png")
+    properties: list[Row] = []
+    for model in MODELS:
+        console.print(f"2/3  {model}: learning 2-D latent actions, {SEEDS} seeds at once.")
+        properties += _train(config, model)
+    setups = _setups(task, config)
+    traces: dict[str, list[Trace]] = {}
+    rows: list[Row] = []
+    for number, (subject, setup) in enumerate(setups, start=1):
+        drives = config.drives * len(task.goals)
+        name = " ".join(part for part in (subject.model, subject.condition) if part)
+        console.print(f"3/3  {number} of {len(setups)}: a simulated operator drives {drives} times, {name}.")
+        driven = drive_all(setup, config.drives, config.seed, config.jobs)
+        rows += drive_rows(subject, [trace.figures for trace in driven])
+        if subject.model in (MODELS[0], None):
+            traces[str(subject.condition)] = driven
+    _write(config, task, rows, properties, traces)
+    return rows
+
+
+def _train(config: DemoConfig, model: str) -> list[Row]:
+    run = config.out / "runs" / model
+    train_run(
+        TrainConfig(
+            demonstrations=config.out / "demonstrations",
+            model=model,
+            out=run,
+            seeds=SEEDS,
+            seed=config.seed,
+            epochs=EPOCHS,
+            progress=not config.quiet,
+        )
+    )
+    return evaluate_run(run, run, config.seed)
+
+
+def _setups(task: TableTop, config: DemoConfig) -> list[tuple[Subject, Setup]]:
+    """Latent actions of each model, alone and assisted, and mode switching."""
+    setups: list[tuple[Subject, Setup]] = []
+
+    def add(model: str | None, condition: str, controller: Controller, *, assisted: bool) -> None:
+        setup = Setup(task, controller, assisted, BoltzmannConfig(), TIME_LIMIT_S)
+        setups.append((Subject("demo", task=task.name, model=model, condition=condition), setup))
+
+    for model in MODELS:
+        controller = LatentController(load_decoder(config.out / "runs" / model))
+        add(model, "latent", controller, assisted=False)
+        add(model, "latent_assist", controller, assisted=True)
+    add(None, "end_effector", EndEffectorController(task.robot), assisted=False)
+    return setups
+
+
+def _write(
+    config: DemoConfig,
+    task: TableTop,
+    rows: Sequence[Row],
+    properties: Sequence[Row],
+    traces: dict[str, list[Trace]],
+) -> None:
+    out = config.out
+    about = {"seed": config.seed, "drives_per_goal": config.drives, "operator": "simulated"}
+    write_results(out / "results.json", [*rows, *properties], about)
+    draw_drives(traces, task, out / "paths.png")
+    draw_inputs({condition: drives[0] for condition, drives in traces.items()}, out / "inputs.png")
+    count = config.drives * len(task.goals)
+    write_text(
+        out / "results.md",
+        "# What the demo measured\n\n"
+        f"A simulated operator drove a simulated Panda {count} times per column ({config.drives} to each of"
+        f" {len(task.goals)} goals), seed {config.seed}; mean ± SD over the drives, failed ones included"
+        f" (they end after {TIME_LIMIT_S:g} s). No person took part.\n\n"
+        f"{markdown_table(rows)}\n"
+        "![Paths of the tool](paths.png)\n\n![Inputs over time](inputs.png)\n\n"
+        "## The latent spaces, on held-out episodes\n\n"
+        f"Mean ± SD over {SEEDS} seeds.\n\n{markdown_table(properties)}\n"
+        "![The task](task.png)\n",
+    )
+
+
+def _clear(out: Path) -> None:
+    """Make room for a new demo: an older demo is replaced, anything else is left alone.
+
+    Raises:
+        UserError: the folder holds something that no demo wrote.
+    """
+    if not out.exists() or not any(out.iterdir()):
+        return
+    if not (out / "demonstrations" / "meta" / "info.json").exists():
+        raise UserError(f"{out} is not empty and holds no earlier demo: choose another folder with --out.")
+    for made in ("demonstrations", "runs"):
+        shutil.rmtree(out / made, ignore_errors=True)

@@ -1,0 +1,204 @@
+"""`latentarm drive`: simulated operators drive a task, with latent actions or with mode switching."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from joblib import Parallel, delayed
+
+from latentarm.control.controller import Controller
+from latentarm.control.export import export_journal
+from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.latent import LatentController
+from latentarm.demonstrations.dataset import read_dataset
+from latentarm.demonstrations.folders import check_vacant
+from latentarm.demonstrations.split import select_episodes
+from latentarm.errors import UserError
+from latentarm.experiments.drive_figures import draw_drives
+from latentarm.experiments.evaluating import robot_of
+from latentarm.experiments.runs import Run, read_run
+from latentarm.experiments.simulation import RATE_HZ, Setup, Trace, simulate
+from latentarm.metrics.drives import drive_rows
+from latentarm.metrics.results import write_results
+from latentarm.metrics.summary import Subject
+from latentarm.models.decoder import load_decoder
+from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.robots.catalogue import load_robot
+from latentarm.tasks.reach import Reach
+from latentarm.tasks.replay import Replay
+from latentarm.tasks.table_top import TableTop
+from latentarm.tasks.task import Task
+from latentarm.types import Row
+
+ControllerName = Literal["latent", "latent_assist", "end_effector"]
+TaskName = Literal["table_top", "held_out", "reach"]
+
+
+@dataclass(frozen=True)
+class DriveConfig:
+    """What `latentarm drive` was asked for; its ``--help`` says the same of each field.
+
+    Attributes:
+        run: a trained run, or None for mode switching alone.
+        controller: what drives.
+        out: folder for drives.json and the figure.
+        task: what is to be done; what the run was trained for where None.
+        robot: a robot's name or model file; that of the run where None.
+        end_effector: site, body or link of a model file.
+        drives: for each goal.
+        beta: rationality of the simulated operator.
+        time_limit_s: a drive that lasts longer has failed.
+        seed: of everything random.
+        jobs: processes side by side.
+        record: folder of a new dataset that the drives are exported to, or None.
+    """
+
+    run: Path | None
+    controller: ControllerName
+    out: Path
+    task: TaskName | None = None
+    robot: str | None = None
+    end_effector: str | None = None
+    drives: int = 3
+    beta: float = BoltzmannConfig.beta
+    time_limit_s: float = 60.0
+    seed: int = 0
+    jobs: int = 1
+    record: Path | None = None
+
+
+def drive_run(config: DriveConfig) -> list[Row]:
+    """Drive every goal of a task several times and write ``drives.json`` and a figure.
+
+    Returns:
+        Mean and SD over the drives.
+
+    Raises:
+        UserError: the run, the robot or the task is not to be had, or they do not fit each other.
+    """
+    run = None if config.run is None else read_run(config.run)
+    task = _task(config, run)
+    setup = Setup(
+        task=task,
+        controller=_controller(config, task),
+        assisted=config.controller == "latent_assist",
+        operator=BoltzmannConfig(beta=config.beta),
+        time_limit_s=config.time_limit_s,
+    )
+    if config.record is None:
+        traces = drive_all(setup, config.drives, config.seed, config.jobs)
+    else:
+        traces = _record_all(setup, config, config.record)
+    subject = Subject(
+        "drive", task=task.name, model=None if run is None else run.model, condition=config.controller
+    )
+    rows = drive_rows(subject, [trace.figures for trace in traces])
+    about = {"run": str(config.run), "seed": config.seed, "beta": config.beta, "operator": "simulated"}
+    write_results(config.out / "drives.json", rows, about)
+    draw_drives({config.controller: traces}, task, config.out / "paths.png")
+    return rows
+
+
+def drive_all(setup: Setup, drives: int, seed: int, jobs: int) -> list[Trace]:
+    """Drive to every goal ``drives`` times, the task's manners in turn, processes side by side.
+
+    A drive depends on the seed, the goal and its number alone, so that every controller meets the
+    same starts and the number of processes changes nothing.
+
+    Raises:
+        UserError: fewer than one drive is asked for.
+    """
+    calls = _drives(setup, drives, seed)
+    return list(Parallel(n_jobs=jobs)(delayed(simulate)(setup, *call) for call in calls))
+
+
+def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]:
+    """Drive one after the other, each step journaled as it happens; then export the journal.
+
+    Raises:
+        UserError: the dataset is there already, or a file cannot be written.
+    """
+    check_vacant(dataset)
+    task = setup.task
+    journal = config.out / "journal.sqlite"
+    if journal.exists():
+        raise UserError(f"{journal} is there already: choose another folder with --out.")
+    recorder = Recorder(journal)
+    traces: list[Trace] = []
+    try:
+        for goal, manner, rng in _drives(setup, config.drives, config.seed):
+            recorder.begin_episode(
+                EpisodeHeader(
+                    robot=task.robot.name,
+                    joint_names=task.robot.joint_names,
+                    rate_hz=RATE_HZ,
+                    task=f"{manner} {task.goals[goal].name}",
+                    goals=task.goals if setup.assisted else (),
+                    modes=setup.controller.modes,
+                )
+            )
+            traces.append(simulate(setup, goal, manner, rng, recorder.record))
+            recorder.end_episode()
+    finally:
+        recorder.close()
+    export_journal(journal, dataset)
+    return traces
+
+
+def _drives(setup: Setup, drives: int, seed: int) -> list[tuple[int, str, np.random.Generator]]:
+    """Goal, manner and randomness of every drive.
+
+    Raises:
+        UserError: fewer than one drive is asked for.
+    """
+    if drives < 1:
+        raise UserError(f"Ask for at least one drive to each goal, not {drives}.")
+    manners = setup.task.manners
+    return [
+        (goal, manners[number % len(manners)], np.random.default_rng([seed, goal, number]))
+        for goal in range(len(setup.task.goals))
+        for number in range(drives)
+    ]
+
+
+def _task(config: DriveConfig, run: Run | None) -> Task:
+    """The task that is asked for, or that the run was trained for."""
+    name = config.task or _usual_task(config, run)
+    if name == "table_top":
+        if config.robot not in (None, "panda"):
+            raise UserError(f"The table-top task is set for the Panda, not for {config.robot}: use --task reach.")
+        return TableTop()
+    if config.robot is not None:
+        robot = load_robot(config.robot, config.end_effector)
+    else:
+        robot = load_robot("panda") if run is None else robot_of(run)
+    if name == "reach":
+        return Reach(robot)
+    if run is None:
+        raise UserError("Held-out episodes belong to a run: name one, as in `latentarm drive RUN`.")
+    return Replay(robot, select_episodes(read_dataset(run.demonstrations), run.held_out))
+
+
+def _usual_task(config: DriveConfig, run: Run | None) -> TaskName:
+    if run is None:
+        return "table_top" if config.robot in (None, "panda") else "reach"
+    goals = {goal.name for goal in read_dataset(run.demonstrations).goals}
+    if goals == {goal.name for goal in TableTop().goals}:
+        return "table_top"
+    return "held_out"
+
+
+def _controller(config: DriveConfig, task: Task) -> Controller:
+    if config.controller == "end_effector":
+        return EndEffectorController(task.robot)
+    if config.run is None:
+        raise UserError("Latent actions need a trained run: name one, as in `latentarm drive RUN`.")
+    decoder = load_decoder(config.run)
+    if decoder.action_dim != task.robot.dof:
+        raise UserError(
+            f"{config.run} was trained for {decoder.action_dim} joints and the robot {task.robot.name} has"
+            f" {task.robot.dof}."
+        )
+    return LatentController(decoder)

@@ -1,0 +1,142 @@
+"""One simulated drive: a simulated operator, a controller, Algorithm 1 with its safety filters, an arm."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from latentarm.assistance.belief import BoltzmannBelief
+from latentarm.assistance.blending import FixedAlpha
+from latentarm.control.controller import Controller
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.step import Step
+from latentarm.metrics.drives import Drive, measure_drive
+from latentarm.operators.boltzmann import BoltzmannConfig, BoltzmannOperator
+from latentarm.robots.simulated import SimulatedArm
+from latentarm.tasks.task import Task
+from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
+
+RATE_HZ = 100.0
+"""Rate of the simulated loop, the most that a real arm is sent from Python."""
+
+BELIEF_PERIOD_S = 0.1
+"""How often the belief is updated: as often as the simulated operator decides."""
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """Everything that stays the same from drive to drive.
+
+    Attributes:
+        task: the robot, the goals and when they are reached.
+        controller: what the simulated operator steers with.
+        assisted: whether the robot helps towards its belief over the task's goals.
+        operator: how the simulated operator thinks.
+        time_limit_s: a drive that lasts longer has failed.
+    """
+
+    task: Task
+    controller: Controller
+    assisted: bool
+    operator: BoltzmannConfig
+    time_limit_s: float
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """What is kept of a drive for figures, sampled at the loop's rate.
+
+    Attributes:
+        figures: what is measured of it.
+        goal: index of the goal.
+        time_s: (T,), s.
+        position: (T, 3), the tool, m.
+        input: (T, d).
+        mode: (T,), index of the controller's mode.
+        belief: (T, G).
+    """
+
+    figures: Drive
+    goal: int
+    time_s: FloatArray
+    position: FloatArray
+    input: FloatArray
+    mode: FloatArray
+    belief: FloatArray
+
+
+def simulate(
+    setup: Setup,
+    goal: int,
+    manner: str,
+    rng: np.random.Generator,
+    watch: Callable[[StepRecord], None] | None = None,
+) -> Trace:
+    """Drive once, until the task is done or the time is over.
+
+    Args:
+        setup: who drives what, and how.
+        goal: index into the task's goals.
+        manner: what is done at the goal.
+        rng: of the start and of the simulated operator.
+        watch: is told every step, such as a recorder.
+
+    Returns:
+        The drive.
+    """
+    task, controller = setup.task, setup.controller
+    dt_s = 1.0 / RATE_HZ
+    start = task.sample_start(goal, rng)
+    arm = SimulatedArm(task.robot, start, dt_s)
+    step = _step(setup, dt_s)
+    operator = BoltzmannOperator(task.robot, setup.operator, period_s=dt_s)
+    remaining = list(task.waypoints(goal, manner))
+    step.reset(start)
+    records = [step(Input(np.zeros(controller.input_dim)), 0.0, start, 0.0)]
+    step.enable()
+    for tick in range(1, int(setup.time_limit_s * RATE_HZ) + 1):
+        state = arm.state()
+        pose = task.robot.chain.forward(state)
+        while remaining and task.reached(pose, remaining[0]):
+            remaining.pop(0)
+        if not remaining:
+            break
+        context = Context(state=state, belief=step.belief)
+        given = operator.act(context, controller, step.mode, remaining[0], rng)
+        records.append(step(given, 0.0, state, tick * dt_s))
+        if watch is not None:
+            watch(records[-1])
+        arm.send(records[-1].command)
+        arm.advance()
+    return _trace(records, setup, goal, manner, success=not remaining)
+
+
+def _step(setup: Setup, dt_s: float) -> Step:
+    task = setup.task
+    safety = SafetyConfig(obstacles=tuple(task.obstacles))
+    if not setup.assisted:
+        return Step(task.robot, setup.controller, safety, dt_s=dt_s)
+    configurations = [goal.configuration for goal in task.goals]
+    return Step(
+        task.robot,
+        setup.controller,
+        safety,
+        goals=task.goals,
+        belief=BoltzmannBelief(configurations, period_s=BELIEF_PERIOD_S),
+        arbitration=FixedAlpha(),
+        dt_s=dt_s,
+    )
+
+
+def _trace(records: list[StepRecord], setup: Setup, goal: int, manner: str, *, success: bool) -> Trace:
+    chain = setup.task.robot.chain
+    target: Pose = setup.task.waypoints(goal, manner)[-1]
+    return Trace(
+        figures=measure_drive(records, chain, target, success=success),
+        goal=goal,
+        time_s=np.array([record.time_s for record in records]),
+        position=chain.forward(np.stack([record.state for record in records])).position,
+        input=np.stack([record.input for record in records]),
+        mode=np.array([record.mode for record in records], dtype=np.float64),
+        belief=np.stack([record.belief for record in records]),
+    )
