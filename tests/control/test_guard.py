@@ -67,7 +67,8 @@ def test_what_passes_is_safe_all_the_way(arm, two_arms, oracle, seed, name):
     if rng.uniform() < 0.5:
         measure = oracle(robot)
         ends = np.concatenate(measure.ends(q))[np.r_[measure.moving, measure.moving + len(robot.capsules)]]
-        workspace = Workspace(ends.min(0) - rng.uniform(-0.002, 0.02, 3), ends.max(0) + rng.uniform(-0.002, 0.02, 3))
+        pads = rng.uniform(-0.002, 0.02, (2, 3)) + 0.01 * (np.ptp(ends, axis=0) < 0.01)
+        workspace = Workspace(ends.min(axis=0) - pads[0], ends.max(axis=0) + pads[1])
     config = SafetyConfig(obstacles=obstacles, workspace=workspace)
     bounds = Bounds(config, robot, 0.01)
     surroundings = Surroundings(bounds, Body(robot))

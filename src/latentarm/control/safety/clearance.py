@@ -31,7 +31,7 @@ class Clearance(SafetyFilter):
         rows = contacts.row.reshape(-1, bounds.dof)
         room = np.maximum(contacts.height.ravel() - bounds.config.clearance, 0.0)
         floor = -bounds.damping_per_s * np.maximum(room - BUFFER_M, 0.0)
-        velocity = slide(velocity, rows, floor)
+        velocity = slide(velocity, rows, floor, room == 0.0)
         speed = np.abs(velocity)
         bend = situation.surroundings.proximity.curvature[contacts.pair] @ speed @ speed
         share = unbent(velocity, rows, room, np.repeat(bend, 2), bounds.reach_s)

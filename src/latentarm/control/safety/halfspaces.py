@@ -1,47 +1,68 @@
-"""Keeping a velocity inside half-spaces ``rows @ v >= floor`` with floors that are zero or below."""
+"""Keeping a velocity from using up distances faster than it may."""
+
+import math
 
 import numpy as np
 
-from latentarm.types import FloatArray
+from latentarm.types import BoolArray, FloatArray
 
-_PASSES = 8
+_PASSES = 12
+_ENOUGH = 1e-9
+
+_LEAN = 0.2
+"""Past a limit motion must lead away from it by this much of its size, and not only along it."""
 
 
-def slide(velocity: FloatArray, rows: FloatArray, floor: FloatArray) -> FloatArray:
+def slide(velocity: FloatArray, rows: FloatArray, floor: FloatArray, passed: BoolArray) -> FloatArray:
     """Take out of a velocity what goes too fast towards something, and keep the rest.
 
-    The worst half-space is projected onto, in turn, so that an arm pushed obliquely at a table slides
-    along it. Because rest is in every half-space, no projection lengthens the velocity or turns it
-    against what was asked; what is still too fast after a few rounds is slowed down as a whole.
+    The worst half-space ``rows @ v >= floor`` is projected onto, in turn, so that an arm pushed obliquely
+    at a table slides along it. Where a limit is passed already, what is left leans away from it a little,
+    because a path along a curved surface would come nearer. The result is never longer than what was
+    asked for nor turned against it: where no such velocity is found, it is rest. What is still too fast
+    after a few rounds is slowed down as a whole.
 
     Args:
         velocity: (n,), rad/s.
         rows: (C, n), how joint velocities change C distances, m/s per rad/s.
         floor: (C,), the smallest rate of each distance, zero or below, m/s.
+        passed: (C,), whether the distance is too small already.
 
     Returns:
         (n,), rad/s; ``velocity`` itself where nothing is too fast.
     """
     rate = rows @ velocity
-    if (rate >= floor).all():
+    some_passed = bool(passed.any())
+    if not some_passed and (rate >= floor).all():
         return velocity
-    size = np.maximum((rows * rows).sum(axis=1), 1e-12)
+    norm = np.sqrt((rows * rows).sum(axis=1))
+    norm = np.maximum(norm, 1e-9)
+    lean = np.where(passed, 0.5 * _LEAN * norm, 0.0)
+    slid = velocity
     for _ in range(_PASSES):
-        short = (floor - rate) / np.sqrt(size)
+        short = (floor + lean * math.sqrt(slid @ slid) - rate) / norm
         worst = int(short.argmax())
-        if short[worst] <= 1e-9:
+        if short[worst] <= _ENOUGH:
             break
-        velocity = velocity + rows[worst] * ((floor[worst] - rate[worst]) / size[worst])
-        rate = rows @ velocity
+        along = slid - rows[worst] * (rate[worst] / norm[worst] ** 2)
+        if passed[worst]:
+            away = _LEAN * math.sqrt(along @ along)
+        else:
+            away = floor[worst] / norm[worst]
+        slid = along + rows[worst] * (away / norm[worst])
+        rate = rows @ slid
+    if slid is velocity:
+        return velocity
+    if slid @ velocity <= 0.0 or (rate[passed] < 0.0).any():
+        return np.zeros_like(velocity)
+    share = min(1.0, math.sqrt((velocity @ velocity) / (slid @ slid)))
     falling = rate < np.minimum(floor, -1e-12)
     if falling.any():
-        velocity = velocity * float((floor[falling] / rate[falling]).min())
-    return velocity
+        share = min(share, float((floor[falling] / rate[falling]).min()))
+    return share * slid
 
 
-def unbent(
-    velocity: FloatArray, rows: FloatArray, room: FloatArray, bend: FloatArray, time_s: float
-) -> float:
+def unbent(velocity: FloatArray, rows: FloatArray, room: FloatArray, bend: FloatArray, time_s: float) -> float:
     """How much of a velocity is slow enough for the paths to be taken as straight.
 
     Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with
@@ -60,6 +81,6 @@ def unbent(
     """
     rate = rows @ velocity
     root = np.sqrt(rate * rate + 2.0 * bend * room)
-    # bend below this loses less than a nanometre in a tenth of a second
+    # A bend below this loses less than a nanometre in a tenth of a second.
     share = (rate + root) / (np.maximum(bend, 1e-7) * time_s)
     return float(min(1.0, np.where(bend > 1e-7, share, 1.0).min(initial=1.0)))

@@ -82,6 +82,7 @@ class Proximity:
 
         lever, curvature, between, branch = _motion(body, b, a, a_link)
         kept = lever.max(axis=1, initial=0.0) > _STILL_M
+        kept[kind == 1] &= _heights_change(body, planes)[a[kind == 1], b[kind == 1]]
         self.lever, self.curvature = lever[kept], curvature[kept]
         self._b, self._a, self._between, self._branch = b[kept], a[kept], between[kept], branch[kept]
         self._first_plane = int((kind[kept] < 1).sum())
@@ -222,6 +223,23 @@ def _segment_pairs(body: Body, rods: list[Capsule | Sphere]) -> tuple[IntArray, 
     pairs += [(b, len(order) + a) for a in range(len(rods)) for b in range(body.count)]
     both = np.array(pairs, dtype=np.int64).reshape(-1, 2)
     return both[:, 0], both[:, 1]
+
+
+def _heights_change(body: Body, planes: list[HalfSpace]) -> BoolArray:
+    """(planes, capsules), whether any joint changes how high a capsule is above a plane.
+
+    A shoulder that turns about the table's normal keeps its height. Heights are analytic in the joint
+    positions: where they are equal in some random configurations they are equal in all.
+    """
+    limits = body.robot.limits
+    rng = np.random.default_rng(0)
+    states = rng.uniform(limits.lower, limits.upper, (16, body.robot.dof))
+    points = np.stack([Placement(body, q).points[: 2 * body.count] for q in states])
+    change = np.zeros((len(planes), body.count), dtype=np.bool_)
+    for index, plane in enumerate(planes):
+        spread = np.ptp(points @ plane.normal, axis=0)
+        change[index] = np.maximum(spread[: body.count], spread[body.count :]) > _STILL_M
+    return change
 
 
 def _motion(

@@ -35,7 +35,8 @@ class WorkspaceBox(SafetyFilter):
         outward = 1.0 - 2.0 * face
         rows = situation.placement.jacobian[:, axis, point].T * outward[:, None]
         left = np.maximum(room[near], 0.0)
-        velocity = slide(velocity, rows, -bounds.damping_per_s * np.maximum(left - BUFFER_M, 0.0))
+        floor = -bounds.damping_per_s * np.maximum(left - BUFFER_M, 0.0)
+        velocity = slide(velocity, rows, floor, left == 0.0)
         speed = np.abs(velocity)
         bend = situation.surroundings.body.point_curvature[point] @ speed @ speed
         share = unbent(velocity, rows, left, bend, bounds.reach_s)

@@ -1,0 +1,20 @@
+import subprocess
+import sys
+from pathlib import Path
+
+import latentarm.control
+
+HEAVY = ("torch", "mujoco", "mink", "pyarrow", "h5py", "matplotlib", "sklearn", "scipy")
+
+
+def test_the_online_side_loads_neither_torch_nor_a_physics_engine():
+    root = Path(latentarm.control.__file__).parent
+    names = [
+        ".".join(["latentarm.control", *path.relative_to(root).with_suffix("").parts])
+        for path in root.rglob("*.py")
+        if path.name != "__init__.py"
+    ]
+    assert len(names) > 20
+    code = f"import sys, {', '.join(names)}; print([name for name in {HEAVY} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

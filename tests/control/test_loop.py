@@ -1,0 +1,200 @@
+import math
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from latentarm.control.clock import Clock, MonotonicClock, SimulatedClock
+from latentarm.control.deadlines import DeadlineLog
+from latentarm.control.input_port import InputSource
+from latentarm.control.loop import ControlLoop
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.step import Step
+from latentarm.errors import UserError
+from latentarm.robots.simulated import SimulatedArm
+from latentarm.types import Input
+
+MATRIX = np.full((1, 7), 0.2)
+
+
+class Stick(InputSource):
+    """Neutral for some ticks, then pushed."""
+
+    def __init__(self, neutral=3, age=lambda tick: 0.0):
+        self.tick = 0
+        self.neutral = neutral
+        self.age = age
+
+    def latest(self, now_s):
+        self.tick += 1
+        return Input(np.full(1, 0.0 if self.tick <= self.neutral else 1.0)), self.age(self.tick)
+
+
+class Stuttering(Clock):
+    """A simulated clock that wakes up late now and then."""
+
+    def __init__(self, inner, late):
+        self.inner = inner
+        self.late = late
+        self.waits = 0
+
+    def now_s(self):
+        return self.inner.now_s()
+
+    def wait_until(self, time_s):
+        self.waits += 1
+        self.inner.wait_until(time_s + self.late.get(self.waits, 0.0))
+
+
+@pytest.fixture
+def setup(arm, scripted):
+    def make(late=None, observers=(), source=None):
+        simulated = SimulatedArm(arm, arm.home, 0.01)
+        clock = SimulatedClock([simulated.advance])
+        step = Step(arm, scripted(MATRIX), SafetyConfig())
+        records = []
+        loop = ControlLoop(
+            step,
+            simulated,
+            source or Stick(),
+            Stuttering(clock, late) if late else clock,
+            [records.append, *observers],
+        )
+        loop.enable_at = None
+        return loop, simulated, records, step
+
+    return make
+
+
+def enabling(loop, tick):
+    """An observer that presses Enable at a tick."""
+    seen = []
+
+    def observe(record):
+        seen.append(record)
+        if len(seen) == tick:
+            loop.enable()
+
+    return observe
+
+
+def test_drives_and_comes_to_rest(setup, arm):
+    loop, simulated, records, step = setup()
+    loop._observers += (enabling(loop, 2),)
+    statistics = loop.run(ticks=100)
+    assert loop.refusal is None
+    assert np.abs(simulated.state() - arm.home).max() > 0.05
+    assert not records[-1].command.velocity.any()
+    assert step.at_rest
+    assert statistics.ticks >= 100
+    assert statistics.met_share == 1.0
+    assert statistics.overruns == 0
+    # The arm moved by exactly what was commanded, so it never ran on by itself.
+    moved = sum(record.command.velocity for record in records) * 0.01
+    np.testing.assert_allclose(simulated.state() - arm.home, moved, atol=1e-12)
+
+
+def test_never_enabled_never_moves(setup, arm):
+    loop, simulated, _, _ = setup()
+    loop.run(ticks=50)
+    np.testing.assert_array_equal(simulated.state(), arm.home)
+
+
+def test_enable_with_the_stick_pushed_is_refused(setup, arm):
+    loop, simulated, _, _ = setup(source=Stick(neutral=0))
+    loop.enable()
+    loop.run(ticks=20)
+    assert "stick" in loop.refusal.reason
+    np.testing.assert_array_equal(simulated.state(), arm.home)
+
+
+def test_a_stop_wins_over_an_enable(setup, arm):
+    loop, simulated, _, _ = setup(source=Stick(neutral=5))
+    loop.enable()
+    loop.stop("Stop was pressed.")
+    loop.run(ticks=30)
+    np.testing.assert_array_equal(simulated.state(), arm.home)
+
+
+def test_ticks_keep_to_the_grid_after_a_late_one(setup):
+    loop, _, records, _ = setup(late={10: 0.0137, 20: 0.004})
+    loop.run(ticks=40)
+    times = np.array([record.time_s for record in records])
+    on_grid = np.abs(times / 0.01 - np.round(times / 0.01)) < 1e-6
+    assert (~on_grid).sum() == 2
+    assert len(set(np.round(times / 0.01).astype(int))) == len(times)
+
+
+def test_small_delays_do_not_stop_the_arm(setup):
+    loop, _, records, _ = setup(late={20: 0.008})
+    loop._observers += (enabling(loop, 2),)
+    statistics = loop.run(ticks=60)
+    assert statistics.overruns == 0
+    assert records[55].command.stop is None
+
+
+def test_a_tick_after_the_command_ran_out_stops_for_good(setup):
+    loop, simulated, records, _ = setup(late={30: 0.05})
+    loop._observers += (enabling(loop, 2),)
+    statistics = loop.run(ticks=80)
+    assert statistics.overruns == 1
+    assert statistics.worst_start_s == pytest.approx(0.05)
+    assert records[28].command.velocity.any()
+    for record in records[29:]:
+        assert "late" in record.command.stop.reason
+        # The arm had stopped by itself: it must not be told to go on, not even ramping down.
+        assert not record.command.velocity.any()
+
+
+def test_a_stale_source_stops_the_arm(setup):
+    loop, _, records, _ = setup(source=Stick(age=lambda tick: math.inf if tick > 50 else 0.0))
+    loop._observers += (enabling(loop, 2),)
+    loop.run(ticks=100)
+    assert records[48].command.velocity.any()
+    assert records[60].command.stop is not None
+    assert not records[70].command.velocity.any()
+
+
+def test_an_observer_that_fails_leaves_the_arm_ramped_to_rest(setup):
+    def fail(record):
+        if record.command.velocity.any() and record.time_s > 0.5:
+            raise UserError("The disk is full.")
+
+    loop, simulated, records, step = setup()
+    loop._observers = (*loop._observers, enabling(loop, 2), fail)
+    sent = []
+    send = simulated.send
+    simulated.send = lambda command: (sent.append(command.velocity), send(command))
+    with pytest.raises(UserError, match="disk"):
+        loop.run(ticks=100)
+    assert step.at_rest
+    assert not simulated.velocity().any()
+    sent = np.array(sent)
+    assert not sent[-1].any()
+    assert (np.abs(np.diff(sent, axis=0)) <= step._stack.bounds.stop_acceleration * 0.01 + 1e-9).all()
+
+
+def test_finish_from_another_thread_ends_a_real_loop(arm, scripted):
+    simulated = SimulatedArm(arm, arm.home, 0.01)
+    loop = ControlLoop(Step(arm, scripted(MATRIX), SafetyConfig()), simulated, Stick(), MonotonicClock())
+    thread = threading.Thread(target=loop.run)
+    thread.start()
+    time.sleep(0.15)
+    loop.finish()
+    thread.join(timeout=5.0)
+    assert not thread.is_alive()
+    assert loop.statistics().ticks >= 3
+
+
+def test_statistics_are_about_the_last_window_and_count_all():
+    log = DeadlineLog(0.01, window=4)
+    assert log.statistics().met_share == 1.0
+    for sent in (0.05, 0.001, 0.002, 0.003, 0.004):
+        log.add(sent / 2, sent, overrun=sent > 0.03)
+    found = log.statistics()
+    assert found.ticks == 5
+    assert found.met_share == pytest.approx(0.8)
+    assert found.median_s == pytest.approx(0.0025)
+    assert found.worst_start_s == pytest.approx(0.025)
+    assert found.overruns == 1

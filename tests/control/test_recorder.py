@@ -1,0 +1,315 @@
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import textwrap
+import time
+
+import numpy as np
+import pytest
+
+from latentarm.control.export import demonstrations_of, export_journal
+from latentarm.control.journal import read_journal
+from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.errors import UserError
+from latentarm.types import Command, Goal, Pose, StepRecord, Stop
+
+NAMES = tuple(f"joint{i}" for i in range(7))
+
+
+def goal(name, value):
+    return Goal(name, np.full(7, value), Pose(np.array([value, 0.0, 0.5]), np.eye(3)))
+
+
+def header(**changes):
+    values = {"robot": "panda", "joint_names": NAMES, "rate_hz": 100.0, "task": "reach", "goals": (goal("cup", 0.1), goal("bowl", 0.2)), "modes": ("only",)}
+    return EpisodeHeader(**{**values, **changes})
+
+
+def record(tick, *, goals=2, stop=None, limited_by=()):
+    rng = np.random.default_rng(tick)
+    return StepRecord(
+        time_s=100.0 + 0.01 * tick,
+        state=rng.normal(size=7),
+        input=rng.uniform(-1, 1, 2),
+        latent=rng.normal(size=2),
+        action_human=rng.normal(size=7),
+        action_assist=rng.normal(size=7),
+        alpha=rng.uniform(),
+        belief=np.full(goals, 1.0 / goals) if goals else np.zeros(0),
+        mode=tick % 3,
+        command=Command(rng.normal(size=7), 0.025, stop, limited_by),
+    )
+
+
+def same(one, other):
+    for name in ("state", "input", "latent", "action_human", "action_assist", "belief"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    assert (one.time_s, one.alpha, one.mode) == (other.time_s, other.alpha, other.mode)
+    np.testing.assert_array_equal(one.command.velocity, other.command.velocity)
+    assert one.command.duration_s == other.command.duration_s
+    assert one.command.stop == other.command.stop
+    assert one.command.limited_by == other.command.limited_by
+
+
+def write(path, episodes, *, end_last=True):
+    recorder = Recorder(path)
+    for index, ticks in enumerate(episodes):
+        recorder.begin_episode(header())
+        for tick in range(ticks):
+            recorder.record(record(tick))
+        if end_last or index < len(episodes) - 1:
+            recorder.end_episode()
+    recorder.close()
+
+
+def test_reads_back_exactly_what_was_recorded(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header())
+    given = [record(0), record(1, stop=Stop("No, thank you."), limited_by=("ramp", "clearance")), record(2)]
+    for one in given:
+        recorder.record(one)
+    recorder.end_episode()
+    recorder.close()
+    (episode,) = read_journal(path)
+    assert episode.complete
+    assert episode.header.joint_names == NAMES
+    assert episode.header.modes == ("only",)
+    assert [goal.name for goal in episode.header.goals] == ["cup", "bowl"]
+    np.testing.assert_array_equal(episode.header.goals[1].pose.position, [0.2, 0.0, 0.5])
+    for one, other in zip(given, episode.records, strict=True):
+        same(one, other)
+
+
+def test_an_episode_that_was_not_ended_is_kept_and_flagged(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    write(path, [5, 3], end_last=False)
+    whole, cut = read_journal(path)
+    assert (whole.complete, len(whole.records)) == (True, 5)
+    assert (cut.complete, len(cut.records)) == (False, 3)
+
+
+def test_a_journal_goes_on_where_it_was_left(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    write(path, [4])
+    write(path, [2])
+    assert [len(episode.records) for episode in read_journal(path)] == [4, 2]
+
+
+def test_a_running_journal_can_be_read(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header())
+    recorder.record(record(0))
+    (episode,) = read_journal(path)
+    assert len(episode.records) == 1
+    recorder.record(record(1))
+    recorder.close()
+
+
+def test_reading_works_without_the_shared_memory_file(tmp_path):
+    """A journal that was copied from elsewhere after a kill has its log, but not that."""
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header())
+    recorder.record(record(0))
+    copied = tmp_path / "copy"
+    copied.mkdir()
+    for name in ("drive.sqlite", "drive.sqlite-wal"):
+        (copied / name).write_bytes((tmp_path / name).read_bytes())
+    (episode,) = read_journal(copied / "drive.sqlite")
+    assert len(episode.records) == 1
+    recorder.close()
+
+
+def test_records_outside_an_episode_or_of_other_shapes_are_refused(tmp_path):
+    recorder = Recorder(tmp_path / "drive.sqlite")
+    with pytest.raises(UserError, match="begin one"):
+        recorder.record(record(0))
+    with pytest.raises(UserError, match="begin one"):
+        recorder.end_episode()
+    recorder.begin_episode(header())
+    recorder.record(record(0))
+    with pytest.raises(UserError, match="shapes"):
+        recorder.record(record(1, goals=3))
+    recorder.close()
+
+
+def test_what_is_no_journal_is_neither_written_nor_read(tmp_path):
+    text = tmp_path / "notes.txt"
+    text.write_text("not a database, but long enough to be looked at " * 100)
+    foreign = tmp_path / "foreign.sqlite"
+    with sqlite3.connect(foreign) as database:
+        database.execute("CREATE TABLE things (name TEXT)")
+    database.close()
+    before = text.read_bytes(), foreign.read_bytes()
+    for path in (text, foreign):
+        with pytest.raises(UserError, match=path.name):
+            Recorder(path)
+        with pytest.raises(UserError, match=path.name):
+            read_journal(path)
+    assert (text.read_bytes(), foreign.read_bytes()) == before
+    with pytest.raises(UserError, match="no journal"):
+        read_journal(tmp_path / "absent.sqlite")
+    assert not (tmp_path / "absent.sqlite").exists()
+
+
+def test_a_damaged_journal_is_one_sentence(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    write(path, [200])
+    whole = path.read_bytes()
+    rng = np.random.default_rng(0)
+    refused = 0
+    for _ in range(30):
+        damaged = bytearray(whole)
+        at = int(rng.integers(100, len(whole) - 4096))
+        damaged[at : at + 2048] = rng.bytes(2048)
+        path.write_bytes(bytes(damaged))
+        try:
+            for episode in read_journal(path):
+                assert all(len(one.state) == 7 for one in episode.records)
+        except UserError as error:
+            refused += 1
+            assert str(path) in str(error)
+    assert refused > 10
+    path.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(UserError, match=path.name):
+        read_journal(path)
+
+
+def test_a_full_disk_is_one_sentence(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header())
+    recorder.record(record(0))
+    # SQLite's own limit on the file's size stands in for the disk's.
+    recorder._database.execute("PRAGMA max_page_count = 6")
+    with pytest.raises(UserError, match=r"drive\.sqlite cannot be written: .*full"):
+        for tick in range(1, 1000):
+            recorder.record(record(tick))
+    recorder.close()
+    (episode,) = read_journal(path)
+    assert not episode.complete
+    assert len(episode.records) > 1
+
+
+def test_exports_complete_episodes_with_all_that_was_decided(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    write(path, [6, 5, 4], end_last=False)
+    demonstrations = demonstrations_of(read_journal(path), source="drive")
+    assert [len(episode.state) for episode in demonstrations.episodes] == [6, 5]
+    episode = demonstrations.episodes[0]
+    assert set(episode.extras) == {
+        "input.u", "latent.z", "action.human", "action.assist", "assist.alpha", "mode", "belief", "observation.environment_state"
+    }
+    np.testing.assert_allclose(episode.timestamp, 0.01 * np.arange(6), atol=1e-9)
+    np.testing.assert_array_equal(episode.action[3], record(3).command.velocity)
+    np.testing.assert_array_equal(episode.extras["input.u"][3], record(3).input)
+    assert demonstrations.goals[0].name == "cup"
+    assert demonstrations.rate_hz == 100.0
+
+
+def test_the_exported_dataset_reads_back(tmp_path, arm):
+    from latentarm.demonstrations.dataset import read_dataset
+
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    for ticks in (6, 5):
+        recorder.begin_episode(header(joint_names=arm.joint_names))
+        for tick in range(ticks):
+            recorder.record(record(tick))
+        if ticks == 6:
+            recorder.end_episode()
+    recorder.close()
+    assert export_journal(path, tmp_path / "dataset") == 1
+    found = read_dataset(tmp_path / "dataset")
+    assert len(found.episodes) == 1
+    np.testing.assert_allclose(found.episodes[0].extras["action.human"][2], record(2).action_human, rtol=1e-6)
+    np.testing.assert_allclose(found.goals[1].configuration, np.full(7, 0.2))
+
+
+def test_a_journal_without_a_complete_episode_exports_nothing(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    write(path, [5], end_last=False)
+    with pytest.raises(UserError, match="no complete episode"):
+        export_journal(path, tmp_path / "dataset")
+    assert not (tmp_path / "dataset").exists()
+
+
+def test_episodes_of_different_robots_do_not_mix(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    for names in (NAMES, tuple(reversed(NAMES))):
+        recorder.begin_episode(header(joint_names=names))
+        for tick in range(3):
+            recorder.record(record(tick))
+        recorder.end_episode()
+    recorder.close()
+    with pytest.raises(UserError, match="different robots"):
+        demonstrations_of(read_journal(path), source="drive")
+
+
+WRITER = """
+import sys
+import numpy as np
+from pathlib import Path
+from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.types import Command, StepRecord
+recorder = Recorder(Path(sys.argv[1]))
+episode = 0
+while True:
+    recorder.begin_episode(EpisodeHeader("panda", tuple("abcdefg"), 100.0))
+    for tick in range(150):
+        one = np.full(7, float(tick))
+        two = np.full(2, float(episode))
+        recorder.record(StepRecord(0.01 * tick, one, two, two, one, one, 0.0, np.zeros(0), 0, Command(one, 0.025)))
+        sys.stdout.write(f"{episode} {tick}\\n")
+        sys.stdout.flush()
+    recorder.end_episode()
+    sys.stdout.write(f"{episode} whole\\n")
+    sys.stdout.flush()
+    episode += 1
+"""
+
+
+def kill_and_read(path, seconds):
+    """SIGKILL a recording after so long; every acknowledged sample and whole episode must be there."""
+    child = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(WRITER), str(path)], stdout=subprocess.PIPE, text=True
+    )
+    first = child.stdout.readline()
+    time.sleep(seconds)
+    os.kill(child.pid, signal.SIGKILL)
+    rest, _ = child.communicate()
+    lines = (first + rest).split("\n")
+    # The last line may be cut in the middle; what it was about was acknowledged before it was printed.
+    acknowledged = [line.split() for line in lines[:-1]]
+    episodes = read_journal(path)
+    for number, what in acknowledged:
+        episode = episodes[int(number)]
+        if what == "whole":
+            assert episode.complete
+        else:
+            assert episode.records[int(what)].state[0] == float(what)
+            assert episode.records[int(what)].input[0] == float(number)
+    # Nothing that was not recorded, either, and at most one sample more than was acknowledged.
+    assert sum(len(episode.records) for episode in episodes) <= sum(w != "whole" for _, w in acknowledged) + 1
+    assert [e.complete for e in episodes[:-1]] == [True] * (len(episodes) - 1)
+    # The journal can be gone on with.
+    write(path, [2])
+    assert len(read_journal(path)) == len(episodes) + 1
+    return len(acknowledged)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_kill_at_any_moment_loses_nothing_that_was_acknowledged(tmp_path, seed):
+    assert kill_and_read(tmp_path / "drive.sqlite", np.random.default_rng(seed).uniform(0.0, 0.4)) >= 1
+
+
+@pytest.mark.slow
+def test_thirty_kills_lose_nothing_that_was_acknowledged(tmp_path):
+    rng = np.random.default_rng(30)
+    for number in range(30):
+        kill_and_read(tmp_path / f"drive{number}.sqlite", rng.uniform(0.0, 1.5))
