@@ -1,3 +1,3 @@
-"""Steer a high-DoF assistive robot arm with a low-DoF input, by latent actions learned from demonstrations."""
+"""Steer a high-DoF assistive robot arm with a low-DoF input, by latent actions."""
 
 __version__ = "0.1.0"

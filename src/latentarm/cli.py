@@ -1,4 +1,7 @@
-"""The command line: parses, calls, prints. Exit codes: 0 done, 1 not reached or failed, 2 the user's to mend."""
+"""The command line: parses, calls, prints.
+
+Exit codes: 0 done, 1 not reached or failed, 2 the user's to mend, 130 interrupted.
+"""
 
 import json as json_format
 import sys
@@ -21,7 +24,9 @@ ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl"]
 
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
 Seed = Annotated[int, arg(help="Seed of everything random.")]
-RobotName = Annotated[str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")]
+RobotName = Annotated[
+    str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")
+]
 EndEffector = Annotated[
     str | None, arg(help="Site, body or link of the model file that is the end-effector.", metavar="NAME")
 ]
@@ -57,7 +62,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 @app.command
 def demo(
-    out: Annotated[Path, arg(metavar="DIR", help="Folder for datasets, runs, table and figures.")] = Path("demo"),
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for datasets, runs, table and figures.")] = Path(
+        "demo"
+    ),
     drives: Annotated[int, arg(help="Simulated drives for each goal and condition.")] = 20,
     seed: Seed = 0,
     jobs: Annotated[int, arg(help="Processes that drive side by side; -1 is one per core.")] = -1,
@@ -70,7 +77,7 @@ def demo(
     from latentarm.experiments.demo import DemoConfig, run_demo
     from latentarm.metrics.table import rich_tables
 
-    rows = run_demo(DemoConfig(out=out, drives=drives, seed=seed, jobs=jobs))
+    rows = run_demo(DemoConfig(out=out, drives=drives, seed=seed, jobs=jobs, quiet=json))
     _show(rows, json, rich_tables(rows))
     _say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
     return 0
@@ -78,7 +85,9 @@ def demo(
 
 @app.command(name="import")
 def import_demonstrations(
-    source: Annotated[Positional[Path], arg(metavar="SRC", help=".npz, .csv, .hdf5, or a LeRobot v3.0 folder.")],
+    source: Annotated[
+        Positional[Path], arg(metavar="SRC", help=".npz, .csv, .hdf5, or a LeRobot v3.0 folder.")
+    ],
     destination: Annotated[Positional[Path], arg(metavar="DST", help="New folder for the dataset.")],
     robot: RobotName = "panda",
     end_effector: EndEffector = None,
@@ -94,7 +103,9 @@ def import_demonstrations(
 
     demonstrations = import_to(source, destination, load_robot(robot, end_effector))
     _show(summary(demonstrations).rows(), json)
-    _say(f"{len(demonstrations.episodes)} episodes of {demonstrations.dof} joints are in {destination}/.", json)
+    _say(
+        f"{len(demonstrations.episodes)} episodes of {demonstrations.dof} joints are in {destination}/.", json
+    )
     return 0
 
 
@@ -131,10 +142,18 @@ def train(
     seeds: Annotated[int, arg(help="Models trained side by side, from different seeds.")] = 5,
     seed: Seed = 0,
     window: Annotated[int, arg(help="An action leads to a state at most this many samples away.")] = 5,
-    state_noise_rad: Annotated[float, arg(help="SD of noise on the state that the decoder sees, rad.")] = 0.01,
+    state_noise_rad: Annotated[
+        float, arg(help="SD of noise on the state that the decoder sees, rad.")
+    ] = 0.01,
     held_out: Annotated[float, arg(help="Share of the episodes kept for evaluation.")] = 0.2,
-    epochs: Annotated[int, arg(help="At most this many passes over the pairs.")] = 60,
-    device: Annotated[str, arg(help="cpu, cuda, or auto.")] = "cpu",
+    epochs: Annotated[
+        int | None, arg(help="At most this many passes over the pairs; the model's own number by default.")
+    ] = None,
+    kl_weight: Annotated[
+        float | None, arg(help="lambda of equations 7 and 8, for vae and cvae; below 1.")
+    ] = None,
+    device: Annotated[Literal["cpu", "cuda", "auto"], arg(help="Where to train.")] = "cpu",
+    end_effector: EndEffector = None,
     out: Annotated[
         Path | None, arg(metavar="DIR", help="Folder of the run; runs/<dataset>-<model> by default.")
     ] = None,
@@ -158,7 +177,9 @@ def train(
         state_noise_rad=state_noise_rad,
         held_out=held_out,
         epochs=epochs,
+        kl_weight=kl_weight,
         device=device,
+        end_effector=end_effector,
         out=out or Path("runs") / f"{demonstrations.resolve().name}-{model}",
         resume=resume,
         progress=not json,
@@ -174,7 +195,9 @@ def train(
 @app.command
 def evaluate(
     run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")],
-    out: Annotated[Path | None, arg(metavar="DIR", help="Folder for metrics and figures; RUN by default.")] = None,
+    out: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder for metrics and figures; RUN by default.")
+    ] = None,
     seed: Seed = 0,
     json: Json = False,
 ) -> int:
@@ -203,10 +226,11 @@ def drive(
     ] = None,
     task: Annotated[
         Literal["table_top", "held_out", "reach"] | None,
-        arg(help="Three items on a table; ends of held-out episodes; or reachable poses. By the run by default."),
+        arg(help="Items on a table, the way of held-out episodes, or poses in reach; by the run by default."),
     ] = None,
     robot: Annotated[
-        str | None, arg(help="A robot's name or the path of an MJCF or URDF file; that of the run by default.")
+        str | None,
+        arg(help="A robot's name or the path of an MJCF or URDF file; that of the run by default."),
     ] = None,
     end_effector: EndEffector = None,
     drives: Annotated[int, arg(help="Drives for each goal.")] = 3,
@@ -267,7 +291,8 @@ def bench(
 @app.command
 def robots(
     robot: Annotated[
-        Positional[str | None], arg(metavar="ROBOT", help="One robot, by name or path; all known ones without.")
+        Positional[str | None],
+        arg(metavar="ROBOT", help="One robot, by name or path; all known ones without."),
     ] = None,
     end_effector: EndEffector = None,
     json: Json = False,

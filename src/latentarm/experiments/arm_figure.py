@@ -68,7 +68,7 @@ def _draw_arm(axes: "Axes3D", robot: Robot) -> FloatArray:
     # From far to near, because the drawing has no depth buffer.
     eye = np.array([1.0, -1.2, 0.6])
     for index in np.argsort((start + end) @ eye):
-        surface = _capsule(start[index], end[index], robot.capsules.radius[index])
+        surface = _capsule(start[index], end[index], float(robot.capsules.radius[index]))
         axes.plot_surface(*surface, color=LINK_COLOUR, linewidth=0, antialiased=False, shade=True, zorder=2)
     return np.concatenate([start, end])
 
@@ -99,7 +99,7 @@ def _frame(axes: "Axes3D", places: FloatArray) -> None:
     axes.set_xlim(lowest[0], highest[0])
     axes.set_ylim(lowest[1], highest[1])
     axes.set_zlim(min(lowest[2], 0.0), highest[2])
-    axes.set_box_aspect(highest - np.array([lowest[0], lowest[1], min(lowest[2], 0.0)]), zoom=1.05)
+    axes.set_box_aspect(highest - np.array([lowest[0], lowest[1], min(lowest[2], 0.0)]))
     axes.view_init(elev=24, azim=-52)
     axes.set_xlabel("x (m)", fontsize=SMALL_FONT_SIZE)
     axes.set_ylabel("y (m)", fontsize=SMALL_FONT_SIZE)

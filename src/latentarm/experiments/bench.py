@@ -1,4 +1,4 @@
-"""`latentarm bench`: ratios that say whether the online step fits a 1 kHz arm and whether seeds train together.
+"""`latentarm bench`: does the online step fit a 1 kHz arm, and what does it save to train seeds together?
 
 Everything is timed in one run on one machine, interleaved where two figures are compared, because
 absolute times depend on what else the machine does.

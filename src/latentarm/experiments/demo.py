@@ -148,7 +148,8 @@ def _write(
         f" {len(task.goals)} goals), seed {config.seed}; mean ± SD over the drives, failed ones included"
         f" (they end after {TIME_LIMIT_S:g} s). No person took part.\n\n"
         f"{markdown_table(rows)}\n"
-        "![Paths of the tool](paths.png)\n\n![Inputs over time](inputs.png)\n\n"
+        f"The figures show the {MODELS[0]}. ![Paths of the tool](paths.png)\n\n"
+        "![Inputs over time](inputs.png)\n\n"
         "## The latent spaces, on held-out episodes\n\n"
         f"Mean ± SD over {SEEDS} seeds.\n\n{markdown_table(properties)}\n"
         "![The task](task.png)\n",

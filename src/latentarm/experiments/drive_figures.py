@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from latentarm.experiments.simulation import Trace
-from latentarm.style import SMALL_FONT_SIZE, look_of, new_figure, save_figure, tidy
+from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, look_of, new_figure, save_figure, tidy
 from latentarm.tasks.task import Task
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 GOAL_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 GOAL_MARKERS = ("o", "s", "^", "D", "v", "P")
-PANEL_MM = 60.0
+PANEL_MM = 46.0
 WIDTH_MM = 170.0
 
 
@@ -71,7 +71,7 @@ def _draw_view(axes: "Axes", drives: Sequence[Trace], task: Task, across: int, u
             linestyle="none",
             label=goal.name,
         )
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_aspect("equal", adjustable="box")
 
 
 def draw_inputs(traces: Mapping[str, Trace], path: Path) -> None:
@@ -104,7 +104,7 @@ def draw_inputs(traces: Mapping[str, Trace], path: Path) -> None:
         said = f"{outcome} after {trace.time_s[-1]:.1f} s"
         if len(switches):
             said += f", {len(switches)} mode switches (dotted)"
-        axes.set_title(f"{look_of(condition).label}: {said}", loc="left")
+        axes.set_title(f"{look_of(condition).label}: {said}", loc="left", fontsize=FONT_SIZE)
         axes.set_ylim(-1.15, 1.15)
         axes.set_ylabel("input u")
         tidy(axes)

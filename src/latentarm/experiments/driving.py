@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -111,7 +111,8 @@ def drive_all(setup: Setup, drives: int, seed: int, jobs: int) -> list[Trace]:
         UserError: fewer than one drive is asked for.
     """
     calls = _drives(setup, drives, seed)
-    return list(Parallel(n_jobs=jobs)(delayed(simulate)(setup, *call) for call in calls))
+    traces = Parallel(n_jobs=jobs)(delayed(simulate)(setup, *call) for call in calls)
+    return cast(list[Trace], traces)
 
 
 def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]:
@@ -168,7 +169,9 @@ def _task(config: DriveConfig, run: Run | None) -> Task:
     name = config.task or _usual_task(config, run)
     if name == "table_top":
         if config.robot not in (None, "panda"):
-            raise UserError(f"The table-top task is set for the Panda, not for {config.robot}: use --task reach.")
+            raise UserError(
+                f"The table-top task is set for the Panda, not for {config.robot}: use --task reach."
+            )
         return TableTop()
     if config.robot is not None:
         robot = load_robot(config.robot, config.end_effector)

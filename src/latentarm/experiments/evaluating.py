@@ -47,7 +47,8 @@ def evaluate_run(folder: Path, out: Path, seed: int) -> list[Row]:
     robot = robot_of(run)
     if demonstrations.dof != robot.dof:
         raise UserError(
-            f"{run.demonstrations} has {demonstrations.dof} joints and the robot {robot.name} has {robot.dof}."
+            f"{run.demonstrations} has {demonstrations.dof} joints, but robot {robot.name} has {robot.dof}:"
+            " train on a dataset of that robot."
         )
     config = EvaluationConfig()
     rows = evaluate(
@@ -59,7 +60,9 @@ def evaluate_run(folder: Path, out: Path, seed: int) -> list[Row]:
         rng=np.random.default_rng(seed),
         config=config,
     )
-    write_results(out / "metrics.json", rows, {"run": str(folder), "seed": seed, "held_out": list(run.held_out)})
+    write_results(
+        out / "metrics.json", rows, {"run": str(folder), "seed": seed, "held_out": list(run.held_out)}
+    )
     _draw(run, model, demonstrations, robot, config, out)
     return rows
 

@@ -32,9 +32,7 @@ def sheets(name: str | None, end_effector: str | None = None) -> "list[Table]":
         table = Table("robot", "joints", "arms", "joint speed limits, rad/s", title="Built-in robots")
         for robot in robots:
             low, high = robot.limits.velocity.min(), robot.limits.velocity.max()
-            table.add_row(
-                robot.name, str(robot.dof), str(len(robot.chain.tools)), f"{low:.3g} to {high:.3g}"
-            )
+            table.add_row(robot.name, str(robot.dof), str(len(robot.chain.tools)), f"{low:.3g} to {high:.3g}")
         table.caption = "Any MJCF or URDF file works too: latentarm robots PATH --end-effector NAME"
         return [table]
     return [_sheet(robot) for robot in robots]

@@ -5,7 +5,7 @@ some are held out from both, for `latentarm evaluate`.
 """
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Literal
 
@@ -17,6 +17,7 @@ from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.errors import UserError
 from latentarm.experiments.runs import Run, git_commit, run_facts
 from latentarm.models.catalogue import MODELS
+from latentarm.models.model import LatentActionModel
 from latentarm.types import Demonstrations, Row
 
 CHECKPOINT = "training.safetensors"
@@ -37,7 +38,8 @@ class TrainConfig:
         window: samples that an action may lead ahead or back.
         state_noise_rad: SD of the noise on the states that train the model, rad.
         held_out: share of the episodes that neither train nor stop the model.
-        epochs: passes over the training pairs, at most.
+        epochs: passes over the training pairs, at most; the model's own number where None.
+        kl_weight: lambda of equations 7 and 8, for models that have it; their own where None.
         device: where to train.
         end_effector: site, body or link, where the dataset's robot is a model file.
         resume: go on with a training that was cut off.
@@ -54,7 +56,8 @@ class TrainConfig:
     window: int = 5
     state_noise_rad: float = 0.01
     held_out: float = 0.2
-    epochs: int = 60
+    epochs: int | None = None
+    kl_weight: float | None = None
     device: Literal["cpu", "cuda", "auto"] = "cpu"
     end_effector: str | None = None
     resume: bool = False
@@ -74,17 +77,7 @@ def train_run(config: TrainConfig) -> list[Row]:
     _check_folder(config)
     demonstrations = prepared(read_dataset(config.demonstrations), config.context)
     training, held_out = split_episodes(demonstrations, config.held_out, np.random.default_rng(config.seed))
-    model = MODELS[config.model](
-        latent_dim=config.latent_dim,
-        context=config.context,
-        window=config.window,
-        state_noise_rad=config.state_noise_rad,
-        seeds=config.seeds,
-        seed=config.seed,
-        data_seed=config.seed,
-        epochs=config.epochs,
-        device=config.device,
-    )
+    model = _model(config)
     config.out.mkdir(parents=True, exist_ok=True)
     checkpoint = config.out / CHECKPOINT
     with warnings.catch_warnings(record=True) as caught:
@@ -107,6 +100,27 @@ def train_run(config: TrainConfig) -> list[Row]:
     loss = model.held_out_loss_
     spread = float(loss.std(ddof=1)) if len(loss) > 1 else None
     return [Row("train", "held_out_loss", "1", float(loss.mean()), spread, len(loss), model=config.model)]
+
+
+def _model(config: TrainConfig) -> LatentActionModel:
+    model_class = MODELS[config.model]
+    chosen = {"epochs": config.epochs, "kl_weight": config.kl_weight}
+    chosen = {name: value for name, value in chosen.items() if value is not None}
+    if "kl_weight" in chosen and "kl_weight" not in {field.name for field in fields(model_class)}:
+        raise UserError(
+            f"The model {config.model} has no KL term: leave --kl-weight out, or choose vae or cvae."
+        )
+    model = model_class(
+        latent_dim=config.latent_dim,
+        context=config.context,
+        window=config.window,
+        state_noise_rad=config.state_noise_rad,
+        seeds=config.seeds,
+        seed=config.seed,
+        data_seed=config.seed,
+        device=config.device,
+    )
+    return replace(model, **chosen)
 
 
 def prepared(demonstrations: Demonstrations, context: str) -> Demonstrations:

@@ -44,7 +44,7 @@ class VAE(NeuralModel):
 
     kind: ClassVar[str] = "vae"
     rests_at_zero: ClassVar[bool] = False
-    kl_weight: float = 0.1
+    kl_weight: float = 0.01
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         mean, log_variance = posterior(networks, batch.context, batch.action)
@@ -89,7 +89,7 @@ class CVAE(NeuralModel):
 
     kind: ClassVar[str] = "cvae"
     rests_at_zero: ClassVar[bool] = False
-    kl_weight: float = 0.1
+    kl_weight: float = 0.01
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         mean, log_variance = posterior(networks, batch.context, batch.action)

@@ -62,7 +62,9 @@ def slide(velocity: FloatArray, rows: FloatArray, floor: FloatArray, passed: Boo
     return share * slid
 
 
-def unbent(velocity: FloatArray, rows: FloatArray, room: FloatArray, bend: FloatArray, time_s: float) -> float:
+def unbent(
+    velocity: FloatArray, rows: FloatArray, room: FloatArray, bend: FloatArray, time_s: float
+) -> float:
     """How much of a velocity is slow enough for the paths to be taken as straight.
 
     Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with

@@ -22,7 +22,6 @@ from latentarm.control.safety.workspace import WorkspaceBox
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, Stop
 
-
 _SAME_RAD_S = 1e-9
 """Velocities that differ by no more than this differ by rounding."""
 
