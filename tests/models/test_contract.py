@@ -1,5 +1,6 @@
 """The one contract, over every model."""
 
+import warnings
 from dataclasses import fields
 
 import numpy as np
@@ -9,6 +10,7 @@ from latentarm.errors import UserError
 from latentarm.models.catalogue import MODELS, load_model
 from latentarm.models.decoder import load_decoder
 from latentarm.models.layout import LAYOUTS
+from latentarm.models.scaling import CollapseWarning
 
 SMALL = {"seeds": 2, "epochs": 3, "hidden": (8, 8), "window": 2}
 
@@ -84,6 +86,21 @@ def test_the_numpy_runtime_equals_the_model(model, samples, tmp_path):
         for decoder in (model.decoder(seed), load_decoder(tmp_path, seed)):
             np.testing.assert_allclose(decoder.decode(z, context), expected[seed], rtol=0, atol=1e-12)
             assert (decoder.latent_dim, decoder.context_dim, decoder.action_dim) == (2, 4, 4)
+
+
+@pytest.mark.parametrize(("latent_dim", "hidden"), [(1, (8,)), (3, (6, 5, 4)), (4, ()), (2, (16, 4))])
+def test_the_numpy_runtime_equals_the_model_at_any_size(name, demonstrations, latent_dim, hidden):
+    settings = {**SMALL, "latent_dim": latent_dim, "hidden": hidden, "epochs": 1}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CollapseWarning)
+        model = MODELS[name](**settings).fit(demonstrations)
+    rng = np.random.default_rng(1)
+    z, context = rng.uniform(-1, 1, (20, latent_dim)), rng.uniform(-1, 1, (20, 4))
+    expected = model.decode(z, context)
+    size = np.abs(expected).max()
+    np.testing.assert_allclose(
+        model.decoder(1).decode(z, context), expected[1], rtol=0, atol=1e-12 * max(size, 1)
+    )
 
 
 def test_one_pair_alone_equals_the_same_pair_in_a_batch(model, samples):
@@ -202,3 +219,9 @@ def test_parameters_that_make_no_sense_are_refused(name, demonstrations, wrong, 
 def test_held_out_episodes_must_leave_some_on_both_sides(name, demonstrations, held_out, message):
     with pytest.raises(UserError, match=message):
         MODELS[name](**SMALL).fit(demonstrations, held_out=held_out)
+
+
+def test_held_out_episodes_may_come_as_an_array(name, demonstrations, tmp_path):
+    model = MODELS[name](**SMALL).fit(demonstrations, held_out=np.array([2, 5]))
+    model.save(tmp_path)
+    assert load_model(tmp_path).held_out_episodes_ == (2, 5)

@@ -126,12 +126,14 @@ def straight():
     return Demonstrations(tuple(line(rng) for _ in range(8)), 20.0, ("a", "b", "c"))
 
 
-@pytest.mark.parametrize("name", ["pca", "vae", "cvae"])
-def test_a_dimension_with_nothing_to_do_is_said_to_have_collapsed(straight, name):
+@pytest.mark.parametrize(
+    ("name", "weight"), [("pca", {}), ("vae", {"kl_weight": 0.3}), ("cvae", {"kl_weight": 0.3})]
+)
+def test_a_dimension_with_nothing_to_do_is_said_to_have_collapsed(straight, name, weight):
     with pytest.warns(
         CollapseWarning, match=rf"{name} model has collapsed latent dimensions .*seed 0: z[12]"
     ):
-        model = MODELS[name](epochs=25, hidden=(8,), window=1).fit(straight)
+        model = MODELS[name](epochs=25, hidden=(8,), window=1, **weight).fit(straight)
     assert model.collapsed_.sum() == 1
 
 

@@ -145,7 +145,7 @@ class LatentActionModel(ABC):
         pairs = make_pairs(
             demonstrations, self.window, self.state_noise_rad, self.context, rng, actions=self.actions
         )
-        self.trained_ = self._fit_pairs(pairs, tuple(held_out), checkpoint, progress)
+        self.trained_ = self._fit_pairs(pairs, tuple(int(index) for index in held_out), checkpoint, progress)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds
             warn(CollapseWarning(describe_collapse(self.kind, seeds, self.collapsed_)), stacklevel=2)
