@@ -247,7 +247,7 @@ def _episode_table(episodes: Sequence[EpisodeSummary]) -> Table:
         "rate (Hz)",
         "joint path (rad)",
         "tool path (m)",
-        "peak speed (rad/s)",
+        "peak (rad/s)",
         "still (%)",
     )
     rows = tuple(
@@ -274,11 +274,11 @@ def _joint_table(joints: Sequence[JointSummary]) -> Table:
         "highest (rad)",
         "limits (rad)",
         "margin (rad)",
-        "speed p50",
+        "speed (rad/s) p50",
         "p95",
         "p99",
-        "max (rad/s)",
-        "limit (rad/s)",
+        "max",
+        "limit",
     )
     rows = tuple(
         (
@@ -287,7 +287,7 @@ def _joint_table(joints: Sequence[JointSummary]) -> Table:
             _text(one.highest, 3),
             "–" if one.lower is None else f"{_text(one.lower, 3)} … {_text(one.upper, 3)}",
             _text(one.margin_rad, 3),
-            _text(one.speed_p50, 3),
+            _text(one.speed_p50, 2),
             _text(one.speed_p95, 2),
             _text(one.speed_p99, 2),
             _text(one.speed_max, 2),

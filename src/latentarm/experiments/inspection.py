@@ -28,13 +28,16 @@ def summary(demonstrations: Demonstrations) -> Summary:
 
 def summary_tables(demonstrations: Demonstrations) -> "list[Table]":
     """Episodes and joints as tables for the terminal."""
+    from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
     tables: list[Table] = []
     for plain in summary(demonstrations).tables():
-        table = Table(title=plain.title, title_justify="left")
+        table = Table(title=plain.title, title_justify="left", box=SIMPLE_HEAD, padding=0)
         for index, heading in enumerate(plain.columns):
-            table.add_column(heading, justify="left" if index == 0 else "right")
+            # One word a line: the table then fits 80 columns.
+            heading = heading.replace(" ", "\n")
+            table.add_column(heading, justify="left" if index == 0 else "right", no_wrap=True)
         for row in plain.rows:
             table.add_row(*row)
         tables.append(table)
