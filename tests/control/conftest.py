@@ -84,9 +84,7 @@ class Oracle:
         starts, ends = self.ends(q)
         radius = self.robot.capsules.radius
         i, j = self.pairs.T
-        own, _, _ = segment_distance(
-            starts[..., i, :], ends[..., i, :], starts[..., j, :], ends[..., j, :]
-        )
+        own, _, _ = segment_distance(starts[..., i, :], ends[..., i, :], starts[..., j, :], ends[..., j, :])
         found = [own - radius[i] - radius[j]]
         a, b, r = starts[..., self.moving, :], ends[..., self.moving, :], radius[self.moving]
         for item in self.obstacles:

@@ -28,7 +28,9 @@ any_input = (
     | arrays(np.int64, 2)
     | arrays(np.complex128, 2)
     | arrays(np.bool_, 2)
-    | st.sampled_from([np.array(["left", "up"]), np.array([None, 1.0]), [[1.0], [1.0, 2.0]], None, "left", 3.0])
+    | st.sampled_from(
+        [np.array(["left", "up"]), np.array([None, 1.0]), [[1.0], [1.0, 2.0]], None, "left", 3.0]
+    )
 )
 good_age = st.floats(0.0, 0.04)
 any_age = good_age | any_float
@@ -36,7 +38,16 @@ any_action = (
     st.none()
     | arrays(np.float64, 7, elements=any_float)
     | arrays(np.float64, st.sampled_from([(), (6,), (8,), (7, 7)]), elements=any_float)
-    | st.sampled_from([ValueError("broken"), ZeroDivisionError(), MemoryError(), [1.0, [2.0]], "fast", np.ones(7, dtype=complex)])
+    | st.sampled_from(
+        [
+            ValueError("broken"),
+            ZeroDivisionError(),
+            MemoryError(),
+            [1.0, [2.0]],
+            "fast",
+            np.ones(7, dtype=complex),
+        ]
+    )
 )
 
 
@@ -120,7 +131,12 @@ def test_no_input_gets_an_unsafe_command_out(arm, scripted, oracle, seed, matrix
     drive(arm, scripted, oracle, state, matrix, ticks)
 
 
-@given(st.lists(arrays(np.float64, 7, elements=any_float) | arrays(np.float64, 6) | st.just(np.array(["a"] * 7)), min_size=1))
+@given(
+    st.lists(
+        arrays(np.float64, 7, elements=any_float) | arrays(np.float64, 6) | st.just(np.array(["a"] * 7)),
+        min_size=1,
+    )
+)
 @settings(deadline=None)
 def test_no_reading_of_the_joints_gets_an_unsafe_command_out(arm, scripted, readings):
     step = Step(arm, scripted(np.full((2, 7), 0.4)), SafetyConfig(obstacles=OBSTACLES), dt_s=DT)
@@ -136,7 +152,9 @@ def test_no_reading_of_the_joints_gets_an_unsafe_command_out(arm, scripted, read
     assert np.abs(velocity).max() <= 0.5
 
 
-@pytest.mark.parametrize("u", [np.array([np.nan, 0.0]), np.array([1e308, 0.0]), np.array([0.0, np.inf]), np.zeros(3), "up"])
+@pytest.mark.parametrize(
+    "u", [np.array([np.nan, 0.0]), np.array([1e308, 0.0]), np.array([0.0, np.inf]), np.zeros(3), "up"]
+)
 def test_an_unusable_input_stops_with_a_reason(arm, scripted, u):
     step = Step(arm, scripted(np.full((2, 7), 0.4)), SafetyConfig())
     step.reset(arm.home)

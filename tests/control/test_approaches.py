@@ -109,7 +109,9 @@ def approach_and_back_out(arm, oracle, scripted, seed):
     assert (harm.measure.clearance(path) >= 0.02 - 1e-8).all()
     speeds = np.diff(path, axis=0) / DT
     assert np.abs(speeds).max() <= 0.5 + 1e-9
-    assert np.abs(np.diff(speeds, axis=0)).max(axis=0) == pytest.approx(0.0, abs=bounds.stop_acceleration.max() * DT)
+    assert np.abs(np.diff(speeds, axis=0)).max(axis=0) == pytest.approx(
+        0.0, abs=bounds.stop_acceleration.max() * DT
+    )
     # Backing out: harm is measurably further away, and the arm has moved.
     assert harm.nearness(q) > nearest + 0.005
     assert np.abs(q - blocked_at).max() > 0.02
@@ -139,7 +141,11 @@ def test_an_arm_that_starts_too_near_can_be_driven_away_but_no_nearer(arm, oracl
         ball = Sphere("ball", starts[-1] + out * (0.028 + 0.05 + rng.uniform(0.0, 0.015)), 0.05)
         measure = oracle(arm, (ball,))
         distances = measure.distances(q)
-        if (distances < 0.02).sum() >= 1 and distances.min() > -0.01 and measure.distances(q)[: len(measure.pairs)].min() > 0.03:
+        if (
+            (distances < 0.02).sum() >= 1
+            and distances.min() > -0.01
+            and measure.distances(q)[: len(measure.pairs)].min() > 0.03
+        ):
             break
     harm = Harm("obstacle", measure, arm.limits, q, q)
     controller = scripted(np.zeros((1, 7)))

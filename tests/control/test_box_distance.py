@@ -29,9 +29,7 @@ def test_the_plane_stands_at_the_distance(oracle, spread):
 
     module = __import__(oracle.__module__, fromlist=["box_distance"])
     for start, end, centre, rotation, extents in random_pairs(300, 1, spread):
-        normal = box_separation(
-            start[None], end[None], centre[None], rotation[None], extents[None]
-        )[0]
+        normal = box_separation(start[None], end[None], centre[None], rotation[None], extents[None])[0]
         assert abs(normal @ normal - 1.0) < 1e-9
         box = Box("box", centre, rotation, extents)
         distance = float(module.box_distance(start[None], end[None], box)[0])

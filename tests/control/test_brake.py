@@ -57,7 +57,10 @@ def test_commands_sampled_from_it_never_pass_its_end(velocity, acceleration):
             since += dt
             way = way + brake.at(since)[0] * dt
         allowed = np.abs(brake.settled) * 0.5 * brake.ramp_s + np.abs(brake.kink) * (brake.settle_s + dt)
-        assert (np.abs(way) <= allowed + np.maximum(np.abs(velocity), np.abs(brake.settled)) * brake.settle_s + 1e-12).all()
+        assert (
+            np.abs(way)
+            <= allowed + np.maximum(np.abs(velocity), np.abs(brake.settled)) * brake.settle_s + 1e-12
+        ).all()
 
 
 def test_rest_needs_no_brake():

@@ -71,13 +71,20 @@ def test_absurd_periods_are_refused(arm, dt):
 
 
 @given(
-    st.floats(0.01, 2.1), st.floats(0.1, 1.0), st.floats(0.005, 0.14), st.sampled_from([0.005, 0.01, 0.02, 0.05])
+    st.floats(0.01, 2.1),
+    st.floats(0.1, 1.0),
+    st.floats(0.005, 0.14),
+    st.sampled_from([0.005, 0.01, 0.02, 0.05]),
 )
 @settings(deadline=None)
 def test_a_config_that_is_accepted_stops_in_time(arm, speed, stop, timeout, dt):
     try:
         config = SafetyConfig(
-            joint_speed=speed, stop_fraction=stop, input_timeout_s=timeout, acceleration_fraction=0.1, jerk_fraction=0.1
+            joint_speed=speed,
+            stop_fraction=stop,
+            input_timeout_s=timeout,
+            acceleration_fraction=0.1,
+            jerk_fraction=0.1,
         )
         bounds = Bounds(config, arm, dt)
     except UserError as error:

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from latentarm.control.safety.body import Body
+from latentarm.control.safety.body import Body, Placement
 from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.clearance import Clearance
 from latentarm.control.safety.config import SafetyConfig, Workspace
@@ -99,6 +99,8 @@ def test_joint_position_slows_before_a_limit_and_stops_at_it(surroundings, veloc
 @settings(deadline=None)
 def test_link_speed_slows_every_point_and_keeps_the_direction(surroundings, oracle, velocity, seed):
     here = situation(surroundings, seed)
+    drift = np.random.default_rng(seed).normal(size=7) * 0.01
+    surroundings.reference = Placement(surroundings.body, here.state + drift)
     result = LinkSpeed().apply(velocity, here)
     assert oracle(surroundings.body.robot).link_speed(here.state, result) <= 0.25 + 1e-6
     assert result @ velocity >= 0.0

@@ -23,7 +23,14 @@ def goal(name, value):
 
 
 def header(**changes):
-    values = {"robot": "panda", "joint_names": NAMES, "rate_hz": 100.0, "task": "reach", "goals": (goal("cup", 0.1), goal("bowl", 0.2)), "modes": ("only",)}
+    values = {
+        "robot": "panda",
+        "joint_names": NAMES,
+        "rate_hz": 100.0,
+        "task": "reach",
+        "goals": (goal("cup", 0.1), goal("bowl", 0.2)),
+        "modes": ("only",),
+    }
     return EpisodeHeader(**{**values, **changes})
 
 
@@ -202,7 +209,14 @@ def test_exports_complete_episodes_with_all_that_was_decided(tmp_path):
     assert [len(episode.state) for episode in demonstrations.episodes] == [6, 5]
     episode = demonstrations.episodes[0]
     assert set(episode.extras) == {
-        "input.u", "latent.z", "action.human", "action.assist", "assist.alpha", "mode", "belief", "observation.environment_state"
+        "input.u",
+        "latent.z",
+        "action.human",
+        "action.assist",
+        "assist.alpha",
+        "mode",
+        "belief",
+        "observation.environment_state",
     }
     np.testing.assert_allclose(episode.timestamp, 0.01 * np.arange(6), atol=1e-9)
     np.testing.assert_array_equal(episode.action[3], record(3).command.velocity)

@@ -37,7 +37,8 @@ def run(step, given, state, ticks, age=0.0):
 
 def goals_of(arm, *shifts):
     return tuple(
-        Goal(f"goal {i}", arm.home + shift, arm.chain.forward(arm.home + shift)) for i, shift in enumerate(shifts)
+        Goal(f"goal {i}", arm.home + shift, arm.chain.forward(arm.home + shift))
+        for i, shift in enumerate(shifts)
     )
 
 
@@ -163,7 +164,9 @@ class TestAlgorithm:
         belief = BoltzmannBelief(
             [goal.configuration for goal in goals], prior=np.array([0.25, 0.75]), period_s=0.01
         )
-        step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, belief=belief, arbitration=FixedAlpha(0.4))
+        step = Step(
+            arm, scripted(MATRIX), SafetyConfig(), goals=goals, belief=belief, arbitration=FixedAlpha(0.4)
+        )
         engaged(step, arm.home)
         record = step(PUSH, 0.0, arm.home, 12.5)
         np.testing.assert_allclose(record.action_human, MATRIX[0])
@@ -231,7 +234,9 @@ class TestAlgorithm:
         with pytest.raises(UserError, match="2 goals"):
             Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals_of(arm, 0.1), belief=belief)
 
-    @pytest.mark.parametrize("answer", [np.full(7, np.nan), np.full(7, np.inf), np.zeros(6), np.zeros((1, 7)), "x"])
+    @pytest.mark.parametrize(
+        "answer", [np.full(7, np.nan), np.full(7, np.inf), np.zeros(6), np.zeros((1, 7)), "x"]
+    )
     def test_a_controller_that_gives_no_velocity_stops_the_arm(self, step, arm, answer):
         engaged(step, arm.home)
         step._controller.answer = lambda context: answer

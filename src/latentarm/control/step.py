@@ -72,8 +72,8 @@ class Step:
         if belief is not None and len(belief.initial()) != len(goals):
             raise UserError(f"The belief is over {len(belief.initial())} goals, but {len(goals)} are given.")
         self._dof = robot.dof
-        self._lowest = robot.limits.lower - _ASTRAY
-        self._highest = robot.limits.upper + _ASTRAY
+        self._lowest = (robot.limits.lower - _ASTRAY).tolist()
+        self._highest = (robot.limits.upper + _ASTRAY).tolist()
         self._controller = controller
         self._stack = SafetyStack(safety, robot, dt_s)
         self._goals = np.array([goal.configuration for goal in goals], dtype=np.float64).reshape(
@@ -186,7 +186,7 @@ class Step:
         if isinstance(u, Stop):
             self._engagement.stop(u)
             return self._record(time_s, q, Passed(self._stack.stop()))
-        neutral = not u.any()
+        neutral = u is self._no_input
         self._engagement.saw(neutral)
         self._switch(given.switch_mode)
         if self._engagement.stopped is not None:
@@ -281,8 +281,9 @@ class Step:
         if q.shape != (self._dof,) or q.dtype.kind not in "iuf":
             return None
         # Written so that a value that is not a number fails too.
-        if not ((q >= self._lowest) & (q <= self._highest)).all():
-            return None
+        for low, value, high in zip(self._lowest, q.tolist(), self._highest, strict=True):
+            if not low <= value <= high:
+                return None
         return q.astype(np.float64)
 
     def _switch(self, wanted: bool) -> None:

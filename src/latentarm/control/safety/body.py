@@ -95,6 +95,14 @@ class Body:
         """(P, n, n), R for the worst point on the capsule's surface about each point."""
         return self.curvature(self.surface_lever)
 
+    def bent(self, joints: FloatArray) -> FloatArray:
+        """`surface_curvature` times joint figures (n,), (P, n)."""
+        return (self._flat_curvature @ joints).reshape(-1, len(joints))
+
+    @cached_property
+    def _flat_curvature(self) -> FloatArray:
+        return np.ascontiguousarray(self.surface_curvature.reshape(-1, self.robot.dof))
+
     @cached_property
     def moves_factor(self) -> FloatArray:
         """(n, 1, P), `moves` as factors."""
@@ -138,16 +146,18 @@ class Placement:
 
     Attributes:
         body: as given.
+        q: as given.
         points: (P, 3), m, base frame.
         jacobian: (n, 6, P), what a unit speed of joint j does at point p: rows 0-2 its velocity, m/s,
             rows 3-5 the angular velocity of its link, rad/s.
     """
 
-    __slots__ = ("_flat", "body", "jacobian", "points")
+    __slots__ = ("_flat", "body", "jacobian", "points", "q")
 
     def __init__(self, body: Body, q: FloatArray) -> None:
         chain = body.robot.chain
         self.body = body
+        self.q = q
         transforms = chain.link_transforms(q)
         self.points = chain.points(transforms, body.link, body.local)
         axes, origins = chain.joint_axes(transforms)
@@ -172,5 +182,5 @@ class Placement:
             velocity: (n,), rad/s.
         """
         moved = (velocity @ self._flat).reshape(2, 3, -1)
-        linear, angular = np.sqrt((moved * moved).sum(axis=1))
+        linear, angular = np.sqrt(np.add.reduce(moved * moved, axis=1))
         return linear + self.body.radius * angular

@@ -36,8 +36,9 @@ class Bounds:
         speed: largest speed of a joint, rad/s.
         lower: (n,), lowest joint position, margin taken off, rad.
         upper: (n,), highest joint position, margin taken off, rad.
-        soft_limits: (2, n), where shaping stops the joints: lowest, highest, rad.
+        positions: (2, n), `lower` and `upper` together.
         acceleration: (n,), for ordinary motion, rad/s².
+        quickening: (n,), what ordinary motion may gain in one period, rad/s.
         jerk: (n,), for ordinary motion, rad/s³.
         stop_acceleration: (n,), for stops, rad/s².
         stop_jerk: (n,), for stops, rad/s³.
@@ -82,8 +83,9 @@ class Bounds:
                 f"The safety limit joint_margin is {config.joint_margin:g} rad, which leaves joint"
                 f" {names[joint]!r} of {robot.name} no room between its limits: set it lower."
             )
-        self.soft_limits = np.stack([self.lower + BUFFER_RAD, self.upper - BUFFER_RAD])
+        self.positions = np.stack([self.lower, self.upper])
         self.acceleration = config.acceleration_fraction * hardware.acceleration
+        self.quickening = self.acceleration * dt_s
         self.jerk = config.jerk_fraction * hardware.jerk
         self.stop_acceleration = config.stop_fraction * hardware.acceleration
         self.stop_jerk = config.stop_fraction * hardware.jerk

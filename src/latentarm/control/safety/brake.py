@@ -6,6 +6,7 @@ from typing import final
 import numpy as np
 from ruckig import ControlInterface, InputParameter, Result, Ruckig, Trajectory
 
+from latentarm.control.safety.small import largest, some
 from latentarm.types import FloatArray
 
 _AT_REST_S = 1e-9
@@ -64,16 +65,19 @@ class Brake:
         self._acceleration = acceleration
         self._stop_jerk = stop_jerk
         self._fall: _Fall | None = None
-        settle = np.abs(acceleration) / stop_jerk
-        self.settle_s = float(settle.max())
-        self.kink = 0.5 * acceleration * settle
-        self.settled = velocity + self.kink
+        if some(acceleration):
+            settle = np.abs(acceleration) / stop_jerk
+            self.settle_s = largest(settle)
+            self.kink = 0.5 * acceleration * settle
+            self.settled = velocity + self.kink
+        else:
+            self.settle_s, self.kink, self.settled = 0.0, acceleration, velocity
         speed = np.abs(self.settled)
-        by_acceleration = float((speed / stop_acceleration).max())
+        by_acceleration = largest(speed / stop_acceleration)
         if by_acceleration < _AT_REST_S:
             self.rate, self.onset_s, self.ramp_s = math.inf, 0.0, 0.0
             return
-        by_jerk = float((speed / stop_jerk).max())
+        by_jerk = largest(speed / stop_jerk)
         self.rate = min(1.0 / by_acceleration, math.sqrt(1.0 / by_jerk))
         self.onset_s = self.rate * by_jerk
         self.ramp_s = 1.0 / self.rate + self.onset_s

@@ -1,7 +1,6 @@
 """What a safety filter is, and what it knows."""
 
 from abc import ABC, abstractmethod
-from functools import cached_property
 from typing import final
 
 import numpy as np
@@ -9,7 +8,13 @@ import numpy as np
 from latentarm.control.safety.body import Body, Placement
 from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.proximity import Contacts, Proximity
+from latentarm.control.safety.small import largest, smallest, some
 from latentarm.types import FloatArray, Stop
+
+_INWARD: FloatArray = np.array([[-1.0], [1.0]])
+
+_DRIFT_RAD = 0.05
+"""A placement from a configuration further away than this is of no use."""
 
 
 @final
@@ -24,12 +29,14 @@ class Surroundings:
         bounds: as given.
         body: as given.
         proximity: its near pairs.
+        reference: where the arm was placed last.
     """
 
     def __init__(self, bounds: Bounds, body: Body) -> None:
         self.bounds = bounds
         self.body = body
         self.proximity = Proximity(body, bounds.config.obstacles, bounds.config.link_speed)
+        self.reference: Placement | None = None
 
 
 @final
@@ -42,6 +49,11 @@ class Situation:
         velocity: (n,), the last command, rad/s.
         acceleration: (n,), the acceleration that the last command was reached with, rad/s².
         input_age_s: age of the newest input, s.
+
+    Attributes:
+        bounds: the limits.
+        room: (2, n), distance to the lowest position (zero or below inside) and to the highest, rad.
+        nearest_limit: the smallest of these distances in size, negative where a limit is passed, rad.
     """
 
     def __init__(
@@ -53,22 +65,38 @@ class Situation:
         input_age_s: float = 0.0,
     ) -> None:
         self.surroundings = surroundings
+        self.bounds = surroundings.bounds
         self.state = state
         self.velocity = velocity
         self.acceleration = acceleration
         self.input_age_s = input_age_s
+        self.room = self.bounds.positions - state
+        self.nearest_limit = smallest((self.room * _INWARD).ravel())
+        self._nearby: tuple[Placement, FloatArray] | None = None
         self._asked: FloatArray | None = None
         self._contacts: Contacts | None = None
 
     @property
-    def bounds(self) -> Bounds:
-        """The limits."""
-        return self.surroundings.bounds
-
-    @cached_property
     def placement(self) -> Placement:
         """The arm's points at the measured state."""
-        return Placement(self.surroundings.body, self.state)
+        reference = self.surroundings.reference
+        if reference is None or some(reference.q != self.state):
+            reference = self.surroundings.reference = Placement(self.surroundings.body, self.state)
+        return reference
+
+    def nearby(self) -> tuple[Placement, FloatArray]:
+        """A placement of the arm that may be a few ticks old, for bounds that allow for it.
+
+        Returns:
+            The placement, and how far each joint has moved since, (n,), rad, zero or more.
+        """
+        reference = self.surroundings.reference
+        if self._nearby is None or self._nearby[0] is not reference:
+            drift = None if reference is None else np.abs(self.state - reference.q)
+            if reference is None or drift is None or largest(drift) > _DRIFT_RAD:
+                reference, drift = self.placement, np.zeros_like(self.state)
+            self._nearby = reference, drift
+        return self._nearby
 
     def contacts(self, speed: FloatArray) -> Contacts | None:
         """What the arm could come too near to when no joint is faster than this.
@@ -76,13 +104,17 @@ class Situation:
         Args:
             speed: (n,), rad/s, zero or more.
         """
-        if self._asked is None or (speed > self._asked).any():
+        if self._asked is None or some(speed > self._asked):
             bounds = self.bounds
-            # Also what ordinary motion already passes through is asked for, so that this is worked out once.
-            self._asked = np.maximum(speed, np.abs(self.velocity)) + bounds.acceleration * bounds.dt_s
-            self._contacts = self.surroundings.proximity.contacts(
-                self.placement, self.state, self._asked, bounds.nearest_m, bounds.horizon_s
-            )
+            # Also what ordinary motion passes through next is asked for, so that this is worked out once.
+            self._asked = np.maximum(speed, np.abs(self.velocity)) + bounds.quickening
+            proximity = self.surroundings.proximity
+            if proximity.all_far(self.state, self._asked, bounds.nearest_m, bounds.horizon_s):
+                self._contacts = None
+            else:
+                self._contacts = proximity.contacts(
+                    self.placement, self._asked, bounds.nearest_m, bounds.horizon_s
+                )
         return self._contacts
 
 

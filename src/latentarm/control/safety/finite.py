@@ -1,8 +1,7 @@
 """Numbers only."""
 
+import math
 from typing import final
-
-import numpy as np
 
 from latentarm.control.safety.filter import SafetyFilter, Situation
 from latentarm.types import FloatArray, Stop
@@ -21,6 +20,6 @@ class Finite(SafetyFilter):
         """See the base class."""
         if velocity.shape != situation.state.shape:
             return Stop(f"The controller gave {velocity.shape} numbers for {len(situation.state)} joints.")
-        if not np.isfinite(velocity).all():
+        if not all(map(math.isfinite, velocity.tolist())):
             return Stop("The controller gave a velocity that is not a finite number.")
         return velocity

@@ -1,12 +1,13 @@
 """The check behind the filters: a command leaves only if the stop after it is proven safe."""
 
-import math
 from typing import final
 
 import numpy as np
 
+from latentarm.control.safety.body import Placement
 from latentarm.control.safety.brake import Brake
 from latentarm.control.safety.filter import Situation
+from latentarm.control.safety.small import largest, some
 from latentarm.types import FloatArray
 
 _NUMERIC_M = 1e-9
@@ -27,35 +28,36 @@ class Path:
         hold_s: how long the command lasts, s.
 
     Attributes:
+        before_s: for how long the arm moves at the command, phase one of the brake included, s.
+        after_s: the time at full speed that covers the rest, s.
         way: (n,), rad.
-        stray: (n,), rad.
-        highest: (n,), how far the joint moves up at most, rad, zero or more.
-        lowest: (n,), how far it moves down at most, rad, zero or less.
         kink: (n,), ``|v+ - v|``, rad/s.
         fastest: (n,), largest speed of each joint, rad/s.
-        steady_s: for how long the speed may not have begun to fall, s.
-        rate: from then on it falls at least on a line of this slope, as a share of itself per s.
+        brake: as given.
     """
 
-    __slots__ = ("fastest", "highest", "kink", "lowest", "rate", "steady_s", "stray", "way")
+    __slots__ = ("after_s", "before_s", "brake", "fastest", "kink", "way")
 
     def __init__(self, velocity: FloatArray, brake: Brake, hold_s: float) -> None:
-        settled, settle_s = brake.settled, brake.settle_s
-        stop_s = 0.5 * brake.ramp_s
-        before = hold_s + settle_s
-        self.way = velocity * before + settled * stop_s
-        # Phase one leaves v for v+ within settle_s; against a straight line to the end of `way` the
-        # difference v+ - v acts at most over settle_s and the stop.
+        self.brake = brake
+        self.before_s = hold_s + brake.settle_s
+        self.after_s = 0.5 * brake.ramp_s
         self.kink = np.abs(brake.kink)
-        self.stray = self.kink * (settle_s + stop_s)
-        # Each joint's velocity lies between v and v+ in phase one: counted with both, it is bounded by them.
-        legs = np.stack([velocity, settled])
-        times = np.array([before, settle_s + stop_s])
-        self.highest = times @ np.maximum(legs, 0.0)
-        self.lowest = times @ np.minimum(legs, 0.0)
-        self.fastest = np.maximum(np.abs(velocity), np.abs(settled))
-        self.steady_s = before + brake.onset_s
-        self.rate = brake.rate
+        if brake.settle_s == 0.0:
+            self.way = velocity * (self.before_s + self.after_s)
+            self.fastest = np.abs(velocity)
+        else:
+            self.way = velocity * self.before_s + brake.settled * self.after_s
+            self.fastest = np.maximum(np.abs(velocity), np.abs(brake.settled))
+
+    @property
+    def stray(self) -> FloatArray:
+        """(n,), rad.
+
+        Phase one leaves v for v+ within its short time; against a straight line to the end of ``way`` the
+        difference v+ - v acts at most during that and the rest.
+        """
+        return self.kink * (self.brake.settle_s + self.after_s)
 
 
 @final
@@ -88,9 +90,9 @@ class Guard:
             situation: what is known at this tick.
         """
         path = Path(velocity, brake, situation.bounds.hold_s)
-        if self._passes_joint_limits(path, situation):
+        if self._passes_joint_limits(velocity, path, situation):
             return "joint position"
-        if self._too_fast(path, velocity, situation):
+        if self._too_fast(velocity, path, situation):
             return "link speed"
         if self._too_close(path, situation):
             return "clearance"
@@ -99,31 +101,49 @@ class Guard:
         return None
 
     @staticmethod
-    def _passes_joint_limits(path: Path, situation: Situation) -> bool:
-        bounds = situation.bounds
-        above = situation.state + path.highest > np.maximum(bounds.upper, situation.state) + _NUMERIC_RAD
-        below = situation.state + path.lowest < np.minimum(bounds.lower, situation.state) - _NUMERIC_RAD
-        return bool(above.any() or below.any())
+    def _passes_joint_limits(velocity: FloatArray, path: Path, situation: Situation) -> bool:
+        # In phase one each joint's velocity lies between v and v+: counted with both, it is bounded by them.
+        before_s, after_s = path.before_s, path.after_s + path.brake.settle_s
+        if largest(path.fastest) * (before_s + after_s) < situation.nearest_limit:
+            return False
+        settled, room = path.brake.settled, situation.room
+        highest = before_s * np.maximum(velocity, 0.0) + after_s * np.maximum(settled, 0.0)
+        lowest = before_s * np.minimum(velocity, 0.0) + after_s * np.minimum(settled, 0.0)
+        above = highest > np.maximum(room[1], 0.0) + _NUMERIC_RAD
+        below = lowest < np.minimum(room[0], 0.0) - _NUMERIC_RAD
+        return some(above) or some(below)
+
+    def _too_fast(self, velocity: FloatArray, path: Path, situation: Situation) -> bool:
+        nearby, drift = situation.nearby()
+        if not self._exceeds(velocity, path, nearby, drift, situation.bounds.config.link_speed):
+            return False
+        # Perhaps only because that placement was a few ticks old.
+        here = situation.placement
+        return here is nearby or self._exceeds(
+            velocity, path, here, np.zeros_like(drift), situation.bounds.config.link_speed
+        )
 
     @staticmethod
-    def _too_fast(path: Path, velocity: FloatArray, situation: Situation) -> bool:
-        body = situation.surroundings.body
-        limit = situation.bounds.config.link_speed
-        # At the start, and once acceleration has settled.
-        speed = situation.placement.speeds(velocity) + body.surface_lever @ path.kink
-        bend = body.surface_curvature @ path.fastest @ path.fastest
-        grown = speed + bend * path.steady_s
-        if float(grown.max(initial=0.0)) > limit:
+    def _exceeds(
+        velocity: FloatArray, path: Path, placement: Placement, drift: FloatArray, limit: float
+    ) -> bool:
+        """Whether a point could be too fast, seen from a placement that is ``drift`` away."""
+        body, brake = placement.body, path.brake
+        steady_s = path.before_s + brake.onset_s
+        bend = body.bent(path.fastest)
+        grown = placement.speeds(velocity) + bend @ (steady_s * path.fastest + drift)
+        if brake.settle_s > 0.0:
+            # At the start, and once acceleration has settled.
+            grown += body.surface_lever @ path.kink
+        if largest(grown) > limit:
             return True
-        if not math.isfinite(path.rate):
+        # While braking at rate r the speed is at most (1 - r t)(grown + bend t). That rises at first only
+        # where bend > r grown, and then to the parabola's top, which is at most bend / r.
+        bends = bend @ path.fastest
+        if largest(bends) <= brake.rate * limit:
             return False
-        # While braking at rate r the speed is at most (1 - r t)(grown + bend t), which rises at first
-        # only where bend > r grown.
-        rising = bend > path.rate * grown
-        if not rising.any():
-            return False
-        peak = (grown + bend / path.rate) ** 2 * path.rate / (4.0 * bend + 1e-300)
-        return bool((peak[rising] > limit).any())
+        top = (grown + bends / brake.rate) ** 2 * brake.rate / (4.0 * np.maximum(bends, 1e-300))
+        return bool((top[bends > brake.rate * grown] > limit).any())
 
     @staticmethod
     def _too_close(path: Path, situation: Situation) -> bool:

@@ -45,10 +45,7 @@ def slide(velocity: FloatArray, rows: FloatArray, floor: FloatArray, passed: Boo
         if short[worst] <= _ENOUGH:
             break
         along = slid - rows[worst] * (rate[worst] / norm[worst] ** 2)
-        if passed[worst]:
-            away = _LEAN * math.sqrt(along @ along)
-        else:
-            away = floor[worst] / norm[worst]
+        away = _LEAN * math.sqrt(along @ along) if passed[worst] else floor[worst] / norm[worst]
         slid = along + rows[worst] * (away / norm[worst])
         rate = rows @ slid
     if slid is velocity:

@@ -4,7 +4,9 @@ from typing import final
 
 import numpy as np
 
+from latentarm.control.safety.bounds import BUFFER_RAD
 from latentarm.control.safety.filter import SafetyFilter, Situation
+from latentarm.control.safety.small import largest, some
 from latentarm.types import FloatArray
 
 
@@ -24,6 +26,9 @@ class JointPosition(SafetyFilter):
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
         """See the base class."""
         bounds = situation.bounds
-        down, up = (bounds.soft_limits - situation.state) * bounds.damping_per_s
+        if (situation.nearest_limit - BUFFER_RAD) * bounds.damping_per_s >= largest(np.abs(velocity)):
+            return velocity
+        down = (situation.room[0] + BUFFER_RAD) * bounds.damping_per_s
+        up = (situation.room[1] - BUFFER_RAD) * bounds.damping_per_s
         clipped = np.minimum(np.maximum(velocity, np.minimum(down, 0.0)), np.maximum(up, 0.0))
-        return velocity if (clipped == velocity).all() else clipped
+        return clipped if some(clipped != velocity) else velocity

@@ -5,6 +5,7 @@ from typing import final
 import numpy as np
 
 from latentarm.control.safety.filter import SafetyFilter, Situation
+from latentarm.control.safety.small import largest
 from latentarm.types import FloatArray
 
 
@@ -20,6 +21,6 @@ class JointVelocity(SafetyFilter):
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
         """See the base class."""
         limit = situation.bounds.speed
-        fastest = float(np.abs(velocity).max())
+        fastest = largest(np.abs(velocity))
         # limit / fastest first: fastest may be 1e308
         return velocity if fastest <= limit else velocity * (limit / fastest)

@@ -2,7 +2,10 @@
 
 from typing import final
 
+import numpy as np
+
 from latentarm.control.safety.filter import SafetyFilter, Situation
+from latentarm.control.safety.small import largest
 from latentarm.types import FloatArray
 
 HEADROOM = 0.95
@@ -21,5 +24,9 @@ class LinkSpeed(SafetyFilter):
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
         """See the base class."""
         limit = HEADROOM * situation.bounds.config.link_speed
-        fastest = float(situation.placement.speeds(velocity).max(initial=0.0))
+        nearby, drift = situation.nearby()
+        bend = nearby.body.bent(drift) @ np.abs(velocity)
+        if largest(nearby.speeds(velocity) + bend) <= limit:
+            return velocity
+        fastest = largest(situation.placement.speeds(velocity))
         return velocity if fastest <= limit else velocity * (limit / fastest)

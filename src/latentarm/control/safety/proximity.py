@@ -7,6 +7,7 @@ import numpy as np
 
 from latentarm.control.safety.body import Body, Placement
 from latentarm.control.safety.box_distance import box_separation
+from latentarm.control.safety.small import some
 from latentarm.kinematics.capsules import segment_distance
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.types import BoolArray, FloatArray, IntArray
@@ -104,15 +105,31 @@ class Proximity:
         # What is known: this distance at that configuration. Nothing at first.
         self._distance = np.full(len(self._b), -np.inf)
         self._at = np.zeros((len(self._b), body.robot.dof))
+        self._spare: FloatArray | None = None
+        self._spare_at = self._spare_speed = np.zeros(body.robot.dof)
+        self._asked_for = (0.0, 0.0)
+
+    def all_far(self, q: FloatArray, speed: FloatArray, nearest_m: float, horizon_s: float) -> bool:
+        """Whether it is proven already that no pair matters, from what was left over when none did.
+
+        Args:
+            q: (n,), rad.
+            speed: (n,), how fast each joint may go, rad/s.
+            nearest_m: distance to be kept, m.
+            horizon_s: for how long the arm may go on like this, s.
+        """
+        if self._spare is None or (nearest_m, horizon_s) != self._asked_for:
+            return False
+        used = np.abs(q - self._spare_at) + horizon_s * np.maximum(speed - self._spare_speed, 0.0)
+        return not some(self.lever @ used >= self._spare)
 
     def contacts(
-        self, placement: Placement, q: FloatArray, speed: FloatArray, nearest_m: float, horizon_s: float
+        self, placement: Placement, speed: FloatArray, nearest_m: float, horizon_s: float
     ) -> Contacts | None:
         """The pairs that matter, or None where there are none.
 
         Args:
-            placement: the arm at ``q``.
-            q: (n,), rad.
+            placement: the arm.
             speed: (n,), how fast each joint may go, rad/s.
             nearest_m: distance to be kept, m.
             horizon_s: for how long the arm may go on like this, s.
@@ -120,10 +137,14 @@ class Proximity:
         Returns:
             All pairs that could be nearer than ``nearest_m`` within the horizon.
         """
+        q = placement.q
+        self._spare = None
         known = self._distance - (self.lever * np.abs(q - self._at)).sum(axis=1)
         enough = np.minimum(self.lever @ speed, self._closing) * horizon_s + nearest_m
         pair = np.flatnonzero(known < enough)
         if not len(pair):
+            self._spare, self._spare_at, self._spare_speed = known - enough, q, speed
+            self._asked_for = (nearest_m, horizon_s)
             return None
         normal, edge = self._planes_between(placement.points, pair)
         contacts = self._assembled(placement, pair, normal, edge)

@@ -18,6 +18,7 @@ from latentarm.control.safety.joint_position import JointPosition
 from latentarm.control.safety.joint_velocity import JointVelocity
 from latentarm.control.safety.link_speed import LinkSpeed
 from latentarm.control.safety.ramp import Ramp
+from latentarm.control.safety.small import largest, some
 from latentarm.control.safety.workspace import WorkspaceBox
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, Stop
@@ -78,7 +79,7 @@ class SafetyStack:
     @property
     def at_rest(self) -> bool:
         """Whether the last command was to stand still."""
-        return not (self._velocity.any() or self._acceleration.any())
+        return not (some(self._velocity) or some(self._acceleration))
 
     def reset(self) -> None:
         """Begin anew from an arm that stands still."""
@@ -101,7 +102,7 @@ class SafetyStack:
         shaped = self._shaped(wanted, situation, limited_by)
         if isinstance(shaped, Stop):
             return Passed(self.stop(), tuple(limited_by), shaped)
-        if self.at_rest and not shaped.any():
+        if not some(shaped) and self.at_rest:
             self._brake = None
             return Passed(self._rest, tuple(limited_by))
         for target in (shaped, self._rest):
@@ -113,7 +114,7 @@ class SafetyStack:
             if objection is None:
                 self._velocity, self._acceleration = velocity, acceleration
                 self._brake = None
-                if float(np.abs(velocity - shaped).max()) > _SAME_RAD_S:
+                if largest(np.abs(velocity - shaped)) > _SAME_RAD_S:
                     limited_by.append(self._ramp.name)
                 return Passed(velocity, tuple(limited_by))
             if objection not in limited_by:
