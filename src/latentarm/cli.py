@@ -234,8 +234,10 @@ def drive(
     ] = None,
     end_effector: EndEffector = None,
     drives: Annotated[int, arg(help="Drives for each goal.")] = 3,
-    beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24).")] = 1000.0,
-    time_limit_s: Annotated[float, arg(help="A drive that lasts longer has failed.")] = 60.0,
+    beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0,
+    time_limit_s: Annotated[
+        float | None, arg(help="A drive that lasts longer has failed: 60 s, 300 s on held-out episodes.")
+    ] = None,
     seed: Seed = 0,
     record: Annotated[
         Path | None, arg(metavar="DIR", help="Record the drives; exported there as a native dataset.")

@@ -36,9 +36,6 @@ from latentarm.tasks.table_top import TableTop
 from latentarm.types import Row
 
 MODELS = ("cvae", "scl")
-EPISODES = 60
-SEEDS = 3
-EPOCHS = 8
 TIME_LIMIT_S = 60.0
 
 
@@ -52,6 +49,9 @@ class DemoConfig:
         seed: of everything random.
         jobs: processes that drive side by side; -1 is one per core.
         quiet: show no progress.
+        episodes: demonstrations.
+        seeds: models of each kind, trained at once; the first one drives.
+        epochs: passes over the training pairs, at most.
     """
 
     out: Path
@@ -59,6 +59,9 @@ class DemoConfig:
     seed: int = 0
     jobs: int = -1
     quiet: bool = False
+    episodes: int = 60
+    seeds: int = 3
+    epochs: int = 8
 
 
 def run_demo(config: DemoConfig) -> list[Row]:
@@ -73,13 +76,13 @@ def run_demo(config: DemoConfig) -> list[Row]:
     _clear(config.out)
     console = Console(stderr=True, quiet=config.quiet)
     task = TableTop()
-    console.print(f"1/3  A simulated person demonstrates eating {EPISODES} times.")
-    demonstrations = task.demonstrate(EPISODES, np.random.default_rng(config.seed))
+    console.print(f"1/3  A simulated person demonstrates eating {config.episodes} times.")
+    demonstrations = task.demonstrate(config.episodes, np.random.default_rng(config.seed))
     write_dataset(demonstrations, config.out / "demonstrations")
     draw_task(task, demonstrations, config.out / "task.png")
     properties: list[Row] = []
     for model in MODELS:
-        console.print(f"2/3  {model}: learning 2-D latent actions, {SEEDS} seeds at once.")
+        console.print(f"2/3  {model}: learning 2-D latent actions, {config.seeds} seeds at once.")
         properties += _train(config, model)
     setups = _setups(task, config)
     traces: dict[str, list[Trace]] = {}
@@ -103,9 +106,9 @@ def _train(config: DemoConfig, model: str) -> list[Row]:
             demonstrations=config.out / "demonstrations",
             model=model,
             out=run,
-            seeds=SEEDS,
+            seeds=config.seeds,
             seed=config.seed,
-            epochs=EPOCHS,
+            epochs=config.epochs,
             progress=not config.quiet,
         )
     )
@@ -151,7 +154,7 @@ def _write(
         f"The figures show the {MODELS[0]}. ![Paths of the tool](paths.png)\n\n"
         "![Inputs over time](inputs.png)\n\n"
         "## The latent spaces, on held-out episodes\n\n"
-        f"Mean ± SD over {SEEDS} seeds.\n\n{markdown_table(properties)}\n"
+        f"Mean ± SD over {config.seeds} seeds.\n\n{markdown_table(properties)}\n"
         "![The task](task.png)\n",
     )
 

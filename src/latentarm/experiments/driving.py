@@ -35,6 +35,9 @@ from latentarm.types import Row
 ControllerName = Literal["latent", "latent_assist", "end_effector"]
 TaskName = Literal["table_top", "held_out", "reach"]
 
+TIME_LIMITS_S = {"table_top": 60.0, "held_out": 300.0, "reach": 60.0}
+"""How long a drive may last, by task: held-out episodes are several metres long."""
+
 
 @dataclass(frozen=True)
 class DriveConfig:
@@ -49,7 +52,7 @@ class DriveConfig:
         end_effector: site, body or link of a model file.
         drives: for each goal.
         beta: rationality of the simulated operator.
-        time_limit_s: a drive that lasts longer has failed.
+        time_limit_s: a drive that lasts longer has failed; what `TIME_LIMITS_S` says where None.
         seed: of everything random.
         jobs: processes side by side.
         record: folder of a new dataset that the drives are exported to, or None.
@@ -63,7 +66,7 @@ class DriveConfig:
     end_effector: str | None = None
     drives: int = 3
     beta: float = BoltzmannConfig.beta
-    time_limit_s: float = 60.0
+    time_limit_s: float | None = None
     seed: int = 0
     jobs: int = 1
     record: Path | None = None
@@ -85,15 +88,14 @@ def drive_run(config: DriveConfig) -> list[Row]:
         controller=_controller(config, task),
         assisted=config.controller == "latent_assist",
         operator=BoltzmannConfig(beta=config.beta),
-        time_limit_s=config.time_limit_s,
+        time_limit_s=TIME_LIMITS_S[task.name] if config.time_limit_s is None else config.time_limit_s,
     )
     if config.record is None:
         traces = drive_all(setup, config.drives, config.seed, config.jobs)
     else:
         traces = _record_all(setup, config, config.record)
-    subject = Subject(
-        "drive", task=task.name, model=None if run is None else run.model, condition=config.controller
-    )
+    model = None if run is None or config.controller == "end_effector" else run.model
+    subject = Subject("drive", task=task.name, model=model, condition=config.controller)
     rows = drive_rows(subject, [trace.figures for trace in traces])
     about = {"run": str(config.run), "seed": config.seed, "beta": config.beta, "operator": "simulated"}
     write_results(config.out / "drives.json", rows, about)

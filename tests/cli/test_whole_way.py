@@ -1,0 +1,122 @@
+"""A person's first hour: import, inspect, train, evaluate, drive, record, train on that."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from latentarm.demonstrations.dataset import read_dataset
+from latentarm.metrics.results import read_results
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+def figures(text: str) -> dict[str, float | None]:
+    """Means by measure; fails unless the text is one JSON document of rows."""
+    return {row["measure"]: row["mean"] for row in json.loads(text)}
+
+
+def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: Path) -> None:
+    code, out, _ = run("import", recording, "eat")
+    assert code == 0
+    assert "7 episodes of 7 joints" in out
+
+    code, out, _ = run("inspect", "eat", "--json")
+    assert code == 0
+    assert figures(out)["episodes"] == 7
+    assert Path("eat-figures/joints.png").stat().st_size > 10_000
+
+    command = ("train", "--demonstrations", "eat", "--model", "cae", "--seeds", 2, "--epochs", 2)
+    code, out, err = run(*command, "--json")
+    assert code == 0
+    assert figures(out)["held_out_loss"] is not None
+    assert "latentarm evaluate runs/eat-cae" in err
+
+    code, out, _ = run("evaluate", "runs/eat-cae", "--json")
+    assert code == 0
+    printed = figures(out)
+    expected = {
+        "error_percent_of_pca",
+        "noise_free_error_percent_of_pca",
+        "controllability_m",
+        "r2",
+        "r2_axis_0",
+        "r2_axis_1",
+        "disentanglement_deg",
+        "drift",
+        "reversal",
+    }
+    assert expected <= printed.keys()
+    assert {row.measure: row.mean for row in read_results(Path("runs/eat-cae/metrics.json"))} == printed
+    assert {path.name for path in Path("runs/eat-cae").glob("*.png")} == {
+        "consistency.png",
+        "latent_axes.png",
+    }
+
+    code, out, _ = run("drive", "runs/eat-cae", "--drives", 1, "--time-limit-s", 2, "--json")
+    assert figures(out).keys() >= {
+        "success_rate",
+        "time_s",
+        "input_magnitude",
+        "mode_switches",
+        "path_length",
+    }
+    assert code == (0 if figures(out)["success_rate"] else 1)
+
+    code, out, _ = run("drive", "--drives", 1, "--record", "driven", "--out", "recorded", "--json")
+    assert code == 0
+    driven = read_dataset(Path("driven"))
+    assert len(driven.episodes) == 3
+    assert {"input.u", "latent.z", "action.human"} <= driven.episodes[0].extras.keys()
+    assert run("inspect", "driven")[0] == 0
+
+
+def test_training_with_belief_needs_goals_and_says_so(run: Run, workplace: Path, recording: Path) -> None:
+    run("import", recording, "eat")
+    code, _, err = run("train", "--demonstrations", "eat", "--context", "state_belief")
+    assert code == 2
+    assert "goals" in err
+
+
+def test_a_finished_run_is_not_overwritten(run: Run, workplace: Path, recording: Path) -> None:
+    run("import", recording, "eat")
+    command = ("train", "--demonstrations", "eat", "--model", "pca", "--out", "mine")
+    assert run(*command)[0] == 0
+    before = Path("mine/model.safetensors").read_bytes()
+    code, _, err = run(*command)
+    assert code == 2
+    assert "holds a run already" in err
+    assert Path("mine/model.safetensors").read_bytes() == before
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_same_seed_gives_the_same_figures(run: Run, workplace: Path, recording: Path, seed: int) -> None:
+    run("import", recording, "eat")
+    outs = []
+    for name in ("one", "two"):
+        run(
+            "train", "--demonstrations", "eat", "--model", "scl", "--epochs", 1, "--seed", seed, "--out", name
+        )
+        outs.append(run("evaluate", name, "--json")[1])
+    assert figures(outs[0]) == figures(outs[1])
+
+
+def test_demo_writes_a_page_with_figures(run: Run, workplace: Path) -> None:
+    from latentarm.experiments.demo import DemoConfig, run_demo
+
+    config = DemoConfig(Path("demo"), drives=1, jobs=1, quiet=True, episodes=9, seeds=1, epochs=1)
+    rows = run_demo(config)
+    assert {(row.model, row.condition) for row in rows} == {
+        ("cvae", "latent"),
+        ("cvae", "latent_assist"),
+        ("scl", "latent"),
+        ("scl", "latent_assist"),
+        (None, "end_effector"),
+    }
+    page = Path("demo/results.md").read_text()
+    assert "simulated operator" in page
+    for figure in ("task.png", "paths.png", "inputs.png"):
+        assert figure in page
+        assert (Path("demo") / figure).stat().st_size > 10_000
+    run_demo(config)  # a second time: the earlier demo makes room
