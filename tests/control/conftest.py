@@ -8,6 +8,8 @@ from hypothesis import settings
 from latentarm.control.controller import Controller
 from latentarm.kinematics.capsules import segment_distance
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+from latentarm.robots.assemble import assemble
+from latentarm.robots.limits import JointLimits
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
@@ -26,6 +28,31 @@ def arm() -> Robot:
 @pytest.fixture(scope="session")
 def two_arms() -> Robot:
     return planar(n_links=5, arms=2)
+
+
+@pytest.fixture(scope="session")
+def gantry() -> Robot:
+    """A robot that slides before it turns and turns before it slides."""
+    text = """
+    <mujoco><compiler angle="radian"/><worldbody>
+      <body><joint name="rail" type="slide" axis="1 0 0" range="-0.5 0.5"/>
+        <geom type="capsule" fromto="0 0 0 0 0 0.3" size="0.05" mass="1"/>
+        <body pos="0 0 0.4"><joint name="turn" axis="0 1 0" range="-2 2"/>
+          <geom type="capsule" fromto="0 0 0 0.4 0 0" size="0.04" mass="1"/>
+          <body pos="0.4 0.1 0"><joint name="push" type="slide" axis="1 0 0" range="0 0.3"/>
+            <geom type="capsule" fromto="0 0 0 0.1 0 0" size="0.03" mass="1"/>
+            <body pos="0.1 0 0"><joint name="wrist" axis="0 0 1" range="-2 2"/>
+              <geom type="capsule" fromto="0 0 0 0.2 0 0" size="0.03" mass="1"/>
+              <site name="tool" pos="0.2 0.05 0"/>
+    </body></body></body></body></worldbody></mujoco>"""
+    limits = JointLimits(
+        lower=np.array([-0.5, -2.0, 0.0, -2.0]),
+        upper=np.array([0.5, 2.0, 0.3, 2.0]),
+        velocity=np.full(4, 2.0),
+        acceleration=np.full(4, 10.0),
+        jerk=np.full(4, 1000.0),
+    )
+    return assemble("gantry", text, ["tool"], limits, np.array([0.0, 0.3, 0.1, 0.2]), 2.0)
 
 
 class Scripted(Controller):

@@ -68,7 +68,7 @@ def limits_kept(step_bounds, before, velocity, before_that):
     bounds = step_bounds
     assert velocity.shape == (bounds.dof,)
     assert np.isfinite(velocity).all()
-    assert np.abs(velocity).max() <= bounds.speed + 1e-9
+    assert (np.abs(velocity) <= bounds.speed + 1e-9).all()
     change = velocity - before
     assert (np.abs(change) <= bounds.stop_acceleration * bounds.dt_s + 1e-9).all()
     assert (np.abs(change - (before - before_that)) <= 2 * bounds.stop_jerk * bounds.dt_s**2 + 1e-9).all()

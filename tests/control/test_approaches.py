@@ -135,7 +135,7 @@ def test_an_arm_that_starts_too_near_can_be_driven_away_but_no_nearer(arm, oracl
     rng = np.random.default_rng([7, seed])
     while True:
         q = np.clip(arm.home + rng.normal(size=7) * 0.3, arm.limits.lower + 0.15, arm.limits.upper - 0.15)
-        starts, ends = oracle(arm).ends(q)
+        starts, _ends = oracle(arm).ends(q)
         out = rng.normal(size=3)
         out /= np.linalg.norm(out)
         ball = Sphere("ball", starts[-1] + out * (0.028 + 0.05 + rng.uniform(0.0, 0.015)), 0.05)

@@ -41,7 +41,7 @@ def test_brakes_in_proportion_on_a_straight_line_and_covers_half_its_time(veloci
         share = path @ brake.settled / size
         np.testing.assert_allclose(path, share[:, None] * brake.settled, atol=1e-9)
         assert (np.diff(share) <= 1e-12).all()
-        assert 1.0 + 1e-12 >= share.max()
+        assert share.max() <= 1.0 + 1e-12
         # The line that the proof of link speeds uses.
         bound = np.minimum(1.0, 1.0 - brake.rate * (times - brake.settle_s - brake.onset_s))
         assert (share <= bound + 1e-9).all()

@@ -59,10 +59,10 @@ def path_states(q, velocity, brake, hold_s):
         yield q + hold[-1] + braking, speeds
 
 
-@given(st.integers(0, 2**32 - 1), st.sampled_from(["arm", "two_arms"]))
+@given(st.integers(0, 2**32 - 1), st.sampled_from(["arm", "two_arms", "gantry"]))
 @settings(deadline=None)
-def test_what_passes_is_safe_all_the_way(arm, two_arms, oracle, seed, name):
-    robot = arm if name == "arm" else two_arms
+def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, name):
+    robot = {"arm": arm, "two_arms": two_arms, "gantry": gantry}[name]
     rng = np.random.default_rng(seed)
     lower, upper = robot.limits.lower, robot.limits.upper
     q = rng.uniform(lower, upper)

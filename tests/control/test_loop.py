@@ -135,7 +135,7 @@ def test_small_delays_do_not_stop_the_arm(setup):
 
 
 def test_a_tick_after_the_command_ran_out_stops_for_good(setup):
-    loop, simulated, records, _ = setup(late={30: 0.05})
+    loop, _simulated, records, _ = setup(late={30: 0.05})
     loop._observers += (enabling(loop, 2),)
     statistics = loop.run(ticks=80)
     assert statistics.overruns == 1
@@ -161,7 +161,7 @@ def test_an_observer_that_fails_leaves_the_arm_ramped_to_rest(setup):
         if record.command.velocity.any() and record.time_s > 0.5:
             raise UserError("The disk is full.")
 
-    loop, simulated, records, step = setup()
+    loop, simulated, _records, step = setup()
     loop._observers = (*loop._observers, enabling(loop, 2), fail)
     sent = []
     send = simulated.send

@@ -166,6 +166,9 @@ class Recorder:
     def end_episode(self) -> None:
         """Flush everything to the disk and mark the episode complete.
 
+        This waits for the disk, some hundred milliseconds after a long episode: end it when the arm is
+        at rest.
+
         Raises:
             UserError: the journal cannot be written, or no episode is under way.
         """

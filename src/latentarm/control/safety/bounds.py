@@ -33,7 +33,7 @@ class Bounds:
         config: as given.
         dt_s: as given.
         dof: number of joints n.
-        speed: largest speed of a joint, rad/s.
+        speed: (n,), largest speed of each joint, rad/s; that of links, m/s, where a joint slides.
         lower: (n,), lowest joint position, margin taken off, rad.
         upper: (n,), highest joint position, margin taken off, rad.
         positions: (2, n), `lower` and `upper` together.
@@ -60,11 +60,13 @@ class Bounds:
             )
         hardware = robot.limits
         names = robot.joint_names
-        slowest = int(np.argmin(hardware.velocity))
-        if config.joint_speed > hardware.velocity[slowest]:
+        slide = robot.chain.slide
+        speed = np.where(slide, config.link_speed, config.joint_speed)
+        for joint in np.flatnonzero(speed > hardware.velocity):
+            name, unit = ("link_speed", "m/s") if slide[joint] else ("joint_speed", "rad/s")
             raise UserError(
-                f"The safety limit joint_speed is {config.joint_speed:g} rad/s, above the"
-                f" {hardware.velocity[slowest]:g} rad/s that joint {names[slowest]!r} of {robot.name} can do:"
+                f"The safety limit {name} is {speed[joint]:g} {unit}, above the"
+                f" {hardware.velocity[joint]:g} {unit} that joint {names[joint]!r} of {robot.name} can do:"
                 " set it lower."
             )
         if config.link_speed > robot.tool_speed_limit:
@@ -75,7 +77,7 @@ class Bounds:
         self.config = config
         self.dt_s = dt_s
         self.dof = robot.dof
-        self.speed = config.joint_speed
+        self.speed = speed
         self.lower = hardware.lower + config.joint_margin
         self.upper = hardware.upper - config.joint_margin
         for joint in np.flatnonzero(self.lower + 2 * BUFFER_RAD >= self.upper):
@@ -97,7 +99,8 @@ class Bounds:
                 f"From the last fresh input the command would take {1000 * needed:.0f} ms to reach zero"
                 f" (input_timeout_s {1000 * config.input_timeout_s:.0f} ms, one period {1000 * dt_s:.0f} ms,"
                 f" stopping {1000 * self.stop_s:.0f} ms), but only {1000 * STOPPED_WITHIN_S:.0f} ms are safe:"
-                " lower joint_speed or input_timeout_s, or raise stop_fraction or the rate."
+                " lower joint_speed (link_speed where joints slide) or input_timeout_s, or raise"
+                " stop_fraction or the rate."
             )
         self.reach_s = self.hold_s + self.stop_s
         self.damping_per_s = float((self.acceleration / self.speed).min())
@@ -110,6 +113,5 @@ class Bounds:
 
     def _longest_stop_s(self) -> float:
         """All joints at full speed is the longest phase two, full deceleration the longest phase one."""
-        full = np.full(self.dof, self.speed)
         settle = float((self.stop_acceleration / self.stop_jerk).max())
-        return settle + self.brake(full, np.zeros(self.dof)).ramp_s
+        return settle + self.brake(self.speed, np.zeros(self.dof)).ramp_s

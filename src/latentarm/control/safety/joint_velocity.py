@@ -5,7 +5,7 @@ from typing import final
 import numpy as np
 
 from latentarm.control.safety.filter import SafetyFilter, Situation
-from latentarm.control.safety.small import largest
+from latentarm.control.safety.small import smallest
 from latentarm.types import FloatArray
 
 
@@ -21,6 +21,6 @@ class JointVelocity(SafetyFilter):
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
         """See the base class."""
         limit = situation.bounds.speed
-        fastest = largest(np.abs(velocity))
-        # limit / fastest first: fastest may be 1e308
-        return velocity if fastest <= limit else velocity * (limit / fastest)
+        # Written so that nothing overflows, neither at 1e308 nor at zero.
+        share = smallest(limit / np.maximum(np.abs(velocity), limit))
+        return velocity if share == 1.0 else velocity * share
