@@ -77,7 +77,8 @@ def demo(
     from latentarm.experiments.demo import DemoConfig, run_demo
     from latentarm.metrics.table import rich_tables
 
-    rows = run_demo(DemoConfig(out=out, drives=drives, seed=seed, jobs=jobs, quiet=json))
+    bars = not json and sys.stderr.isatty()
+    rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars))
     _show(rows, json, rich_tables(rows))
     _say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
     return 0
@@ -182,7 +183,7 @@ def train(
         end_effector=end_effector,
         out=out or Path("runs") / f"{demonstrations.resolve().name}-{model}",
         resume=resume,
-        progress=not json,
+        progress=not json and sys.stderr.isatty(),
     )
     rows = train_run(config)
     from latentarm.metrics.table import rich_tables
@@ -285,7 +286,7 @@ def bench(
     from latentarm.experiments.bench import run_bench
     from latentarm.metrics.table import rich_tables
 
-    rows = run_bench(repeats=repeats, seed=seed, progress=not json)
+    rows = run_bench(repeats=repeats, seed=seed, progress=not json and sys.stderr.isatty())
     _show(rows, json, rich_tables(rows))
     return 0
 

@@ -31,20 +31,21 @@ TORCH_EVERY = 10
 """The torch decoder is timed once in so many steps, between two of them."""
 
 
-def run_bench(repeats: int, seed: int, progress: bool) -> list[Row]:
+def run_bench(repeats: int, seed: int, progress: bool, pairs: int = PAIRS) -> list[Row]:
     """Time the online step and the batched fit.
 
     Args:
         repeats: online steps that are timed.
         seed: of the demonstrations, the models and the inputs.
         progress: show a bar while fitting.
+        pairs: about how many context-action pairs each fit learns from.
 
     Returns:
         One row per figure; where many times were taken, the row gives their number.
     """
     task = TableTop()
     demonstrations = task.demonstrate(12, np.random.default_rng(seed))
-    fits, model = _time_fits(demonstrations, seed, progress)
+    fits, model = _time_fits(_about(demonstrations, pairs), seed, progress)
     return [*_time_step(task, model, repeats, seed), *fits]
 
 
@@ -68,9 +69,9 @@ def _time_step(task: TableTop, model: CVAE, repeats: int, seed: int) -> list[Row
     step.reset(arm.state())
     step(Input(np.zeros(2)), 0.0, arm.state(), 0.0)
     step.enable()
-    decode = _torch_decoder(model)
+    decode = _torch_decoder(model, task.robot.dof)
     step_s: list[float] = []
-    torch_s: list[float] = []
+    torch_s: list[tuple[float, float]] = []
     u = np.zeros(2)
     for tick in range(repeats + WARM_UP):
         if tick % 100 == 0:
@@ -85,51 +86,61 @@ def _time_step(task: TableTop, model: CVAE, repeats: int, seed: int) -> list[Row
             torch_s.append(decode(u, state))
     step_us = 1e6 * np.array(step_s[WARM_UP:])
     torch_us = 1e6 * np.array(torch_s[WARM_UP // TORCH_EVERY :])
-    median, torch_median = float(np.median(step_us)), float(np.median(torch_us))
+    median = float(np.median(step_us))
+    torch_median, layers_median = (float(value) for value in np.median(torch_us, axis=0))
     return [
         _row("online_step_median_us", "us", median, len(step_us)),
         _row("online_step_p99_us", "us", float(np.percentile(step_us, 99)), len(step_us)),
         _row("torch_decoder_median_us", "us", torch_median, len(torch_us)),
+        _row("torch_layers_median_us", "us", layers_median, len(torch_us)),
         _row("online_step_over_torch_decoder", "1", median / torch_median, len(step_us)),
+        _row("online_step_over_torch_layers", "1", median / layers_median, len(step_us)),
     ]
 
 
-def _torch_decoder(model: CVAE) -> Callable[[FloatArray, FloatArray], float]:
-    """Layers of the decoder's sizes as torch eager modules; a call returns how long they took, s.
+def _torch_decoder(model: CVAE, dof: int) -> Callable[[FloatArray, FloatArray], tuple[float, float]]:
+    """``phi(u, c)`` in torch eager; a call returns how long all of it and its layers alone took, s.
 
-    How long they take does not depend on their weights. Making the input tensor, which a loop in torch
-    would have to do as well, is not timed.
+    All of it is what the NumPy decoder does: scale the latent action, normalise the context, run the
+    layers, scale the action. How long that takes does not depend on the figures. Making tensors of
+    the input, which a loop in torch would have to do as well, is not timed.
     """
     import torch
 
-    dof = TableTop().robot.dof
-    sizes = (model.latent_dim + dof, *model.hidden, dof)
     modules: list[torch.nn.Module] = []
-    for inputs, outputs in pairwise(sizes):
+    for inputs, outputs in pairwise((model.latent_dim + dof, *model.hidden, dof)):
         modules += [torch.nn.Linear(inputs, outputs), torch.nn.SiLU()]
     network = torch.nn.Sequential(*modules[:-1])
+    latent_centre, latent_scale = torch.zeros(model.latent_dim), torch.ones(model.latent_dim)
+    context_centre, context_scale = torch.zeros(dof), torch.ones(dof)
+    action_scale = torch.ones(1)
 
-    def timed(u: FloatArray, state: FloatArray) -> float:
-        inputs = torch.tensor(np.concatenate([u, state]), dtype=torch.float32)[None]
+    def timed(u: FloatArray, state: FloatArray) -> tuple[float, float]:
+        z = torch.tensor(u, dtype=torch.float32)[None]
+        context = torch.tensor(state, dtype=torch.float32)[None]
         with torch.no_grad():
             began = time.perf_counter()
-            network(inputs)
-            return time.perf_counter() - began
+            latent = latent_centre + latent_scale * z
+            inputs = torch.cat([latent, (context - context_centre) / context_scale], dim=-1)
+            layers_began = time.perf_counter()
+            outputs = network(inputs)
+            layers_ended = time.perf_counter()
+            _ = action_scale * outputs
+            return time.perf_counter() - began, layers_ended - layers_began
 
     return timed
 
 
 def _time_fits(demonstrations: Demonstrations, seed: int, progress: bool) -> tuple[list[Row], CVAE]:
     """Ten seeds in one fit beside the same ten in turn: the same pairs, steps and final losses."""
-    few = _about(demonstrations, PAIRS)
     began = time.perf_counter()
     together = _model(SEEDS, seed)
-    together.fit(few, progress=progress)
+    together.fit(demonstrations, progress=progress)
     batched_s = time.perf_counter() - began
     began = time.perf_counter()
     alone = [_model(1, seed + offset) for offset in range(SEEDS)]
     for model in alone:
-        model.fit(few, progress=progress)
+        model.fit(demonstrations, progress=progress)
     sequential_s = time.perf_counter() - began
     loss = np.concatenate([model.held_out_loss_ for model in alone])
     rows = [
@@ -154,13 +165,13 @@ def _about(demonstrations: Demonstrations, count: int) -> Demonstrations:
     kept: list[Episode] = []
     for episode in demonstrations.episodes:
         kept.append(episode)
-        if sum(len(one.state) for one in kept) * per_sample * (1 - held_out) >= count:
+        if len(kept) > 1 and sum(len(one.state) for one in kept) * per_sample * (1 - held_out) >= count:
             break
     return replace(demonstrations, episodes=tuple(kept))
 
 
 def _loss_row(measure: str, loss: FloatArray) -> Row:
-    return Row("bench", measure, "1", float(loss.mean()), float(loss.std(ddof=1)), len(loss), model="cvae")
+    return Row("bench", measure, "1", float(loss.mean()), float(loss.std(ddof=1)), len(loss))
 
 
 def _row(measure: str, unit: str, value: float, count: int) -> Row:

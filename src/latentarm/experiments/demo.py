@@ -48,7 +48,8 @@ class DemoConfig:
         drives: simulated drives for each goal and condition.
         seed: of everything random.
         jobs: processes that drive side by side; -1 is one per core.
-        quiet: show no progress.
+        quiet: say nothing while working.
+        bars: show how far training is.
         episodes: demonstrations.
         seeds: models of each kind, trained at once; the first one drives.
         epochs: passes over the training pairs, at most.
@@ -59,6 +60,7 @@ class DemoConfig:
     seed: int = 0
     jobs: int = -1
     quiet: bool = False
+    bars: bool = False
     episodes: int = 60
     seeds: int = 3
     epochs: int = 8
@@ -109,7 +111,7 @@ def _train(config: DemoConfig, model: str) -> list[Row]:
             seeds=config.seeds,
             seed=config.seed,
             epochs=config.epochs,
-            progress=not config.quiet,
+            progress=config.bars,
         )
     )
     return evaluate_run(run, run, config.seed)
