@@ -25,7 +25,7 @@ demo: $(VENV)/installed ## Learn latent actions and drive a 7-DoF arm to three g
 check: $(VENV)/installed-dev ## Lint, formatting, types and import layers.
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/pyright
+	$(BIN)/pyright --pythonpath $(BIN)/python
 	$(BIN)/lint-imports
 
 test: check ## Everything that must hold, in minutes.

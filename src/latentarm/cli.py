@@ -5,6 +5,7 @@ Exit codes: 0 done, 1 not reached or failed, 2 the user's to mend, 130 interrupt
 
 import json as json_format
 import sys
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -46,12 +47,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code.
     """
     try:
-        return app.cli(
-            prog="latentarm",
-            description="Steer a high-DoF assistive arm with a low-DoF input, by latent actions.",
-            args=arguments,
-            config=(tyro.conf.FlagCreatePairsOff,),
-        )
+        with warnings.catch_warnings():
+            warnings.showwarning = _warn
+            return app.cli(
+                prog="latentarm",
+                description="Steer a high-DoF assistive arm with a low-DoF input, by latent actions.",
+                args=arguments,
+                config=(tyro.conf.FlagCreatePairsOff,),
+            )
     except UserError as error:
         print(f"latentarm: {error}", file=sys.stderr)
         return 2
@@ -324,6 +327,11 @@ def _show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
 def _say(sentence: str, json: bool) -> None:
     """Tell a person; with ``--json`` on standard error, so that standard output stays one document."""
     print(sentence, file=sys.stderr if json else sys.stdout)
+
+
+def _warn(message: Warning | str, *where: object) -> None:
+    """A warning as the sentence that it is, without the line of code that gave it."""
+    print(f"latentarm: warning: {message}", file=sys.stderr)
 
 
 def _print(*renderables: "RenderableType") -> None:

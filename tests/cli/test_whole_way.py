@@ -120,3 +120,21 @@ def test_demo_writes_a_page_with_figures(run: Run, workplace: Path) -> None:
         assert figure in page
         assert (Path("demo") / figure).stat().st_size > 10_000
     run_demo(config)  # a second time: the earlier demo makes room
+
+
+def test_a_collapsed_latent_dimension_is_said(
+    run: Run, workplace: Path, recording: Path, recwarn: pytest.WarningsRecorder
+) -> None:
+    import warnings
+
+    run("import", recording, "eat")
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        command = ("train", "--demonstrations", "eat", "--model", "vae", "--kl-weight", 50, "--epochs", 1)
+        code, _, err = run(*command)
+    assert code == 0
+    assert "latentarm: warning: " in err
+    assert "collapsed" in err
+    assert "Warning:" not in err
+    config = json.loads(Path("runs/eat-vae/config.json").read_text())
+    assert config["warnings"]
