@@ -113,6 +113,8 @@ def test_link_speed_slows_every_point_and_keeps_the_direction(surroundings, orac
 @settings(deadline=None)
 def test_clearance_damps_every_approach(surroundings, oracle, velocity, seed):
     here = situation(surroundings, seed)
+    drift = np.random.default_rng(seed).normal(size=7) * 0.007
+    surroundings.proximity.measured(Placement(surroundings.body, here.state + drift), np.abs(velocity))
     result = Clearance().apply(velocity, here)
     assert result @ result <= velocity @ velocity + 1e-12
     assert result @ velocity >= -1e-12
@@ -122,7 +124,8 @@ def test_clearance_damps_every_approach(surroundings, oracle, velocity, seed):
     # Far pairs are bounded by the speed of links, which is not this filter's business.
     near = before < surroundings.bounds.nearest_m + 0.25 / surroundings.bounds.damping_per_s
     floor = -surroundings.bounds.damping_per_s * np.maximum(before - 0.02, 0.0)
-    assert (rate[near] >= floor[near] - 1e-4).all()
+    # Far from a limit the directions may be a few ticks old.
+    assert (rate[near] >= floor[near] - 0.02 * (before[near] > 0.021) - 1e-4).all()
 
 
 @given(asked_velocity, states)

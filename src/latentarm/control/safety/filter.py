@@ -35,7 +35,9 @@ class Surroundings:
     def __init__(self, bounds: Bounds, body: Body) -> None:
         self.bounds = bounds
         self.body = body
-        self.proximity = Proximity(body, bounds.config.obstacles, bounds.config.link_speed)
+        self.proximity = Proximity(
+            body, bounds.config.obstacles, bounds.config.link_speed, bounds.nearest_m, bounds.horizon_s
+        )
         self.reference: Placement | None = None
 
 
@@ -73,7 +75,7 @@ class Situation:
         self.room = self.bounds.positions - state
         self.nearest_limit = smallest((self.room * _INWARD).ravel())
         self._nearby: tuple[Placement, FloatArray] | None = None
-        self._asked: FloatArray | None = None
+        self._asked = velocity
         self._contacts: Contacts | None = None
 
     @property
@@ -98,23 +100,24 @@ class Situation:
             self._nearby = reference, drift
         return self._nearby
 
-    def contacts(self, speed: FloatArray) -> Contacts | None:
-        """What the arm could come too near to when no joint is faster than this.
+    def contacts(self, speed: FloatArray) -> Contacts:
+        """What the arm could come too near to when no joint is faster than this; perhaps a few ticks old.
 
         Args:
             speed: (n,), rad/s, zero or more.
         """
-        if self._asked is None or some(speed > self._asked):
-            bounds = self.bounds
+        if self._contacts is None or some(speed > self._asked):
             # Also what ordinary motion passes through next is asked for, so that this is worked out once.
-            self._asked = np.maximum(speed, np.abs(self.velocity)) + bounds.quickening
-            proximity = self.surroundings.proximity
-            if proximity.all_far(self.state, self._asked, bounds.nearest_m, bounds.horizon_s):
-                self._contacts = None
-            else:
-                self._contacts = proximity.contacts(
-                    self.placement, self._asked, bounds.nearest_m, bounds.horizon_s
-                )
+            self._asked = np.maximum(speed, np.abs(self.velocity)) + self.bounds.quickening
+            self._contacts = self.surroundings.proximity.held(self.state, self._asked)
+            if self._contacts is None:
+                return self.contacts_now()
+        return self._contacts
+
+    def contacts_now(self) -> Contacts:
+        """The same for the speed that was asked for last, measured at this very state."""
+        if self._contacts is None or not self._contacts.fresh:
+            self._contacts = self.surroundings.proximity.measured(self.placement, self._asked)
         return self._contacts
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from latentarm.control.safety.body import Placement
 from latentarm.control.safety.brake import Brake
 from latentarm.control.safety.filter import Situation
-from latentarm.control.safety.small import largest, some
+from latentarm.control.safety.small import largest, smallest, some
 from latentarm.types import FloatArray
 
 _NUMERIC_M = 1e-9
@@ -147,16 +147,24 @@ class Guard:
 
     @staticmethod
     def _too_close(path: Path, situation: Situation) -> bool:
+        proximity, clearance = situation.surroundings.proximity, situation.bounds.config.clearance
         contacts = situation.contacts(path.fastest)
-        if contacts is None:
+        if not contacts.pair.size:
             return False
-        proximity = situation.surroundings.proximity
-        way = np.abs(path.way)
-        bend = proximity.curvature[contacts.pair] @ way @ way
-        stray = proximity.lever[contacts.pair] @ path.stray
-        least = contacts.height + contacts.row @ path.way - (0.5 * bend + stray)[:, None]
-        allowed = np.minimum(situation.bounds.config.clearance, contacts.height)
-        return bool((least < allowed - _NUMERIC_M).any())
+        stray = (proximity.lever[contacts.pair] @ path.stray)[:, None]
+        after = proximity.heights(contacts, path.way) - stray
+        if not contacts.fresh:
+            now = proximity.heights(contacts, np.zeros_like(path.way)) - stray
+            if smallest(np.minimum(now, after).ravel()) >= clearance:
+                return False
+            # Perhaps only because the contacts were a few ticks old.
+            contacts = situation.contacts_now()
+            if not contacts.pair.size:
+                return False
+            stray = (proximity.lever[contacts.pair] @ path.stray)[:, None]
+            after = proximity.heights(contacts, path.way) - stray
+        allowed = np.minimum(clearance, contacts.height)
+        return some((after < allowed - _NUMERIC_M).ravel())
 
     @staticmethod
     def _leaves_workspace(path: Path, situation: Situation) -> bool:

@@ -1,19 +1,22 @@
 """What the arm is near: obstacles and the arm itself, as heights above supporting planes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
 
 from latentarm.control.safety.body import Body, Placement
 from latentarm.control.safety.box_distance import box_separation
-from latentarm.control.safety.small import some
+from latentarm.control.safety.small import largest, some
 from latentarm.kinematics.capsules import segment_distance
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.types import BoolArray, FloatArray, IntArray
 
 _CROSSING_M = 1e-9
 """Segments nearer than this cross, and the line between their closest points says nothing."""
+
+_STALE_RAD = 0.02
+"""Contacts that are older than this are measured anew: their planes stand a little askew."""
 
 _STILL_M = 1e-9
 """A capsule whose points no joint moves further than this per rad cannot approach anything."""
@@ -34,11 +37,15 @@ class Contacts:
         pair: (C,), index into the proximity's pairs.
         height: (C, 2), of both ends of B, m; the smaller one is the distance.
         row: (C, 2, n), how joint velocities change the heights, m/s per rad/s.
+        since: (n,), how far each joint has moved since all this was measured, rad.
+        fresh: whether that is nothing at all.
     """
 
     pair: IntArray
     height: FloatArray
     row: FloatArray
+    since: FloatArray
+    fresh: bool
 
 
 @final
@@ -54,6 +61,8 @@ class Proximity:
         body: the arm.
         obstacles: what else is there, checked.
         link_speed: the fastest that any point of the arm may move, m/s.
+        nearest_m: distance to be kept, m.
+        horizon_s: for how long the arm may go on towards something, s.
 
     Attributes:
         names: for each pair, what a person would call it.
@@ -61,8 +70,17 @@ class Proximity:
         curvature: (pairs, n, n), bound of the heights' second derivative, see `Body`.
     """
 
-    def __init__(self, body: Body, obstacles: tuple[Obstacle, ...], link_speed: float) -> None:
+    def __init__(
+        self,
+        body: Body,
+        obstacles: tuple[Obstacle, ...],
+        link_speed: float,
+        nearest_m: float,
+        horizon_s: float,
+    ) -> None:
         self._body = body
+        self._nearest_m = nearest_m
+        self._horizon_s = horizon_s
         rods, planes, boxes = _sorted_by_kind(obstacles)
         self._stay_start, self._stay_end, stay_radius, stay_names = _standing_still(body, rods)
         first, second = _segment_pairs(body, rods)
@@ -105,60 +123,89 @@ class Proximity:
         # What is known: this distance at that configuration. Nothing at first.
         self._distance = np.full(len(self._b), -np.inf)
         self._at = np.zeros((len(self._b), body.robot.dof))
-        self._spare: FloatArray | None = None
-        self._spare_at = self._spare_speed = np.zeros(body.robot.dof)
-        self._asked_for = (0.0, 0.0)
+        # What was measured last, and how much further away the other pairs were than they had to be.
+        self._held: Contacts | None = None
+        self._spare: FloatArray = np.zeros(0)
+        self._held_at = self._held_speed = np.zeros(body.robot.dof)
 
-    def all_far(self, q: FloatArray, speed: FloatArray, nearest_m: float, horizon_s: float) -> bool:
-        """Whether it is proven already that no pair matters, from what was left over when none did.
+    def held(self, q: FloatArray, speed: FloatArray) -> Contacts | None:
+        """The contacts that were measured last, if they are still all that matter.
 
         Args:
             q: (n,), rad.
             speed: (n,), how fast each joint may go, rad/s.
-            nearest_m: distance to be kept, m.
-            horizon_s: for how long the arm may go on like this, s.
-        """
-        if self._spare is None or (nearest_m, horizon_s) != self._asked_for:
-            return False
-        used = np.abs(q - self._spare_at) + horizon_s * np.maximum(speed - self._spare_speed, 0.0)
-        return not some(self.lever @ used >= self._spare)
 
-    def contacts(
-        self, placement: Placement, speed: FloatArray, nearest_m: float, horizon_s: float
-    ) -> Contacts | None:
-        """The pairs that matter, or None where there are none.
+        Returns:
+            The contacts, a few ticks old; or None where they must be measured anew.
+        """
+        if self._held is None:
+            return None
+        since = q - self._held_at
+        moved = np.abs(since)
+        used = moved + self._horizon_s * np.maximum(speed - self._held_speed, 0.0)
+        if largest(moved) > _STALE_RAD or some(self.lever @ used >= self._spare):
+            return None
+        held = self._held
+        return Contacts(held.pair, held.height, held.row, since=since, fresh=not some(since))
+
+    def measured(self, placement: Placement, speed: FloatArray) -> Contacts:
+        """The pairs that matter, measured now.
 
         Args:
             placement: the arm.
             speed: (n,), how fast each joint may go, rad/s.
-            nearest_m: distance to be kept, m.
-            horizon_s: for how long the arm may go on like this, s.
 
         Returns:
-            All pairs that could be nearer than ``nearest_m`` within the horizon.
+            All pairs that could come nearer than the distance to be kept within the horizon.
         """
         q = placement.q
-        self._spare = None
         known = self._distance - (self.lever * np.abs(q - self._at)).sum(axis=1)
-        enough = np.minimum(self.lever @ speed, self._closing) * horizon_s + nearest_m
+        enough = np.minimum(self.lever @ speed, self._closing) * self._horizon_s + self._nearest_m
         pair = np.flatnonzero(known < enough)
-        if not len(pair):
-            self._spare, self._spare_at, self._spare_speed = known - enough, q, speed
-            self._asked_for = (nearest_m, horizon_s)
-            return None
-        normal, edge = self._planes_between(placement.points, pair)
-        contacts = self._assembled(placement, pair, normal, edge)
-        # Where a pair has several contacts its distance is the smallest.
-        distance = contacts.height.min(axis=1)
-        self._at[pair] = q
-        self._distance[pair] = np.inf
-        np.minimum.at(self._distance, contacts.pair, distance)
-        near = distance < enough[contacts.pair]
-        if near.all():
-            return contacts
-        if not near.any():
-            return None
-        return Contacts(contacts.pair[near], contacts.height[near], contacts.row[near])
+        if len(pair):
+            normal, edge = self._planes_between(placement.points, pair)
+            contacts = self._assembled(placement, pair, normal, edge)
+            # Where a pair has several contacts its distance is the smallest.
+            self._at[pair] = q
+            self._distance[pair] = np.inf
+            np.minimum.at(self._distance, contacts.pair, contacts.height.min(axis=1))
+            known[pair] = self._distance[pair]
+            near = known[contacts.pair] < enough[contacts.pair]
+            if not near.all():
+                contacts = replace(
+                    contacts, pair=contacts.pair[near], height=contacts.height[near], row=contacts.row[near]
+                )
+        else:
+            contacts = self._nothing(len(q))
+        self._held, self._held_at, self._held_speed = contacts, q, speed
+        self._spare = known - enough
+        self._spare[contacts.pair] = np.inf
+        return contacts
+
+    def heights(self, contacts: Contacts, way: FloatArray) -> FloatArray:
+        """Lower bounds of all heights once the joints have moved on, (C, 2), m.
+
+        By Taylor's theorem from where they were measured, see `Body`. Along a straight way the bound
+        is concave, so that between two points of it no height is below the lower of their bounds.
+
+        Args:
+            contacts: of this robot.
+            way: (n,), from the present configuration, rad.
+        """
+        way = contacts.since + way
+        size = np.abs(way)
+        bend = self.curvature[contacts.pair] @ size @ size
+        return contacts.height + contacts.row @ way - 0.5 * bend[:, None]
+
+    @staticmethod
+    def _nothing(dof: int) -> Contacts:
+        return Contacts(
+            pair=np.zeros(0, dtype=np.int64),
+            height=np.zeros((0, 2)),
+            row=np.zeros((0, 2, dof)),
+            since=np.zeros(dof),
+            fresh=True,
+        )
 
     def _planes_between(self, points: FloatArray, pair: IntArray) -> tuple[FloatArray, FloatArray]:
         """For each pair the plane's unit normal, out of A, and how far along it A reaches, m."""
@@ -226,7 +273,8 @@ class Proximity:
         row = (linear * normal.T[None, :, :, None]).sum(axis=1) * self._between[pair].T[:, :, None]
         if carried is not None:
             row -= carried[:, :, None]
-        return Contacts(pair, height, np.moveaxis(row, 0, -1))
+        still = np.zeros(len(row))
+        return Contacts(pair, height, row.transpose(1, 2, 0), since=still, fresh=True)
 
 
 def _segment_pairs(body: Body, rods: list[Capsule | Sphere]) -> tuple[IntArray, IntArray]:
