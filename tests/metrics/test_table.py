@@ -83,3 +83,7 @@ def test_figures_of_two_tasks_do_not_hide_each_other():
 def test_no_rows_are_an_empty_table():
     assert printed([], 80).strip() == ""
     assert markdown_table([]) == "| mean ± SD |\n|---|\n"
+
+
+def test_the_rounding_of_equal_figures_is_no_spread() -> None:
+    assert format_figure(0.9634, 1.2e-16) == format_figure(0.9634, None)

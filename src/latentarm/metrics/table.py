@@ -43,7 +43,7 @@ def format_figure(mean: float | None, sd: float | None) -> str:
         return ABSENT
     if abs(mean) < ROUNDING and (sd or 0.0) < ROUNDING:
         return "0"
-    if not sd:
+    if not sd or sd < 1e-9 * abs(mean):  # the rounding of figures that are all the same
         return _rounded(mean, _places(mean, 3))
     places = min(_places(sd, 2), _places(mean, 4)) if mean else _places(sd, 2)
     return f"{_rounded(mean, places)} ± {_rounded(sd, places)}"
