@@ -133,18 +133,18 @@ class Oracle:
         return self.distances(q).min(axis=-1)
 
     def link_speed(self, q: FloatArray, velocity: FloatArray) -> float:
-        """Fastest capsule end or tool, by central differences."""
+        """Fastest tool, capsule end, or point of its surface along the link's axes; central differences."""
+        capsules, chain = self.robot.capsules, self.robot.chain
+        out = np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
+        ends = np.concatenate([capsules.start, capsules.end])
+        around = ends[:, None] + np.tile(capsules.radius, 2)[:, None, None] * out
+        link = np.repeat(np.tile(capsules.link, 2), len(out))
         step = 1e-6
         fast = []
         for sign in (1.0, -1.0):
-            at = q + sign * step * velocity
-            transforms = self.robot.chain.link_transforms(at)
-            starts, ends = self.robot.capsules.placed(self.robot.chain, transforms)
-            tools = [
-                self.robot.chain.tool_pose(transforms, tool).position[None]
-                for tool in range(len(self.robot.chain.tools))
-            ]
-            fast.append(np.concatenate([starts, ends, *tools]))
+            transforms = chain.link_transforms(q + sign * step * velocity)
+            tools = [chain.tool_pose(transforms, tool).position[None] for tool in range(len(chain.tools))]
+            fast.append(np.concatenate([chain.points(transforms, link, around.reshape(-1, 3)), *tools]))
         return float(np.linalg.norm((fast[0] - fast[1]) / (2 * step), axis=-1).max())
 
 

@@ -1,6 +1,7 @@
 """What the guard lets pass is safe along the whole path, measured densely and in another way."""
 
 import numpy as np
+import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
@@ -8,7 +9,7 @@ from latentarm.control.safety.body import Body, Placement
 from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.config import SafetyConfig, Workspace
 from latentarm.control.safety.filter import Situation, Surroundings
-from latentarm.control.safety.guard import Guard
+from latentarm.control.safety.guard import Guard, Path
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
 
 
@@ -76,7 +77,9 @@ def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, na
         ends = np.concatenate(measure.ends(q))[np.r_[measure.moving, measure.moving + len(robot.capsules)]]
         pads = rng.uniform(-0.002, 0.02, (2, 3)) + 0.01 * (np.ptp(ends, axis=0) < 0.01)
         workspace = Workspace(ends.min(axis=0) - pads[0], ends.max(axis=0) + pads[1])
-    config = SafetyConfig(obstacles=obstacles, workspace=workspace)
+    # With slow links the age of what was measured weighs more than the way ahead.
+    link_speed = rng.choice([0.25, 0.02])
+    config = SafetyConfig(obstacles=obstacles, workspace=workspace, link_speed=link_speed)
     bounds = Bounds(config, robot, 0.01)
     surroundings = Surroundings(bounds, Body(robot))
     measure = oracle(robot, obstacles)
@@ -84,15 +87,31 @@ def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, na
     passed = 0
     for _ in range(20):
         # What was measured a few ticks ago must not change what is proven.
-        drift = rng.normal(size=robot.dof) * rng.choice([0.0, 0.002, 0.007])
-        surroundings.reference = Placement(surroundings.body, q + drift)
-        surroundings.proximity.measured(surroundings.reference, np.full(robot.dof, rng.uniform(0.0, 0.5)))
+        drift = rng.normal(size=robot.dof) * rng.choice([0.0, 0.002, 0.007, 0.015])
+        earlier, was_asked = (
+            Placement(surroundings.body, q + drift),
+            np.full(robot.dof, rng.choice([0.1, 1.0])),
+        )
         velocity = rng.normal(size=robot.dof) * rng.choice([0.01, 0.1, 0.25])
         velocity = np.clip(velocity, -0.5, 0.5) * (rng.uniform(size=robot.dof) < 0.7)
         acceleration = rng.uniform(-1, 1, robot.dof) * bounds.acceleration * rng.choice([0.0, 1.0, 4.0])
-        brake = bounds.brake(velocity, acceleration)
-        if Guard().objection(velocity, brake, Situation(surroundings, q, velocity, acceleration)):
+
+        def allowed(share, velocity=velocity, acceleration=acceleration, earlier=earlier, asked=was_asked):
+            surroundings.reference = earlier
+            surroundings.proximity.measured(earlier, asked)
+            brake = bounds.brake(share * velocity, acceleration)
+            situation = Situation(surroundings, q, share * velocity, acceleration)
+            return Guard().objection(share * velocity, brake, situation) is None
+
+        # The fastest that passes in this direction is where a proof with a gap would show it.
+        share, step = (1.0, 0.0) if allowed(1.0) else (0.0, 1.0)
+        while step > 1e-3:
+            step /= 2
+            share += step * allowed(share + step)
+        if not allowed(share):
             continue
+        velocity = share * velocity
+        brake = bounds.brake(velocity, acceleration)
         passed += 1
         for states, speeds in path_states(q, velocity, brake, bounds.hold_s):
             assert (states <= np.maximum(upper - 0.1, q) + 1e-9).all()
@@ -111,6 +130,43 @@ def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, na
                 assert (points >= np.minimum(workspace.lower, start_points) - 1e-6).all()
                 assert (points <= np.maximum(workspace.upper, start_points) + 1e-6).all()
     event(f"passed {passed > 0}")
+
+
+@pytest.mark.parametrize("name", ["arm", "two_arms", "gantry"])
+def test_an_old_placement_never_makes_the_links_look_slower(request, name):
+    robot = request.getfixturevalue(name)
+    rng = np.random.default_rng(5)
+    body, rest = Body(robot), np.zeros(robot.dof)
+    bounds = Bounds(SafetyConfig(), robot, 0.01)
+    looked_slower = 0
+    for _ in range(300):
+        q = rng.uniform(robot.limits.lower, robot.limits.upper)
+        velocity = rng.normal(size=robot.dof) * 0.02
+        drift = rng.normal(size=robot.dof) * 0.02
+        earlier = Placement(body, q + drift)
+        true = Placement(body, q).speeds(velocity).max()
+        looked_slower += earlier.speeds(velocity).max() < 0.995 * true
+        path = Path(velocity, bounds.brake(velocity, rest), bounds.hold_s)
+        assert Guard._exceeds(velocity, path, earlier, np.abs(drift), 0.999 * true)
+    assert looked_slower > 10
+
+
+@pytest.mark.parametrize("name", ["arm", "two_arms", "gantry"])
+def test_links_that_speed_up_while_a_command_lasts_are_foreseen(request, name):
+    robot = request.getfixturevalue(name)
+    rng = np.random.default_rng(6)
+    body, rest = Body(robot), np.zeros(robot.dof)
+    bounds = Bounds(SafetyConfig(), robot, 0.01)
+    sped_up = 0
+    for _ in range(300):
+        q = rng.uniform(robot.limits.lower, robot.limits.upper)
+        velocity = rng.uniform(-0.5, 0.5, robot.dof) * (1.0 - 0.5 * robot.chain.slide)
+        here = Placement(body, q)
+        later = Placement(body, q + bounds.hold_s * velocity).speeds(velocity).max()
+        sped_up += later > 1.002 * here.speeds(velocity).max()
+        path = Path(velocity, bounds.brake(velocity, rest), bounds.hold_s)
+        assert Guard._exceeds(velocity, path, here, rest, 0.999 * later)
+    assert sped_up > 10
 
 
 def test_rest_is_always_allowed(arm):
