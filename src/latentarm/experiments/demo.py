@@ -38,12 +38,6 @@ from latentarm.types import Row
 MODELS = ("cvae", "scl")
 TIME_LIMIT_S = 60.0
 
-WINDOW = 10
-"""Actions lead up to half a second ahead, as far as the simulated operator looks."""
-
-STATE_NOISE_RAD = 0.05
-"""Wide enough to know what to do where the filters and the operator take the arm off the demonstrations."""
-
 
 @dataclass(frozen=True)
 class DemoConfig:
@@ -116,8 +110,6 @@ def _train(config: DemoConfig, model: str) -> list[Row]:
             out=run,
             seeds=config.seeds,
             seed=config.seed,
-            window=WINDOW,
-            state_noise_rad=STATE_NOISE_RAD,
             epochs=config.epochs,
             progress=config.bars,
         )

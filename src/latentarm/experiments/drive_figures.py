@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 GOAL_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 GOAL_MARKERS = ("o", "s", "^", "D", "v", "P")
-PANEL_MM = 46.0
+PANEL_MM = 51.0
 WIDTH_MM = 170.0
 
 
