@@ -4,6 +4,7 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from latentarm.demonstrations.dataset import read_dataset
@@ -138,3 +139,17 @@ def test_a_collapsed_latent_dimension_is_said(
     assert "Warning:" not in err
     config = json.loads(Path("runs/eat-vae/config.json").read_text())
     assert config["warnings"]
+
+
+def test_a_decoder_that_sees_the_belief_is_trained_and_driven(run: Run, workplace: Path) -> None:
+    from latentarm.demonstrations.dataset import write_dataset
+    from latentarm.tasks.table_top import TableTop
+
+    write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), Path("table"))
+    command = ("train", "--demonstrations", "table", "--model", "scl", "--epochs", 1, "--seeds", 1)
+    assert run(*command, "--context", "state_belief")[0] == 0
+    assert run("evaluate", "runs/table-scl")[0] == 0
+    code, out, _ = run("drive", "runs/table-scl", "--drives", 1, "--time-limit-s", 3, "--json")
+    assert code in (0, 1)
+    # The controller worked: an input was given and the tool moved.
+    assert figures(out)["path_length"] > 0.01

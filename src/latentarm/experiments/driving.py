@@ -138,7 +138,7 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
                     joint_names=task.robot.joint_names,
                     rate_hz=RATE_HZ,
                     task=f"{manner} {task.goals[goal].name}",
-                    goals=task.goals if setup.assisted else (),
+                    goals=task.goals,
                     modes=setup.controller.modes,
                 )
             )

@@ -113,17 +113,14 @@ def simulate(
 
 def _step(setup: Setup, dt_s: float) -> Step:
     task = setup.task
-    safety = SafetyConfig(obstacles=tuple(task.obstacles))
-    if not setup.assisted:
-        return Step(task.robot, setup.controller, safety, dt_s=dt_s)
-    configurations = [goal.configuration for goal in task.goals]
     return Step(
         task.robot,
         setup.controller,
-        safety,
+        SafetyConfig(obstacles=tuple(task.obstacles)),
         goals=task.goals,
-        belief=BoltzmannBelief(configurations, period_s=BELIEF_PERIOD_S),
-        arbitration=FixedAlpha(),
+        # Without help too: a decoder may look at the belief.
+        belief=BoltzmannBelief([goal.configuration for goal in task.goals], period_s=BELIEF_PERIOD_S),
+        arbitration=FixedAlpha() if setup.assisted else None,
         dt_s=dt_s,
     )
 
