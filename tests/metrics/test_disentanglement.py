@@ -34,3 +34,13 @@ def test_a_drift_that_both_axes_share_does_not_count(linear_decoder, gantry):
 def test_one_axis_or_a_dead_one_has_no_angle(linear_decoder, gantry):
     assert np.isnan(angle_of(linear_decoder(np.ones((2, 1))), gantry, np.zeros((3, 2))))
     assert np.isnan(angle_of(linear_decoder(np.array([[1.0, 0.0], [0.0, 0.0]])), gantry, np.zeros((3, 2))))
+
+
+def test_what_is_left_of_a_dead_axis_is_not_taken_for_a_direction(linear_decoder, gantry):
+    """A collapsed dimension leaves rounding, whose directions are chance, beside the other or a drift."""
+    beside_a_live_one = linear_decoder(np.array([[1.0, 0.0], [0.0, 1e-6]]))
+    beside_a_drift = linear_decoder(1e-6 * np.eye(2), offset=np.array([1.0, 0.0]))
+    for decoder in (beside_a_live_one, beside_a_drift):
+        assert np.isnan(angle_of(decoder, gantry, np.zeros((3, 2))))
+    weak = linear_decoder(np.array([[1.0, 0.0], [0.0, 0.05]]))
+    assert angle_of(weak, gantry, np.zeros((3, 2))) == pytest.approx(90.0)

@@ -4,6 +4,10 @@ import numpy as np
 
 from latentarm.types import FloatArray
 
+DEAD_SHARE = 0.01
+"""An axis that changes the end-effector's motion by less than this share of that motion, over all states, is
+dead: the direction of what is left of it is chance, and chance alone looks half disentangled (57°)."""
+
 
 def disentanglement_deg(effects: FloatArray) -> FloatArray:
     """Mean angle between the end-effector's directions of motion for the first two latent axes.
@@ -17,7 +21,7 @@ def disentanglement_deg(effects: FloatArray) -> FloatArray:
 
     Returns:
         (S,), mean over the states in which both axes move the end-effector, degrees in [0, 90];
-        NaN where d < 2 or in no state both move it.
+        NaN where d < 2, in no state both move it, or one of them is dead (`DEAD_SHARE`).
     """
     seeds, dim = effects.shape[:2]
     if dim < 2:
@@ -27,7 +31,10 @@ def disentanglement_deg(effects: FloatArray) -> FloatArray:
     cosine = np.abs(np.sum(first * second, axis=-1))
     # atan2 keeps its precision near 0 and near 90 degrees, where arccos does not.
     angle = np.degrees(np.arctan2(sine, cosine))
-    moves = np.minimum(np.linalg.norm(first, axis=-1), np.linalg.norm(second, axis=-1)) > 0
+    length = np.minimum(np.linalg.norm(first, axis=-1), np.linalg.norm(second, axis=-1))
+    motion = np.linalg.norm(effects[:, :2, :, [0, -1]], axis=-1)
+    alive = np.sqrt(np.mean(length**2, axis=-1)) > DEAD_SHARE * np.sqrt(np.mean(motion**2, axis=(1, 2, 3)))
+    moves = (length > 0) & alive[:, None]
     count = moves.sum(axis=-1)
     total = np.where(moves, angle, 0.0).sum(axis=-1)
     return np.divide(total, count, out=np.full(seeds, np.nan), where=count > 0)
