@@ -17,8 +17,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.demonstrations.dataset import write_dataset
-from latentarm.demonstrations.importing import import_to
+from latentarm.demonstrations.dataset import read_dataset, write_dataset
+from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.errors import UserError
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
@@ -388,3 +388,17 @@ def test_a_taken_destination_is_refused_before_the_source_is_read(tmp_path: Path
     (tmp_path / "out/diary.txt").write_text("mine")
     with pytest.raises(UserError, match="already exists and is not empty"):
         import_to(tmp_path / "nowhere.npz", tmp_path / "out")
+
+
+def test_what_may_not_be_read_is_not_called_damaged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tests may run as a user who may read everything, so the refusal is played."""
+
+    def refuse(path: Path) -> bool:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr(Path, "is_dir", refuse)
+    with pytest.raises(UserError, match=r"source\.npz cannot be read: Permission denied"):
+        import_demonstrations(tmp_path / "source.npz")
+    monkeypatch.setattr(Path, "is_file", refuse)
+    with pytest.raises(UserError, match=r"info\.json cannot be read: Permission denied"):
+        read_dataset(tmp_path)

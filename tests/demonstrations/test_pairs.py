@@ -132,3 +132,12 @@ def test_a_faster_clock_gives_faster_actions(episode_of: Callable[..., Episode])
     episode = episode_of(0)
     hurried = replace(episode, timestamp=episode.timestamp / 2)
     np.testing.assert_allclose(actions(hurried), 2 * actions(episode))
+
+
+def test_a_window_wider_than_the_motion_adds_nothing() -> None:
+    demonstrations = one_joint([0.0, 0.1, 0.4], [0.0, 0.1, 0.3])
+    whole, beyond = (
+        make_pairs(demonstrations, window, 0.0, "state", rng()) for window in (2, 1_000_000_000_000)
+    )
+    np.testing.assert_array_equal(beyond.action, whole.action)
+    np.testing.assert_array_equal(beyond.context, whole.context)

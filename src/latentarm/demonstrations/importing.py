@@ -83,13 +83,9 @@ def _read(
 ) -> Demonstrations:
     if rate_hz is not None and not 0 < rate_hz < float("inf"):
         raise UserError(f"The sampling rate is {rate_hz:g} Hz; it must be a finite number above zero.")
-    if source.is_dir():
+    start = _beginning(source)
+    if start is None:
         return read_lerobot(source, actions)
-    try:
-        with source.open("rb") as stream:
-            start = stream.read(16)
-    except OSError as error:
-        raise UserError(f"{source} cannot be read: {error.strerror or error}.") from error
     if not start:
         raise UserError(f"{source} is an empty file.")
     for magic, what in FOREIGN.items():
@@ -102,6 +98,17 @@ def _read(
     if source.suffix.lower() in {".npz", ".hdf5", ".h5"}:
         raise UserError(f"{source} does not hold what its name says; it is truncated or damaged.")
     return read_csv(source, () if robot is None else robot.joint_names, rate_hz, task)
+
+
+def _beginning(source: Path) -> bytes | None:
+    """The first bytes of a file, by which it is known; None for a folder."""
+    try:
+        if source.is_dir():
+            return None
+        with source.open("rb") as stream:
+            return stream.read(16)
+    except OSError as error:
+        raise UserError(f"{source} cannot be read: {error.strerror or error}.") from error
 
 
 def _as_recorded_on(robot: Robot, demonstrations: Demonstrations, source: Path) -> Demonstrations:

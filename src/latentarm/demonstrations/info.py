@@ -157,12 +157,14 @@ def read_info(root: Path) -> Info:
             promises more than an import may hold.
     """
     path = root / INFO_PATH
-    if not path.is_file():
-        raise UserError(f"{root} is not a dataset: it has no {INFO_PATH}.")
-    check_bytes(path, MAX_JSON_BYTES)
     try:
+        if not path.is_file():
+            raise UserError(f"{root} is not a dataset: it has no {INFO_PATH}.")
+        check_bytes(path, MAX_JSON_BYTES)
         document = json.loads(path.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError, OSError) as error:
+    except OSError as error:
+        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
+    except (ValueError, RecursionError) as error:
         raise UserError(f"{path} is damaged: it is not a JSON document.") from error
     if not isinstance(document, dict):
         raise UserError(f"{path} is damaged: it is not a JSON object.")

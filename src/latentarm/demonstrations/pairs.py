@@ -100,6 +100,8 @@ def _moving(episode: Episode) -> slice:
 def _displaced(episode: Episode, moving: slice, window: int) -> tuple[IntArray, FloatArray]:
     """Sample indices (P,) and the actions (P, n) that start there, ordered by sample, then by k."""
     samples = np.arange(moving.start, moving.stop)
+    # A window beyond the motion adds no pair, and must not cost memory either.
+    window = min(window, max(len(samples) - 1, 1))
     shift = np.concatenate([np.arange(-window, 0), np.arange(1, window + 1)])
     start = np.repeat(samples, len(shift))
     end = (samples[:, None] + shift).ravel()

@@ -187,6 +187,8 @@ def read_table(path: Path, columns: Sequence[str] | None = None) -> Table:
             return stored.read(columns=None if columns is None else list(columns), use_threads=False)
     except FileNotFoundError as error:
         raise UserError(f"{path} is missing; the dataset is damaged.") from error
+    except PermissionError as error:
+        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
     except (pa.ArrowException, OSError, ValueError) as error:
         raise UserError(f"{path} is not a whole Parquet file; it is truncated or damaged.") from error
 
