@@ -4,6 +4,7 @@ import hashlib
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from safetensors.numpy import load, save
 from latentarm.errors import UserError
 from latentarm.models.catalogue import MODELS, load_model
 from latentarm.models.decoder import load_decoder
+from latentarm.models.saving import write_model
 
 CONFIG, WEIGHTS = "config.json", "model.safetensors"
 
@@ -214,3 +216,13 @@ def test_the_decoder_loads_without_torch(folder):
         [sys.executable, "-c", script, str(folder)], capture_output=True, text=True, check=True
     )
     assert done.stdout.split("\n")[:2] == ["(4,)", "[]"]
+
+
+def test_an_epoch_without_a_loss_does_not_make_the_run_unreadable(fitted, tmp_path):
+    """A seed may diverge after its best epoch, which is the one that is kept."""
+    history = np.array([[0.5, 0.4], [np.nan, 0.3], [np.inf, 0.2]])
+    summary = replace(fitted.trained_.summary, history=history)
+    write_model(tmp_path, replace(fitted.trained_, summary=summary), {})
+    assert "NaN" not in (tmp_path / CONFIG).read_text()
+    read = load_model(tmp_path).history_
+    np.testing.assert_array_equal(read, [[0.5, 0.4], [np.nan, 0.3], [np.nan, 0.2]])

@@ -1,10 +1,12 @@
 """The training loop: many seeds as one, stopping, and going on after a kill."""
 
 import json
+import resource
 import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -217,3 +219,46 @@ def test_the_checkpoint_holds_no_pickle(demonstrations, tmp_path):
     header = json.loads(content[8 : 8 + int.from_bytes(content[:8], "little")])
     assert set(header) == {"__metadata__", "values", "first", "second", "best"}
     assert [entry.name for entry in tmp_path.iterdir()] == ["checkpoint.safetensors"]
+
+
+def test_a_full_disk_under_a_checkpoint_is_said_in_one_sentence(demonstrations, tmp_path):
+    path = tmp_path / "checkpoint.safetensors"
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, limits[1]))
+    try:
+        with pytest.raises(UserError, match=r"checkpoint\.safetensors cannot be written: File too large"):
+            MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert not list(tmp_path.iterdir())
+
+
+def test_seeds_that_could_not_be_loaded_or_held_in_memory_are_refused(demonstrations):
+    last = 2**31 - 1
+    assert MODELS["pca"](seed=last, seeds=1).fit(demonstrations).seed_numbers == (last,)
+    with pytest.raises(UserError, match="2 seeds from 2147483647 on end beyond"):
+        MODELS["pca"](seed=last, seeds=2).fit(demonstrations)
+    with pytest.raises(UserError, match="seeds is 1001; it must be a whole number from 1 to 1000"):
+        MODELS["pca"](seeds=1001).fit(demonstrations)
+
+
+def test_pairs_that_cannot_span_the_latent_space_are_refused(demonstrations):
+    short = [replace(one, **_first(one, 2)) for one in demonstrations.episodes[:2]]
+    few = replace(demonstrations, episodes=tuple(short))
+    with pytest.raises(UserError, match="2 context-action pairs do not span 3 latent dimensions"):
+        MODELS["pca"](latent_dim=3, window=1).fit(few)
+
+
+def test_recorded_actions_that_are_all_zero_are_refused(demonstrations):
+    still = tuple(replace(one, action=np.zeros_like(one.state)) for one in demonstrations.episodes)
+    with pytest.raises(UserError, match="Every recorded action is zero"):
+        MODELS["pca"](actions="recorded").fit(replace(demonstrations, episodes=still))
+
+
+def _first(episode, samples):
+    """Fields of an episode cut to its first samples."""
+    return {
+        "state": episode.state[:samples],
+        "timestamp": episode.timestamp[:samples],
+        "extras": {name: values[:samples] for name, values in episode.extras.items()},
+    }

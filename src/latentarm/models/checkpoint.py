@@ -10,7 +10,7 @@ from typing import Final, final
 import numpy as np
 import torch
 from safetensors import SafetensorError, safe_open
-from safetensors.torch import save_file
+from safetensors.torch import save
 from torch import Tensor
 
 from latentarm.errors import UserError
@@ -113,8 +113,10 @@ def write_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:
         "history": state.history,
     }
     tensors = {name: tensor.detach().cpu() for name, tensor in state.tensors().items()}
+    # The library's own writing to a file hides a full disk behind an error of its own.
+    content = save(tensors, metadata={METADATA_KEY: json.dumps(progress)})
     with written_whole(path) as part:
-        save_file(tensors, part, metadata={METADATA_KEY: json.dumps(progress)})
+        part.write_bytes(content)
 
 
 def read_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:

@@ -251,6 +251,8 @@ class LatentActionModel(ABC):
                 "The arm moves in none of the training episodes, or in none of the held-out ones."
             )
         context, action = pairs.context[~outside], pairs.action[~outside]
+        if not action.any():
+            raise UserError("Every recorded action is zero: take actions from the states (displacement).")
         dimensions = Dimensions(self.seeds, self.latent_dim, context.shape[1], action.shape[1], self.hidden)
         if dimensions.latent > dimensions.action:
             raise UserError(

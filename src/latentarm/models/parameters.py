@@ -30,6 +30,10 @@ CHOICES: Final = {
 }
 WIDEST: Final = 4096
 """Units of a hidden layer, at most."""
+MOST_SEEDS: Final = 1000
+"""Models trained side by side, at most: memory grows with them."""
+LARGEST: Final = 2**31 - 1
+"""A whole-numbered parameter or a seed, at most."""
 
 
 def check_parameters(parameters: Mapping[str, object]) -> None:
@@ -42,14 +46,18 @@ def check_parameters(parameters: Mapping[str, object]) -> None:
         problem = _problem(name, value)
         if problem:
             raise UserError(f"The model parameter {name} is {value!r}; it must be {problem}.")
+    first, seeds = parameters.get("seed"), parameters.get("seeds")
+    if isinstance(first, int) and isinstance(seeds, int) and first + seeds - 1 > LARGEST:
+        raise UserError(f"{seeds} seeds from {first} on end beyond {LARGEST}: choose a smaller first seed.")
 
 
 def _problem(name: str, value: object) -> str:
     """What the value should have been, or nothing where it is right."""
     number = value if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
     if name in WHOLE:
-        fits = isinstance(number, int) and WHOLE[name] <= number < 2**31
-        return "" if fits else f"a whole number of at least {WHOLE[name]}"
+        most = MOST_SEEDS if name == "seeds" else LARGEST
+        fits = isinstance(number, int) and WHOLE[name] <= number <= most
+        return "" if fits else f"a whole number from {WHOLE[name]} to {most}"
     if name in POSITIVE:
         return "" if 0 < number < math.inf else "a positive number"
     if name in NOT_NEGATIVE:

@@ -7,6 +7,7 @@ from typing import ClassVar, final
 import numpy as np
 from sklearn import decomposition
 
+from latentarm.errors import UserError
 from latentarm.models.batches import TrainingData
 from latentarm.models.layout import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
@@ -29,6 +30,11 @@ class PCA(LatentActionModel):
     def _learn(
         self, data: TrainingData, dimensions: Dimensions, checkpoint: Path | None, progress: bool
     ) -> TrainingResult:
+        if len(data.action) < dimensions.latent:
+            raise UserError(
+                f"{len(data.action)} context-action pairs do not span {dimensions.latent} latent dimensions:"
+                " demonstrate more, or widen the window."
+            )
         components = decomposition.PCA(n_components=dimensions.latent, svd_solver="full").fit(data.action)
         held_out = data.held_out_action
         rebuilt = components.inverse_transform(components.transform(held_out))

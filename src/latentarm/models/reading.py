@@ -87,8 +87,11 @@ class Section:
             raise self._wrong(key, f"a list of whole numbers of at least {least}" + _of_length(length))
         return entries
 
-    def array(self, key: str, shape: tuple[int | None, ...]) -> FloatArray:
-        """The nested list of numbers under a key; None in ``shape`` allows any length."""
+    def array(self, key: str, shape: tuple[int | None, ...], *, gaps: bool = False) -> FloatArray:
+        """The nested list of numbers under a key; None in ``shape`` allows any length.
+
+        With ``gaps``, a null is a figure that there is not, and is read as NaN.
+        """
         value = self._get(key)
         try:
             array = np.array(value, dtype=np.float64)
@@ -99,7 +102,7 @@ class Section:
         fits = array.ndim == len(shape) and all(
             length in (None, actual) for length, actual in zip(shape, array.shape, strict=True)
         )
-        if not fits or not np.isfinite(array).all():
+        if not fits or np.isinf(array).any() or (not gaps and np.isnan(array).any()):
             raise self._wrong(
                 key, f"a list of finite numbers of shape {[length or 'any' for length in shape]}"
             )

@@ -6,6 +6,7 @@ weights' SHA-256, then every tensor's name, shape, dtype and finiteness. Nothing
 
 import hashlib
 import json
+import math
 import platform
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
@@ -64,7 +65,10 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
             "held_out_episodes": list(summary.held_out_episodes),
             "held_out_loss": summary.held_out_loss.tolist(),
             "best_epoch": summary.best_epoch.tolist(),
-            "history": summary.history.tolist(),
+            "history": [
+                [loss if math.isfinite(loss) else None for loss in epoch]
+                for epoch in summary.history.tolist()
+            ],
         },
         "collapsed": summary.collapsed.tolist(),
         "tensors": {
@@ -110,7 +114,7 @@ def read_model(folder: Path) -> TrainedModel:
         held_out_episodes=tuple(training.integers("held_out_episodes", 0)),
         held_out_loss=training.array("held_out_loss", (seeds,)),
         best_epoch=training.array("best_epoch", (seeds,)).astype(np.int64),
-        history=training.array("history", (None, seeds)),
+        history=training.array("history", (None, seeds), gaps=True),
         collapsed=section.array("collapsed", (seeds, dimensions.latent)).astype(np.bool_),
     )
     tensors = _read_tensors(folder / WEIGHTS_NAME, shapes, section.text("sha256"))

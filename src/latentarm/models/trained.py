@@ -20,7 +20,8 @@ class TrainingSummary:
         held_out_episodes: indices of the episodes that training did not see.
         held_out_loss: (S,), loss on their pairs, in normalised units.
         best_epoch: (S,), the epoch whose weights were kept, counted from 1.
-        history: (E, S), held-out loss after each epoch; E = 0 where there were none.
+        history: (E, S), held-out loss after each epoch, NaN where it was not a number; E = 0 where
+            there were none.
         collapsed: (S, d), latent dimensions that move nothing.
     """
 
