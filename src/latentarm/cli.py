@@ -78,11 +78,10 @@ def demo(
     For example: latentarm demo --out demo
     """
     from latentarm.experiments.demo import DemoConfig, run_demo
-    from latentarm.metrics.table import rich_tables
 
     bars = not json and sys.stderr.isatty()
     rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars))
-    _show(rows, json, rich_tables(rows))
+    _show(rows, json)
     _say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
     return 0
 
@@ -106,7 +105,8 @@ def import_demonstrations(
     from latentarm.robots.catalogue import load_robot
 
     demonstrations = import_to(source, destination, load_robot(robot, end_effector))
-    _show(summary(demonstrations).rows(), json)
+    if json:
+        _show(summary(demonstrations).rows(), json)
     _say(
         f"{len(demonstrations.episodes)} episodes of {demonstrations.dof} joints are in {destination}/.", json
     )
@@ -189,9 +189,8 @@ def train(
         progress=not json and sys.stderr.isatty(),
     )
     rows = train_run(config)
-    from latentarm.metrics.table import rich_tables
 
-    _show(rows, json, rich_tables(rows))
+    _show(rows, json)
     _say(f"The run is {config.out}/; next: latentarm evaluate {config.out}", json)
     return 0
 
@@ -210,11 +209,10 @@ def evaluate(
     For example: latentarm evaluate runs/pour-cae
     """
     from latentarm.experiments.evaluating import evaluate_run
-    from latentarm.metrics.table import rich_tables
 
     folder = out or run
     rows = evaluate_run(run, folder, seed)
-    _show(rows, json, rich_tables(rows))
+    _show(rows, json)
     _say(f"metrics.json and figures are in {folder}/.", json)
     return 0
 
@@ -254,7 +252,6 @@ def drive(
     Exits with 1 when no drive reached its goal. For example: latentarm drive runs/pour-cae
     """
     from latentarm.experiments.driving import DriveConfig, drive_run
-    from latentarm.metrics.table import rich_tables
 
     rows = drive_run(
         DriveConfig(
@@ -271,7 +268,7 @@ def drive(
             out=out,
         )
     )
-    _show(rows, json, rich_tables(rows))
+    _show(rows, json)
     _say(f"drives.json and the figure are in {out}/.", json)
     return 0 if any(row.measure == "success_rate" and row.mean for row in rows) else 1
 
@@ -287,10 +284,9 @@ def bench(
     For example: latentarm bench --json
     """
     from latentarm.experiments.bench import run_bench
-    from latentarm.metrics.table import rich_tables
 
     rows = run_bench(repeats=repeats, seed=seed, progress=not json and sys.stderr.isatty())
-    _show(rows, json, rich_tables(rows))
+    _show(rows, json)
     return 0
 
 
@@ -317,11 +313,17 @@ def robots(
 
 
 def _show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
-    """Print rows as one JSON document, or the tables that show them."""
+    """Print rows as one JSON document, or as the tables given, or else as a table of all rows."""
     if json:
         print(json_format.dumps([row.as_json() for row in rows], indent=2))
-    else:
+    elif tables:
         _print(*tables)
+    else:
+        from rich.console import Console
+
+        from latentarm.metrics.table import rich_tables
+
+        _print(rich_tables(rows, width=Console().width))
 
 
 def _say(sentence: str, json: bool) -> None:

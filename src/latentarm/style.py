@@ -35,7 +35,7 @@ LOOKS: dict[str, Look] = {
     "cae": Look("cAE", "#0072B2", "o", "-"),
     "cvae": Look("cVAE", "#009E73", "D", "-"),
     "cae_zero": Look("cAE, zero penalty", "#56B4E9", "P", "-."),
-    "scl": Look("state-conditioned linear", "#D55E00", "X", "-."),
+    "scl": Look("SCL", "#D55E00", "X", "-."),
     "latent": Look("latent actions", "#0072B2", "o", "-"),
     "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),
     "end_effector": Look("mode switching", "#7f7f7f", "s", ":"),

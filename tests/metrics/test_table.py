@@ -54,9 +54,16 @@ def test_every_model_and_figure_is_on_a_page_of_any_usual_width(width):
     assert "…" not in page
 
 
+def test_a_spread_goes_under_its_mean_where_that_saves_a_second_table() -> None:
+    page = printed(rows_of(MODELS[:4]), 80)
+    assert page.count("mean ± SD") == 1
+    assert "28.1 ± 1.2" not in page
+    assert page.count("28.1") == page.count("± 1.2") == 4
+
+
 def test_markdown_has_a_row_per_measure_and_a_column_per_model():
     lines = markdown_table(rows_of(["cae", "scl"])).splitlines()
-    assert lines[0] == "| mean ± SD | cAE | state-conditioned linear |"
+    assert lines[0] == "| mean ± SD | cAE | SCL |"
     assert lines[1] == "|---|---:|---:|"
     assert lines[2] == "| error, of PCA's (%) | 28.1 ± 1.2 | 28.1 ± 1.2 |"
     assert len(lines) == 4

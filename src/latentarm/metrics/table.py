@@ -1,8 +1,9 @@
 """Rows as a table for the terminal and as a table for GitHub."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
 from rich.table import Table
 
@@ -77,7 +78,10 @@ def measure_name(row: Row) -> str:
 
 
 def rich_tables(rows: Sequence[Row], title: str = "", width: int = 100) -> RenderableType:
-    """Measures down, models or conditions across; split into several tables where they are too many.
+    """Measures down, models or conditions across.
+
+    Where they are too many for the width, the spread goes under the mean; where that would not be
+    enough, the table is split.
 
     Args:
         rows: figures; where they are of several tasks, the head names them.
@@ -85,15 +89,15 @@ def rich_tables(rows: Sequence[Row], title: str = "", width: int = 100) -> Rende
         width: characters that a line may have.
     """
     measures, series, figures = _arranged(rows)
-    first_column = max((len(measure) for measure in measures), default=0) + BORDER
-    widths: list[int] = []
-    for name in series:
-        # A head may break between words; a figure may not break at all.
-        unbroken = [*name.split(), *(figures.get((measure, name), ABSENT) for measure in measures)]
-        widths.append(max(map(len, unbroken)) + BORDER)
+    room = width - max((len(measure) for measure in measures), default=0) - BORDER - 1
+    widths = _column_widths(measures, series, figures)
+    stacked = {place: figure.replace(" ± ", "\n± ") for place, figure in figures.items()}
+    stacked_widths = _column_widths(measures, series, stacked)
+    if sum(stacked_widths) <= room < sum(widths):
+        figures, widths = stacked, stacked_widths
     tables: list[RenderableType] = []
-    for part in _fitting(widths, width - first_column - 1):
-        table = Table(title=None if tables else title, title_justify="left")
+    for part in _fitting(widths, room):
+        table = Table(title=None if tables else title, title_justify="left", box=SIMPLE_HEAD)
         table.add_column("mean ± SD", no_wrap=True)
         for index in part:
             table.add_column(series[index], justify="right", min_width=widths[index] - BORDER)
@@ -101,6 +105,17 @@ def rich_tables(rows: Sequence[Row], title: str = "", width: int = 100) -> Rende
             table.add_row(measure, *(figures.get((measure, series[index]), ABSENT) for index in part))
         tables.append(table)
     return Group(*tables)
+
+
+def _column_widths(
+    measures: Sequence[str], series: Sequence[str], figures: Mapping[tuple[str, str], str]
+) -> list[int]:
+    """What each series needs at least: a head may break between words, a line of a figure may not."""
+    widths: list[int] = []
+    for name in series:
+        lines = [line for measure in measures for line in figures.get((measure, name), ABSENT).split("\n")]
+        widths.append(max(map(len, [*name.split(), *lines])) + BORDER)
+    return widths
 
 
 def _fitting(widths: Sequence[int], room: int) -> list[list[int]]:
