@@ -52,3 +52,28 @@ def test_standing_still_says_nothing():
 def test_demonstrations_without_goals_are_refused():
     with pytest.raises(UserError, match="no goals"):
         annotate(demonstrations(reach(0), goals=GOALS[:0]))
+
+
+def test_a_step_worked_by_hand():
+    """Near the first goal, moving past it: the move straight there would stop at the goal."""
+    goals, rate_hz, beta, horizon_s = np.array([[0.2, 0.0, 0.0], [0.0, 2.0, 0.0]]), 20.0, 3.0, 0.5
+    start, velocity = np.array([0.0, 0.1, 0.0]), np.array([1.0, 0.0, 0.0])
+    states = np.stack([start, start + velocity / rate_hz])
+    near = (goals[0] - start) / horizon_s  # slower than 1 rad/s: it is only 0.22 rad away
+    far = (goals[1] - start) / np.linalg.norm(goals[1] - start)
+    likelihood = []
+    for goal in goals:
+        weight = [
+            np.exp(-beta * np.sum((goal - (start + horizon_s * a)) ** 2)) for a in (velocity, near, far)
+        ]
+        likelihood.append((weight[0] / sum(weight)) ** (1 / rate_hz / horizon_s))
+    expected = np.array(likelihood) / sum(likelihood)
+    annotated = annotate(demonstrations(states, goals, rate_hz), beta, horizon_s)
+    np.testing.assert_allclose(annotated.episodes[0].extras["belief"], [[0.5, 0.5], expected], rtol=1e-12)
+
+
+def test_creeping_is_no_choice():
+    """Compliance and noise move a held arm a little, for as long as it is held."""
+    creep = np.arange(400)[:, None] / 20.0 * 0.015 * GOALS[0] / np.linalg.norm(GOALS[0])
+    belief = annotate(demonstrations(creep)).episodes[0].extras["belief"]
+    assert belief == pytest.approx(0.5)
