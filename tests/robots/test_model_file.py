@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
@@ -153,3 +155,12 @@ def test_a_huge_file_is_refused_before_it_is_read(tmp_path):
         stream.truncate(LARGEST_BYTES + 1)
     with pytest.raises(UserError, match="larger than 20 MB"):
         load_model_file(path)
+
+
+def test_a_robot_given_by_a_relative_path_is_found_from_another_folder(written, monkeypatch, tmp_path):
+    """A dataset remembers the name, and is trained on and driven from anywhere."""
+    path = written(arm())
+    monkeypatch.chdir(path.parent)
+    name = load_model_file(Path(path.name)).name
+    monkeypatch.chdir(tmp_path.parent)
+    assert load_robot(name).name == str(path)

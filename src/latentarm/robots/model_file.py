@@ -64,7 +64,8 @@ def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
             model has not exactly one site that moves, nor exactly one last moving body.
 
     Returns:
-        The robot, with ``str(path)`` as its name.
+        The robot, with the file's absolute path as its name: datasets remember it, and are read from
+        other folders.
 
     Raises:
         UserError: the file or a mesh is missing or broken, the end-effector is unknown or ambiguous,
@@ -81,7 +82,8 @@ def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
         reading = read(model, [tool])
         limits = _limits(model, reading, velocity)
         home = _home(model, reading, limits)
-        return assemble(str(path), mjcf, [tool], limits, home, TOOL_SPEED_LIMIT, str(path))
+        whole_path = str(path.resolve())
+        return assemble(whole_path, mjcf, [tool], limits, home, TOOL_SPEED_LIMIT, whole_path)
     except UserError as error:
         raise UserError(f"{path}: {error}") from error
 
