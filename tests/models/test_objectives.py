@@ -8,7 +8,9 @@ import torch
 
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.models.catalogue import MODELS
+from latentarm.models.layout import LAYOUTS
 from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
+from latentarm.models.scaling import find_collapsed
 
 
 def test_kl_of_the_prior_itself_is_zero():
@@ -76,3 +78,13 @@ def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
         at_rest = model.decode(np.zeros((len(context), 2)), context)
         loss = loss + model.zero_weight * error(0.0, at_rest)
     np.testing.assert_allclose(model.held_out_loss_, loss, rtol=1e-4)
+
+
+def test_a_gaussian_dimension_that_says_nothing_is_dead_however_much_it_would_move():
+    """Its posterior mean hardly leaves the prior's; scaling it up to span u would only span noise."""
+    rng = np.random.default_rng(0)
+    latents = rng.normal(size=(1, 500, 2)) * [1.0, 0.05]
+    effect = np.full((1, 2), 0.5)
+    assert find_collapsed(effect, latents, LAYOUTS["cvae"]).tolist() == [[False, True]]
+    assert find_collapsed(effect, latents, LAYOUTS["cae"]).tolist() == [[False, False]]
+    assert find_collapsed(effect * [1.0, 0.001], latents, LAYOUTS["cae"]).tolist() == [[False, True]]

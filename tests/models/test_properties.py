@@ -185,3 +185,12 @@ def test_fit_leaves_the_demonstrations_as_they_were(demonstrations):
     MODELS["cae"](epochs=1, state_noise_rad=0.1).fit(replace(demonstrations))
     for copy, episode in zip(copies, demonstrations.episodes, strict=True):
         np.testing.assert_array_equal(copy, episode.state)
+
+
+@pytest.mark.parametrize("name", ["ae", "vae", "cae", "cvae"])
+def test_an_input_at_rest_is_the_mean_latent_action_where_rest_has_no_latent_of_its_own(name, demonstrations):
+    model = MODELS[name](epochs=1, hidden=(8,), window=1, seeds=2).fit(demonstrations, held_out=[0])
+    trained_on = replace(demonstrations, episodes=demonstrations.episodes[1:])
+    pairs = make_pairs(trained_on, 1, 0.0, "state", np.random.default_rng(0))
+    z = model.encode(pairs.context, pairs.action)
+    np.testing.assert_allclose(z.mean(axis=1), 0.0, atol=1e-9)

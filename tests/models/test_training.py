@@ -17,6 +17,7 @@ from latentarm.errors import UserError
 from latentarm.models import training
 from latentarm.models.batches import seed_generator
 from latentarm.models.catalogue import MODELS
+from latentarm.models.checkpoint import TrainingState
 from latentarm.models.optimiser import FlatAdam
 
 NEURAL = [name for name in MODELS if name != "pca"]
@@ -253,6 +254,41 @@ def test_recorded_actions_that_are_all_zero_are_refused(demonstrations):
     still = tuple(replace(one, action=np.zeros_like(one.state)) for one in demonstrations.episodes)
     with pytest.raises(UserError, match="Every recorded action is zero"):
         MODELS["pca"](actions="recorded").fit(replace(demonstrations, episodes=still))
+
+
+def test_a_seed_stops_after_exactly_so_many_epochs_without_improvement(demonstrations):
+    settings = {"epochs": 40, "hidden": (8,), "window": 1, "learning_rate": 0.1}
+    for patience in (1, 3):
+        model = MODELS["cae"](patience=patience, **settings).fit(demonstrations)
+        assert len(model.history_) < settings["epochs"], "it should stall for this test to say anything"
+        assert len(model.history_) == model.trained_.summary.best_epoch[0] + patience
+
+
+def test_a_stalled_seed_takes_no_later_improvement():
+    """Alone, its training would have ended there; the other seed's goes on."""
+    values = torch.arange(2.0)[:, None].clone()
+    state = TrainingState.start(values, FlatAdam(values))
+    for epoch, loss in enumerate(([1.0, 1.0], [2.0, 0.9], [2.0, 0.8], [0.5, 0.7])):
+        values[:] = 10.0 * (epoch + 1)
+        state.record(np.array(loss), steps=epoch, patience=2)
+    assert state.best_loss.tolist() == [1.0, 0.7]
+    assert state.best_epoch.tolist() == [1, 4]
+    assert state.best.ravel().tolist() == [10.0, 40.0]
+
+
+def test_the_learning_rate_falls_along_half_a_cosine(demonstrations, monkeypatch):
+    rates = []
+    step = FlatAdam.step
+
+    def watched(self, values, gradient, learning_rate):
+        rates.append(learning_rate)
+        step(self, values, gradient, learning_rate)
+
+    monkeypatch.setattr(FlatAdam, "step", watched)
+    MODELS["cae"](epochs=4, hidden=(8,), window=1, learning_rate=0.01).fit(demonstrations)
+    per_epoch = list(dict.fromkeys(rates))
+    share = (1 + np.cos(np.pi * np.arange(4) / 4)) / 2
+    np.testing.assert_allclose(per_epoch, 0.01 * (0.01 + 0.99 * share))
 
 
 def _first(episode, samples):
