@@ -3,7 +3,9 @@
 Exit codes: 0 done, 1 not reached or failed, 2 the user's to mend, 130 interrupted.
 """
 
+import io
 import json as json_format
+import os
 import sys
 import warnings
 from collections.abc import Sequence
@@ -32,7 +34,9 @@ EndEffector = Annotated[
     str | None, arg(help="Site, body or link of the model file that is the end-effector.", metavar="NAME")
 ]
 Dataset = Annotated[Path, arg(metavar="DST", help="Folder of a native dataset.")]
-Run = Annotated[Path, arg(metavar="RUN", help="Folder that `latentarm train` wrote.")]
+MovedDataset = Annotated[
+    Path | None, arg(metavar="DST", help="Where the run's dataset lies now, if it was moved.")
+]
 
 app = SubcommandApp()
 
@@ -46,18 +50,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         The exit code.
     """
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # a terminal without "±" or "…" shows "?" instead
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _warn
-            return app.cli(
+            code = app.cli(
                 prog="latentarm",
                 description="Steer a high-DoF assistive arm with a low-DoF input, by latent actions.",
                 args=arguments,
                 config=(tyro.conf.FlagCreatePairsOff,),
             )
+            sys.stdout.flush()  # a full disk shows here and not after the exit code
+            return code
     except UserError as error:
-        print(f"latentarm: {error}", file=sys.stderr)
-        return 2
+        return _refuse(str(error))
+    except BrokenPipeError:
+        # Whoever read our output has heard enough; there is nobody left to flush it to.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        return _refuse(f"{error.filename or 'The output'} cannot be used: {error.strerror or error}.")
     except KeyboardInterrupt:
         print("latentarm: interrupted.", file=sys.stderr)
         return 130
@@ -94,6 +107,16 @@ def import_demonstrations(
     destination: Annotated[Positional[Path], arg(metavar="DST", help="New folder for the dataset.")],
     robot: RobotName = "panda",
     end_effector: EndEffector = None,
+    rate_hz: Annotated[float | None, arg(help="Sampling rate, for a file that does not say it.")] = None,
+    instruction: Annotated[
+        str | None, arg(help="What was done, in words, for a file that does not say it.")
+    ] = None,
+    actions: Annotated[
+        Literal["known", "joint_velocity"],
+        arg(
+            help="Keep recorded actions only where they are known to be joint velocities, or take your word."
+        ),
+    ] = "known",
     json: Json = False,
 ) -> int:
     """Turn recorded demonstrations into a native dataset (LeRobotDataset v3.0).
@@ -104,7 +127,14 @@ def import_demonstrations(
     from latentarm.experiments.inspection import summary
     from latentarm.robots.catalogue import load_robot
 
-    demonstrations = import_to(source, destination, load_robot(robot, end_effector))
+    demonstrations = import_to(
+        source,
+        destination,
+        load_robot(robot, end_effector),
+        rate_hz=rate_hz,
+        task=instruction,
+        actions=actions,
+    )
     if json:
         _show(summary(demonstrations).rows(), json)
     _say(
@@ -201,6 +231,7 @@ def evaluate(
     out: Annotated[
         Path | None, arg(metavar="DIR", help="Folder for metrics and figures; RUN by default.")
     ] = None,
+    demonstrations: MovedDataset = None,
     seed: Seed = 0,
     json: Json = False,
 ) -> int:
@@ -211,7 +242,7 @@ def evaluate(
     from latentarm.experiments.evaluating import evaluate_run
 
     folder = out or run
-    rows = evaluate_run(run, folder, seed)
+    rows = evaluate_run(run, folder, seed, demonstrations)
     _show(rows, json)
     _say(f"metrics.json and figures are in {folder}/.", json)
     return 0
@@ -241,6 +272,7 @@ def drive(
         float | None, arg(help="A drive that lasts longer has failed: 60 s, 300 s on held-out episodes.")
     ] = None,
     seed: Seed = 0,
+    demonstrations: MovedDataset = None,
     record: Annotated[
         Path | None, arg(metavar="DIR", help="Record the drives; exported there as a native dataset.")
     ] = None,
@@ -265,6 +297,7 @@ def drive(
             time_limit_s=time_limit_s,
             seed=seed,
             record=record,
+            dataset=demonstrations,
             out=out,
         )
     )
@@ -329,6 +362,12 @@ def _show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
 def _say(sentence: str, json: bool) -> None:
     """Tell a person; with ``--json`` on standard error, so that standard output stays one document."""
     print(sentence, file=sys.stderr if json else sys.stdout)
+
+
+def _refuse(sentence: str) -> int:
+    """Say what the user can mend; the exit code for that."""
+    print(f"latentarm: {sentence}", file=sys.stderr)
+    return 2
 
 
 def _warn(message: Warning | str, *where: object) -> None:

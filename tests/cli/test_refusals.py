@@ -1,10 +1,17 @@
 """What the user can mend: exit code 2, one sentence, nothing left behind."""
 
+import os
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from latentarm.demonstrations.dataset import write_dataset
+from latentarm.tasks.table_top import TableTop
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -21,10 +28,17 @@ REFUSED = {
     ),
     "unknown robot": (("robots", "asimo"), "asimo"),
     "end-effector of a named robot": (("robots", "panda", "--end-effector", "hand"), "panda"),
-    "no drives": (("drive", "--drives", "0"), "at least one drive"),
+    "no drives": (("drive", "--drives", "0"), "at least 1"),
+    "no drives in the demo": (("demo", "--drives", "0"), "at least 1"),
+    "a demo over a file": (("demo", "--out", "text.npz"), "text.npz"),
+    "a seed below zero": (("drive", "--seed", "-1"), "seed"),
+    "no end of time": (("drive", "--time-limit-s", "inf"), "time limit"),
+    "no time": (("drive", "--time-limit-s", "0"), "time limit"),
+    "rationality without measure": (("drive", "--beta", "nan"), "beta"),
+    "nothing to time": (("bench", "--repeats", "0"), "at least 1"),
     "table for another arm": (("drive", "--task", "table_top", "--robot", "planar"), "Panda"),
     "held-out episodes of nothing": (("drive", "--task", "held_out"), "run"),
-    "demo over something else": (("demo", "--out", "."), "not empty"),
+    "demo over something else": (("demo", "--out", "."), "no earlier demo"),
 }
 
 
@@ -50,3 +64,62 @@ def test_words_that_no_command_has(run: Run, words: tuple[str, ...]) -> None:
     code, _, err = run(*words)
     assert code == 2
     assert err
+
+
+def test_a_run_knows_its_dataset(run: Run, workplace: Path, recording: Path) -> None:
+    run("import", recording, "eat")
+    run("train", "--demonstrations", "eat", "--model", "pca", "--out", "mine")
+    Path("eat").rename("moved")
+    code, _, err = run("evaluate", "mine")
+    assert code == 2
+    assert "--demonstrations" in err
+    assert run("evaluate", "mine", "--demonstrations", "moved")[0] == 0
+
+    run("drive", "--drives", 1, "--time-limit-s", 2, "--record", "other")
+    code, _, err = run("evaluate", "mine", "--demonstrations", "other")
+    assert code == 2
+    assert "not the dataset" in err
+
+
+def test_a_decoder_with_beliefs_is_not_driven_to_foreign_goals(run: Run, workplace: Path) -> None:
+    write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), Path("table"))
+    command = ("train", "--demonstrations", "table", "--model", "scl", "--epochs", 1, "--seeds", 1)
+    run(*command, "--context", "state_belief")
+    code, _, err = run("drive", "runs/table-scl", "--task", "reach")
+    assert code == 2
+    assert "goals" in err
+
+
+def test_a_recording_without_a_rate_is_imported_when_told(run: Run, workplace: Path) -> None:
+    states = TableTop().demonstrate(2, np.random.default_rng(0)).episodes[0].state
+    np.savez("bare.npz", q=states, episode_ends=[len(states)])
+    code, _, err = run("import", "bare.npz", "bare")
+    assert code == 2
+    assert "rate" in err
+    assert run("import", "bare.npz", "bare", "--rate-hz", 20, "--instruction", "eat")[0] == 0
+
+
+def test_a_folder_that_is_a_file(run: Run, workplace: Path, recording: Path) -> None:
+    run("import", recording, "eat")
+    Path("file").write_text("")
+    code, _, err = run("train", "--demonstrations", "eat", "--model", "pca", "--out", "file/run")
+    assert code == 2
+    assert "file" in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize("reader", ["head -c 1", "cat > /dev/full"])
+def test_a_reader_who_leaves_and_a_full_disk(reader: str) -> None:
+    command = f"{sys.executable} -m latentarm robots panda --json | {reader}"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)  # noqa: S602
+    assert "Traceback" not in done.stderr
+
+
+def test_a_terminal_without_our_letters() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "latentarm", "robots", "panda"],
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+        capture_output=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr

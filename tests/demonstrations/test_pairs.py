@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.demonstrations.pairs import make_pairs, moving_range
+from latentarm.demonstrations.pairs import make_pairs
 from latentarm.errors import UserError
+from latentarm.kinematics.stillness import moving_range
 from latentarm.types import Demonstrations, Episode, FloatArray
 
 

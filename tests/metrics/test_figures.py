@@ -55,7 +55,7 @@ def test_the_comparison_names_every_model_and_shows_them_apart_without_colour():
     models = ["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "a_new_model"]
     figure = comparison_figure(rows_of(models))
     words = {text.get_text() for text in texts_of(figure)}
-    assert {"PCA", "cVAE", "state-conditioned\nlinear", "a_new_model"} <= words
+    assert {"PCA", "cVAE", "SCL", "a_new_model"} <= words
     panel = figure.axes[0]
     markers = [container.lines[0].get_marker() for container in panel.containers]
     assert len(set(markers[:7])) == 7

@@ -1,14 +1,12 @@
 """Context-action pairs ``(c, a)`` drawn from demonstrations, for the decoder to learn from."""
 
-from typing import Final, Literal
+from typing import Literal
 
 import numpy as np
 
 from latentarm.errors import UserError
+from latentarm.kinematics.stillness import moving_range
 from latentarm.types import Demonstrations, Episode, FloatArray, IntArray, Pairs
-
-STILL_RAD_S: Final = 0.01
-"""A joint slower than this stands still. The same figure ends a stop of the real arm."""
 
 
 def make_pairs(
@@ -76,21 +74,6 @@ def make_pairs(
     return Pairs(
         context=noisy, clean_context=clean, action=np.concatenate(taken), episode=np.concatenate(owner)
     )
-
-
-def moving_range(state: FloatArray, timestamp: FloatArray) -> tuple[int, int]:
-    """First and last sample of an episode's motion, from the still arm before it to the one after.
-
-    Args:
-        state: (T, n), rad.
-        timestamp: (T,), s.
-
-    Returns:
-        Half-open range of samples; empty where no joint ever exceeds `STILL_RAD_S`.
-    """
-    speed = np.abs(np.diff(state, axis=0)).max(axis=1) / np.diff(timestamp)
-    steps = np.flatnonzero(speed > STILL_RAD_S)
-    return (int(steps[0]), int(steps[-1]) + 2) if len(steps) else (0, 0)
 
 
 def _moving(episode: Episode) -> slice:

@@ -6,7 +6,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.demonstrations.pairs import STILL_RAD_S
+from latentarm.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, Episode, FloatArray, Row

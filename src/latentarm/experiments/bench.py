@@ -17,6 +17,7 @@ from latentarm.assistance.blending import FixedAlpha
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.latent import LatentController
+from latentarm.experiments.checks import check_count, check_seed
 from latentarm.kinematics.obstacles import Sphere
 from latentarm.models.autoencoders import CVAE
 from latentarm.robots.simulated import SimulatedArm
@@ -43,7 +44,12 @@ def run_bench(repeats: int, seed: int, progress: bool, pairs: int = PAIRS) -> li
 
     Returns:
         One row per figure; where many times were taken, the row gives their number.
+
+    Raises:
+        UserError: there are no steps to time, or the seed is out of its range.
     """
+    check_count("timed steps", repeats)
+    check_seed(seed)
     task = TableTop()
     demonstrations = task.demonstrate(12, np.random.default_rng(seed))
     fits, model = _time_fits(_about(demonstrations, pairs), seed, progress)

@@ -20,18 +20,21 @@ from latentarm.controllers.latent import LatentController
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.errors import UserError
 from latentarm.experiments.arm_figure import draw_task
+from latentarm.experiments.checks import check_count, check_seed
 from latentarm.experiments.drive_figures import draw_drives, draw_inputs
 from latentarm.experiments.driving import drive_all
 from latentarm.experiments.evaluating import evaluate_run
 from latentarm.experiments.simulation import Setup, Trace
 from latentarm.experiments.training import TrainConfig, train_run
 from latentarm.files import write_text
+from latentarm.metrics.comparison_figure import comparison_figure
 from latentarm.metrics.drives import drive_rows
 from latentarm.metrics.results import write_results
-from latentarm.metrics.summary import Subject
+from latentarm.metrics.summary import Subject, headline
 from latentarm.metrics.table import markdown_table
 from latentarm.models.decoder import load_decoder
 from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.style import save_figure
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Row
 
@@ -64,6 +67,10 @@ class DemoConfig:
     episodes: int = 60
     seeds: int = 3
     epochs: int = 8
+
+    def __post_init__(self) -> None:
+        check_seed(self.seed)
+        check_count("drives for each goal", self.drives)
 
 
 def run_demo(config: DemoConfig) -> list[Row]:
@@ -144,6 +151,7 @@ def _write(
     about = {"seed": config.seed, "drives_per_goal": config.drives, "operator": "simulated"}
     write_results(out / "results.json", [*rows, *properties], about)
     draw_drives(traces, task, out / "paths.png")
+    save_figure(comparison_figure(headline(properties)), out / "properties.png")
     draw_inputs({condition: drives[0] for condition, drives in traces.items()}, out / "inputs.png")
     count = config.drives * len(task.goals)
     write_text(
@@ -157,6 +165,7 @@ def _write(
         "![Inputs over time](inputs.png)\n\n"
         "## The latent spaces, on held-out episodes\n\n"
         f"Mean ± SD over {config.seeds} seeds.\n\n{markdown_table(properties)}\n"
+        "![The properties of the latent spaces](properties.png)\n\n"
         "![The task](task.png)\n",
     )
 
@@ -167,9 +176,9 @@ def _clear(out: Path) -> None:
     Raises:
         UserError: the folder holds something that no demo wrote.
     """
-    if not out.exists() or not any(out.iterdir()):
+    if not out.exists() or (out.is_dir() and not any(out.iterdir())):
         return
     if not (out / "demonstrations" / "meta" / "info.json").exists():
-        raise UserError(f"{out} is not empty and holds no earlier demo: choose another folder with --out.")
+        raise UserError(f"{out} is there already and is no earlier demo: choose another folder with --out.")
     for made in ("demonstrations", "runs"):
         shutil.rmtree(out / made, ignore_errors=True)

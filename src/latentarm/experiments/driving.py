@@ -12,10 +12,10 @@ from latentarm.control.export import export_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
-from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
+from latentarm.experiments.checks import check_count, check_positive, check_seed
 from latentarm.experiments.drive_figures import draw_drives
 from latentarm.experiments.evaluating import robot_of
 from latentarm.experiments.runs import Run, read_run
@@ -30,10 +30,13 @@ from latentarm.tasks.reach import Reach
 from latentarm.tasks.replay import Replay
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
-from latentarm.types import Row
+from latentarm.types import Demonstrations, Row
 
 ControllerName = Literal["latent", "latent_assist", "end_effector"]
 TaskName = Literal["table_top", "held_out", "reach"]
+
+DRIVE_STREAM = 2
+"""Keeps the drives apart from everything else that is drawn from the same seed."""
 
 TIME_LIMITS_S = {"table_top": 60.0, "held_out": 300.0, "reach": 60.0}
 """How long a drive may last, by task: held-out episodes are several metres long."""
@@ -56,6 +59,10 @@ class DriveConfig:
         seed: of everything random.
         jobs: processes side by side.
         record: folder of a new dataset that the drives are exported to, or None.
+        dataset: where the run's dataset lies now, if it was moved.
+
+    Raises:
+        UserError: a figure is out of its range.
     """
 
     run: Path | None
@@ -70,6 +77,14 @@ class DriveConfig:
     seed: int = 0
     jobs: int = 1
     record: Path | None = None
+    dataset: Path | None = None
+
+    def __post_init__(self) -> None:
+        check_seed(self.seed)
+        check_count("drives for each goal", self.drives)
+        check_positive("rationality beta", self.beta)
+        if self.time_limit_s is not None:
+            check_positive("time limit in s", self.time_limit_s)
 
 
 def drive_run(config: DriveConfig) -> list[Row]:
@@ -82,7 +97,10 @@ def drive_run(config: DriveConfig) -> list[Row]:
         UserError: the run, the robot or the task is not to be had, or they do not fit each other.
     """
     run = None if config.run is None else read_run(config.run)
-    task = _task(config, run)
+    demonstrations = None if run is None else run.dataset(config.dataset)
+    task = _task(config, run, demonstrations)
+    if run is not None and demonstrations is not None and run.context == "state_belief":
+        _check_goals(run, demonstrations, task)
     setup = Setup(
         task=task,
         controller=_controller(config, task),
@@ -108,9 +126,6 @@ def drive_all(setup: Setup, drives: int, seed: int, jobs: int) -> list[Trace]:
 
     A drive depends on the seed, the goal and its number alone, so that every controller meets the
     same starts and the number of processes changes nothing.
-
-    Raises:
-        UserError: fewer than one drive is asked for.
     """
     calls = _drives(setup, drives, seed)
     traces = Parallel(n_jobs=jobs)(delayed(simulate)(setup, *call) for call in calls)
@@ -151,24 +166,29 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
 
 
 def _drives(setup: Setup, drives: int, seed: int) -> list[tuple[int, str, np.random.Generator]]:
-    """Goal, manner and randomness of every drive.
-
-    Raises:
-        UserError: fewer than one drive is asked for.
-    """
-    if drives < 1:
-        raise UserError(f"Ask for at least one drive to each goal, not {drives}.")
+    """Goal, manner and randomness of every drive."""
     manners = setup.task.manners
     return [
-        (goal, manners[number % len(manners)], np.random.default_rng([seed, goal, number]))
+        (goal, manners[number % len(manners)], np.random.default_rng([DRIVE_STREAM, seed, goal, number]))
         for goal in range(len(setup.task.goals))
         for number in range(drives)
     ]
 
 
-def _task(config: DriveConfig, run: Run | None) -> Task:
+def _check_goals(run: Run, demonstrations: Demonstrations, task: Task) -> None:
+    """A decoder that sees a belief knows only the goals that it was trained with."""
+    trained = [goal.configuration for goal in demonstrations.goals]
+    here = [goal.configuration for goal in task.goals]
+    if len(trained) != len(here) or not np.allclose(trained, here, atol=1e-6):
+        raise UserError(
+            f"{run.folder} sees a belief over the goals of its dataset, and the task {task.name} has others:"
+            " drive it on the task that it was trained for."
+        )
+
+
+def _task(config: DriveConfig, run: Run | None, demonstrations: Demonstrations | None) -> Task:
     """The task that is asked for, or that the run was trained for."""
-    name = config.task or _usual_task(config, run)
+    name = config.task or _usual_task(config, demonstrations)
     if name == "table_top":
         if config.robot not in (None, "panda"):
             raise UserError(
@@ -181,15 +201,15 @@ def _task(config: DriveConfig, run: Run | None) -> Task:
         robot = load_robot("panda") if run is None else robot_of(run)
     if name == "reach":
         return Reach(robot)
-    if run is None:
+    if run is None or demonstrations is None:
         raise UserError("Held-out episodes belong to a run: name one, as in `latentarm drive RUN`.")
-    return Replay(robot, select_episodes(read_dataset(run.demonstrations), run.held_out))
+    return Replay(robot, select_episodes(demonstrations, run.held_out))
 
 
-def _usual_task(config: DriveConfig, run: Run | None) -> TaskName:
-    if run is None:
+def _usual_task(config: DriveConfig, demonstrations: Demonstrations | None) -> TaskName:
+    if demonstrations is None:
         return "table_top" if config.robot in (None, "panda") else "reach"
-    goals = {goal.name for goal in read_dataset(run.demonstrations).goals}
+    goals = {goal.name for goal in demonstrations.goals}
     if goals == {goal.name for goal in TableTop().goals}:
         return "table_top"
     return "held_out"

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from latentarm.demonstrations.dataset import read_dataset
 from latentarm.errors import UserError
+from latentarm.experiments.checks import check_seed
 from latentarm.experiments.runs import Run, read_run
 from latentarm.experiments.training import prepared
 from latentarm.metrics.effects import axis_effects, axis_grid
@@ -26,13 +26,14 @@ DRAWN_STATES = 3
 """States from which the effect of each latent axis is drawn."""
 
 
-def evaluate_run(folder: Path, out: Path, seed: int) -> list[Row]:
+def evaluate_run(folder: Path, out: Path, seed: int, dataset: Path | None = None) -> list[Row]:
     """Measure a run and write ``metrics.json`` and two figures.
 
     Args:
         folder: the run.
         out: where to write.
         seed: of the noise on held-out states.
+        dataset: where the run's dataset lies now, if it was moved.
 
     Returns:
         One row per measure: mean and SD over the run's seeds.
@@ -41,9 +42,10 @@ def evaluate_run(folder: Path, out: Path, seed: int) -> list[Row]:
         UserError: the folder is not a run, its dataset is gone or does not fit it, or its robot is
             not to be had.
     """
+    check_seed(seed)
     run = read_run(folder)
     model = load_model(folder)
-    demonstrations = prepared(read_dataset(run.demonstrations), run.context)
+    demonstrations = prepared(run.dataset(dataset), run.context)
     robot = robot_of(run)
     if demonstrations.dof != robot.dof:
         raise UserError(

@@ -1,5 +1,6 @@
 """What a run folder says of itself: the dataset, the robot, the episodes that the model never saw."""
 
+import hashlib
 import json
 import subprocess
 from collections.abc import Mapping
@@ -7,7 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
+import numpy as np
+
+from latentarm.demonstrations.dataset import read_dataset
 from latentarm.errors import UserError
+from latentarm.types import Demonstrations
 
 
 @dataclass(frozen=True)
@@ -22,6 +27,7 @@ class Run:
         context: what its decoder sees, ``state`` or ``state_belief``.
         robot: name or model file of the robot, or "" where it is unknown.
         end_effector: which site, body or link of a model file is the end-effector.
+        fingerprint: of the dataset's states, so that another dataset is not taken for it.
     """
 
     folder: Path
@@ -31,6 +37,38 @@ class Run:
     context: str
     robot: str
     end_effector: str | None
+    fingerprint: str
+
+    def dataset(self, moved_to: Path | None = None) -> Demonstrations:
+        """The dataset that the model was trained on.
+
+        Args:
+            moved_to: where it lies now, if it was moved.
+
+        Raises:
+            UserError: it is not there, cannot be read, or is another dataset.
+        """
+        path = moved_to or self.demonstrations
+        if not path.exists():
+            raise UserError(
+                f"The dataset of {self.folder} is not at {path} any more: say where with --demonstrations."
+            )
+        demonstrations = read_dataset(path)
+        if fingerprint(demonstrations) != self.fingerprint:
+            raise UserError(
+                f"{path} is not the dataset that {self.folder} was trained on: its states differ. Name that"
+                " one with --demonstrations, or train anew."
+            )
+        return demonstrations
+
+
+def fingerprint(demonstrations: Demonstrations) -> str:
+    """SHA-256 of all states, episode by episode, in the precision that they are stored in."""
+    digest = hashlib.sha256()
+    for episode in demonstrations.episodes:
+        digest.update(str(episode.state.shape).encode())
+        digest.update(np.ascontiguousarray(episode.state, dtype=np.float32).tobytes())
+    return digest.hexdigest()
 
 
 def run_facts(run: Run) -> dict[str, object]:
@@ -42,6 +80,7 @@ def run_facts(run: Run) -> dict[str, object]:
         "context": run.context,
         "robot": run.robot,
         "end_effector": run.end_effector,
+        "fingerprint": run.fingerprint,
     }
 
 
@@ -62,6 +101,7 @@ def read_run(folder: Path) -> Run:
             context=str(config["context"]),
             robot=str(config["robot"]),
             end_effector=None if end_effector is None else str(end_effector),
+            fingerprint=str(config["fingerprint"]),
         )
     except (KeyError, TypeError, ValueError) as error:
         raise UserError(
@@ -86,8 +126,10 @@ def _read_config(folder: Path) -> Mapping[str, object]:
         config: object = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise UserError(f"{folder} is not a run: it has no config.json (see `latentarm train`).") from error
-    except (OSError, ValueError) as error:
-        raise UserError(f"{path} cannot be read: {error}.") from error
+    except OSError as error:
+        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
+    except ValueError as error:
+        raise UserError(f"{path} is damaged: it is no JSON. Train the run anew.") from error
     if not isinstance(config, dict):
         raise UserError(f"{path} does not describe a run: train it anew with `latentarm train`.")
     return cast(Mapping[str, object], config)

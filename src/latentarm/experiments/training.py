@@ -15,12 +15,17 @@ from latentarm.assistance.annotation import annotate
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.errors import UserError
-from latentarm.experiments.runs import Run, git_commit, run_facts
+from latentarm.experiments.checks import check_seed
+from latentarm.experiments.runs import Run, fingerprint, git_commit, run_facts
 from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
+from latentarm.robots.catalogue import ROBOTS, load_robot
 from latentarm.types import Demonstrations, Row
 
 CHECKPOINT = "training.safetensors"
+
+HOLD_OUT_STREAM = 1
+"""Keeps this choice apart from everything else that is drawn from the same seed."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,9 @@ class TrainConfig:
     resume: bool = False
     progress: bool = False
 
+    def __post_init__(self) -> None:
+        check_seed(self.seed)
+
 
 def train_run(config: TrainConfig) -> list[Row]:
     """Train a model on a dataset and write its run folder.
@@ -76,9 +84,12 @@ def train_run(config: TrainConfig) -> list[Row]:
     """
     _check_folder(config)
     demonstrations = prepared(read_dataset(config.demonstrations), config.context)
-    training, held_out = split_episodes(demonstrations, config.held_out, np.random.default_rng(config.seed))
+    if demonstrations.robot in ROBOTS or Path(demonstrations.robot).is_file():
+        load_robot(demonstrations.robot, config.end_effector)  # says now what evaluating would say later
+    training, held_out = split_episodes(
+        demonstrations, config.held_out, np.random.default_rng([HOLD_OUT_STREAM, config.seed])
+    )
     model = _model(config)
-    config.out.mkdir(parents=True, exist_ok=True)
     checkpoint = config.out / CHECKPOINT
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -91,6 +102,7 @@ def train_run(config: TrainConfig) -> list[Row]:
         context=config.context,
         robot=demonstrations.robot,
         end_effector=config.end_effector,
+        fingerprint=fingerprint(demonstrations),
     )
     said = [str(warning.message) for warning in caught]
     model.save(config.out, run={**run_facts(run), "warnings": said, "git_commit": git_commit()})

@@ -97,7 +97,8 @@ def evaluate(
 
     Args:
         model: a fitted model of S seeds.
-        demonstrations: the dataset that it was trained on; PCA is fitted to the same training pairs.
+        demonstrations: the dataset that it was trained on; PCA is fitted to all of it that is not held out,
+            so also to episodes that stopped the training early.
         held_out: indices of the episodes that it has not seen.
         robot: the arm that it moves.
         subject: what the rows say they are about.
@@ -167,7 +168,7 @@ def _measure_accuracy(
     rng: np.random.Generator,
     state_noise_rad: float | None,
 ) -> _Accuracy:
-    """Reconstruction errors with and without state noise, beside PCA fitted to the training pairs."""
+    """Reconstruction errors with and without state noise, beside PCA fitted to what is not held out."""
     noise = model.state_noise_rad if state_noise_rad is None else state_noise_rad
     trained_on = [index for index in range(len(demonstrations.episodes)) if index not in set(held_out)]
     if not trained_on:

@@ -10,9 +10,9 @@ from typing import Literal
 
 import numpy as np
 
-from latentarm.demonstrations.pairs import moving_range
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
+from latentarm.kinematics.stillness import moving_range
 from latentarm.types import Demonstrations, Episode, FloatArray, IntArray
 
 ContextKind = Literal["state", "state_belief"]

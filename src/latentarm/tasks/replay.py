@@ -7,6 +7,7 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.kinematics.rotations import angle_between
+from latentarm.kinematics.stillness import moving_range
 from latentarm.robots.robot import Robot
 from latentarm.tasks.task import Task
 from latentarm.tasks.tolerance import within
@@ -17,9 +18,6 @@ WAYPOINT_SPACING = 0.25
 
 RADIAN = 0.2
 """What a radian of turning counts as way, m."""
-
-STILL = 0.02
-"""Joint speed below which the arm rests at an episode's ends, rad/s."""
 
 
 @final
@@ -40,8 +38,10 @@ class Replay(Task):
     def __init__(self, robot: Robot, demonstrations: Demonstrations) -> None:
         self._robot = robot
         self._demonstrations = demonstrations
-        moving = [_moving(one.state, one.timestamp) for one in demonstrations.episodes]
-        self._paths = tuple(path for path in moving if len(path) > 1)
+        moving = [
+            one.state[slice(*moving_range(one.state, one.timestamp))] for one in demonstrations.episodes
+        ]
+        self._paths = tuple(path for path in moving if len(path))
         if not self._paths:
             raise UserError("None of these episodes moves, so there is nothing to follow.")
 
@@ -114,10 +114,3 @@ class Replay(Task):
         if not 0 <= goal < len(self._paths):
             raise UserError(f"There are episodes 0 to {len(self._paths) - 1} to follow, not {goal}.")
         return self._paths[goal]
-
-
-def _moving(state: FloatArray, timestamp: FloatArray) -> FloatArray:
-    """The states (T, n) without the rest at either end; no more than one where nothing moves."""
-    speed = np.abs(np.diff(state, axis=0)).max(axis=1) / np.diff(timestamp)
-    moves = np.flatnonzero(speed > STILL)
-    return state[moves[0] : moves[-1] + 2] if len(moves) else state[:1]

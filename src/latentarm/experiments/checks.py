@@ -1,0 +1,35 @@
+"""Checks of what a person asks for, before any work is done for it."""
+
+import math
+
+from latentarm.errors import UserError
+
+
+def check_seed(seed: int) -> None:
+    """Refuse a seed that NumPy and torch do not both take.
+
+    Raises:
+        UserError: the seed is negative or above 2³¹ - 1.
+    """
+    if not 0 <= seed < 2**31:
+        raise UserError(f"The seed is {seed}: it must be from 0 to {2**31 - 1}.")
+
+
+def check_count(name: str, count: int) -> None:
+    """Refuse a count below one.
+
+    Raises:
+        UserError: there would be nothing to do.
+    """
+    if count < 1:
+        raise UserError(f"The number of {name} is {count}: it must be at least 1.")
+
+
+def check_positive(name: str, value: float) -> None:
+    """Refuse a figure that is not above zero and finite.
+
+    Raises:
+        UserError: it is not.
+    """
+    if not (math.isfinite(value) and value > 0):
+        raise UserError(f"The {name} is {value:g}: it must be above zero and finite.")
