@@ -52,12 +52,12 @@ def test_assistance_believes_in_the_goal_that_is_driven_to() -> None:
 
 def test_processes_change_nothing() -> None:
     task = Reach(load_robot("planar"))
-    alone, beside = (drive_all(setup(task), 2, seed=7, jobs=jobs) for jobs in (1, 2))
+    alone, beside = (drive_all([setup(task)], 2, seed=7, jobs=jobs) for jobs in (1, 2))
     for one, other in zip(alone, beside, strict=True):
         np.testing.assert_array_equal(one.position, other.position)
 
 
 def test_another_seed_is_another_drive() -> None:
     task = Reach(load_robot("planar"))
-    one, other = (drive_all(setup(task), 1, seed=seed, jobs=1)[0] for seed in (0, 1))
+    one, other = (drive_all([setup(task)], 1, seed=seed, jobs=1)[0] for seed in (0, 1))
     assert not np.array_equal(one.position[0], other.position[0])

@@ -54,7 +54,7 @@ class DemoConfig:
         quiet: say nothing while working.
         bars: show how far training is.
         episodes: demonstrations.
-        seeds: models of each kind, trained at once; the first one drives.
+        seeds: models of each kind, trained at once; they take turns to be driven.
         epochs: passes over the training pairs, at most.
     """
 
@@ -93,14 +93,16 @@ def run_demo(config: DemoConfig) -> list[Row]:
     for model in MODELS:
         console.print(f"2/3  {model}: learning 2-D latent actions, {config.seeds} seeds at once.")
         properties += _train(config, model)
-    setups = _setups(task, config)
+    conditions = _conditions(task, config)
     traces: dict[str, list[Trace]] = {}
     rows: list[Row] = []
-    for number, (subject, setup) in enumerate(setups, start=1):
+    for number, (subject, setups) in enumerate(conditions, start=1):
         drives = config.drives * len(task.goals)
         name = " ".join(part for part in (subject.model, subject.condition) if part)
-        console.print(f"3/3  {number} of {len(setups)}: a simulated operator drives {drives} times, {name}.")
-        driven = drive_all(setup, config.drives, config.seed, config.jobs)
+        console.print(
+            f"3/3  {number} of {len(conditions)}: a simulated operator drives {drives} times, {name}."
+        )
+        driven = drive_all(setups, config.drives, config.seed, config.jobs)
         rows += drive_rows(subject, [trace.figures for trace in driven])
         if subject.model in (MODELS[0], None):
             traces[str(subject.condition)] = driven
@@ -124,20 +126,21 @@ def _train(config: DemoConfig, model: str) -> list[Row]:
     return evaluate_run(run, run, config.seed)
 
 
-def _setups(task: TableTop, config: DemoConfig) -> list[tuple[Subject, Setup]]:
-    """Latent actions of each model, alone and assisted, and mode switching."""
-    setups: list[tuple[Subject, Setup]] = []
+def _conditions(task: TableTop, config: DemoConfig) -> list[tuple[Subject, list[Setup]]]:
+    """Latent actions of each model (all its seeds in turn), alone and assisted, and mode switching."""
+    conditions: list[tuple[Subject, list[Setup]]] = []
 
-    def add(model: str | None, condition: str, controller: Controller, *, assisted: bool) -> None:
-        setup = Setup(task, controller, assisted, BoltzmannConfig(), TIME_LIMIT_S)
-        setups.append((Subject("demo", task=task.name, model=model, condition=condition), setup))
+    def add(model: str | None, condition: str, controllers: Sequence[Controller], *, assisted: bool) -> None:
+        setups = [Setup(task, one, assisted, BoltzmannConfig(), TIME_LIMIT_S) for one in controllers]
+        conditions.append((Subject("demo", task=task.name, model=model, condition=condition), setups))
 
     for model in MODELS:
-        controller = LatentController(load_decoder(config.out / "runs" / model))
-        add(model, "latent", controller, assisted=False)
-        add(model, "latent_assist", controller, assisted=True)
-    add(None, "end_effector", EndEffectorController(task.robot), assisted=False)
-    return setups
+        run = config.out / "runs" / model
+        controllers = [LatentController(load_decoder(run, seed)) for seed in range(config.seeds)]
+        add(model, "latent", controllers, assisted=False)
+        add(model, "latent_assist", controllers, assisted=True)
+    add(None, "end_effector", [EndEffectorController(task.robot)], assisted=False)
+    return conditions
 
 
 def _write(
@@ -158,7 +161,7 @@ def _write(
         out / "results.md",
         "# What the demo measured\n\n"
         f"A simulated operator drove a simulated Panda {count} times per column ({config.drives} to each of"
-        f" {len(task.goals)} goals), seed {config.seed}; mean ± SD over the drives, failed ones included"
+        f" {len(task.goals)} goals; the {config.seeds} trained models of a kind take turns), seed {config.seed}; mean ± SD over the drives, failed ones included"
         f" (they end after {TIME_LIMIT_S:g} s). No person took part.\n\n"
         f"{markdown_table(rows)}\n"
         f"The figures show the {MODELS[0]}. ![Paths of the tool](paths.png)\n\n"

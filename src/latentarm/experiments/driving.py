@@ -1,5 +1,6 @@
 """`latentarm drive`: simulated operators drive a task, with latent actions or with mode switching."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, cast
@@ -109,7 +110,7 @@ def drive_run(config: DriveConfig) -> list[Row]:
         time_limit_s=TIME_LIMITS_S[task.name] if config.time_limit_s is None else config.time_limit_s,
     )
     if config.record is None:
-        traces = drive_all(setup, config.drives, config.seed, config.jobs)
+        traces = drive_all([setup], config.drives, config.seed, config.jobs)
     else:
         traces = _record_all(setup, config, config.record)
     model = None if run is None or config.controller == "end_effector" else run.model
@@ -121,14 +122,25 @@ def drive_run(config: DriveConfig) -> list[Row]:
     return rows
 
 
-def drive_all(setup: Setup, drives: int, seed: int, jobs: int) -> list[Trace]:
+def drive_all(setups: Sequence[Setup], drives: int, seed: int, jobs: int) -> list[Trace]:
     """Drive to every goal ``drives`` times, the task's manners in turn, processes side by side.
 
     A drive depends on the seed, the goal and its number alone, so that every controller meets the
     same starts and the number of processes changes nothing.
+
+    Args:
+        setups: on one task; they take turns, so that no figure hangs on one trained model.
+        drives: to each goal.
+        seed: of the starts and of the simulated operator.
+        jobs: processes; -1 is one per core.
+
+    Returns:
+        The drives, goal by goal.
     """
-    calls = _drives(setup, drives, seed)
-    traces = Parallel(n_jobs=jobs)(delayed(simulate)(setup, *call) for call in calls)
+    calls = _drives(setups[0], drives, seed)
+    traces = Parallel(n_jobs=jobs)(
+        delayed(simulate)(setups[number % len(setups)], *call) for number, call in enumerate(calls)
+    )
     return cast(list[Trace], traces)
 
 
