@@ -1,23 +1,29 @@
-"""Measure every model on recorded demonstrations: the tables of docs/results.md.
+"""Measure every model on recorded demonstrations, over several choices of the held-out episodes.
 
     python scripts/real_demonstrations.py ../shared/demonstrations runs/real
 
-The first folder holds NumPy archives as `latentarm import` reads them; nothing is written there.
-It does what the commands in docs/results.md do, for every archive, model and state noise.
+The first folder holds NumPy archives as `latentarm import` reads them; nothing is written there. Every
+run is what `latentarm train --seeds 2 --seed SPLIT` and `latentarm evaluate` do. These are the tables of
+docs/results.md.
 """
 
 import sys
 from pathlib import Path
+from typing import cast
+
+import numpy as np
+from joblib import Parallel, delayed
 
 from latentarm.demonstrations.importing import import_to
 from latentarm.experiments.evaluating import evaluate_run
 from latentarm.experiments.training import TrainConfig, train_run
+from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.table import markdown_table
 from latentarm.robots.catalogue import load_robot
 from latentarm.types import Row
 
 MODELS = ("pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl")
-NOISES_RAD = (0.01, 0.1)
+SPLITS = range(5)
 SHOWN = (
     "error_percent_of_pca",
     "noise_free_error_percent_of_pca",
@@ -32,25 +38,35 @@ SHOWN = (
 )
 
 
-def measure(archive: Path, out: Path, noise_rad: float) -> list[Row]:
-    """Import once, then train and evaluate every model with five seeds."""
-    dataset = out / archive.stem
-    if not dataset.exists():
-        import_to(archive, dataset, load_robot("panda"))
-    rows: list[Row] = []
-    for model in MODELS:
-        run = out / f"{archive.stem}-{model}-{noise_rad:g}"
-        train_run(TrainConfig(dataset, model, run, seeds=5, state_noise_rad=noise_rad, progress=True))
-        rows += evaluate_run(run, run, seed=0)
-    return [row for row in rows if row.measure in SHOWN]
+def measure(dataset: Path, model: str, split: int) -> list[Row]:
+    """Train and evaluate two models of a kind on one split."""
+    run = dataset.with_name(f"{dataset.name}-{model}-{split}")
+    train_run(TrainConfig(dataset, model, run, seeds=2, seed=split))
+    return evaluate_run(run, run, seed=split)
+
+
+def over_splits(model: str, runs: list[list[Row]]) -> list[Row]:
+    """Mean and SD over splits of the figures, each of which is the mean of a split's two models."""
+    means = {
+        measure: [row.mean for run in runs for row in run if row.measure == measure] for measure in SHOWN
+    }
+    subject = Subject("evaluate", model=model)
+    known = {name: [value for value in values if value is not None] for name, values in means.items()}
+    return [summarise(subject, name, np.array(values)) for name, values in known.items()]
 
 
 def main(archives: Path, out: Path) -> None:
-    """Print one Markdown table per archive and noise."""
-    for noise_rad in NOISES_RAD:
-        for archive in sorted(archives.glob("*.npz")):
-            rows = measure(archive, out, noise_rad)
-            print(f"\n**{archive.stem}**, state noise {noise_rad:g} rad\n\n{markdown_table(rows)}")
+    """Print one Markdown table per archive."""
+    for archive in sorted(archives.glob("*.npz")):
+        dataset = out / archive.stem
+        import_to(archive, dataset, load_robot("panda"))
+        calls = [delayed(measure)(dataset, model, split) for model in MODELS for split in SPLITS]
+        results = cast(list[list[Row]], Parallel(n_jobs=2)(calls))
+        per_model = [results[index : index + len(SPLITS)] for index in range(0, len(results), len(SPLITS))]
+        rows = [
+            row for model, runs in zip(MODELS, per_model, strict=True) for row in over_splits(model, runs)
+        ]
+        print(f"\n**{archive.stem}**\n\n{markdown_table(rows)}", flush=True)
 
 
 if __name__ == "__main__":

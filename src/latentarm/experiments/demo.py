@@ -41,6 +41,9 @@ from latentarm.types import Row
 MODELS = ("cvae", "scl")
 TIME_LIMIT_S = 60.0
 
+STATE_NOISE_RAD = 0.05
+"""A driven arm leaves the demonstrated states: with this noise in training the decoder has been there."""
+
 
 @dataclass(frozen=True)
 class DemoConfig:
@@ -66,7 +69,7 @@ class DemoConfig:
     bars: bool = False
     episodes: int = 60
     seeds: int = 3
-    epochs: int = 8
+    epochs: int = 16
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
@@ -119,6 +122,7 @@ def _train(config: DemoConfig, model: str) -> list[Row]:
             out=run,
             seeds=config.seeds,
             seed=config.seed,
+            state_noise_rad=STATE_NOISE_RAD,
             epochs=config.epochs,
             progress=config.bars,
         )

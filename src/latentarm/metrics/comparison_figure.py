@@ -74,9 +74,10 @@ def _draw_measure(axes: "Axes", rows: Sequence[Row], series: Sequence[str]) -> N
             capsize=2.0,
             linewidth=1.2,
         )
-    axes.margins(x=0.12)  # room for a whole marker at either end
     low, high = axes.get_xlim()
-    axes.set_xlim(min(low, 0.0), max(high, 0.0))
+    low, high = min(low, 0.0), max(high, 0.0)
+    room = 0.1 * (high - low)  # for a whole marker at either end
+    axes.set_xlim(low - room, high + room)
     axes.locator_params(axis="x", nbins=3)
     # "0.01", not "0.010": three numbers have to fit under a narrow panel.
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
