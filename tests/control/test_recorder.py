@@ -163,6 +163,39 @@ def test_what_is_no_journal_is_neither_written_nor_read(tmp_path):
     assert not (tmp_path / "absent.sqlite").exists()
 
 
+@pytest.mark.parametrize("tables", ["CREATE TABLE things (name)", "CREATE TABLE episodes (id, title)"])
+def test_another_program_s_database_of_the_same_version_is_left_as_it_is(tmp_path, tables):
+    path = tmp_path / "foreign.sqlite"
+    database = sqlite3.connect(path)
+    database.executescript(f"{tables}; PRAGMA user_version = 1;")
+    database.close()
+    before = path.read_bytes()
+    for use in (Recorder, read_journal):
+        with pytest.raises(UserError, match="not a journal"):
+            use(path)
+    assert path.read_bytes() == before
+
+
+def test_an_episode_that_lost_a_sample_never_becomes_complete(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header())
+    recorder.record(record(0))
+    other = sqlite3.connect(path, isolation_level=None)
+    other.execute("BEGIN IMMEDIATE")
+    with pytest.raises(UserError, match="locked"):
+        recorder.record(record(1))
+    other.execute("ROLLBACK")
+    other.close()
+    with pytest.raises(UserError, match="no episode"):
+        recorder.record(record(2))
+    with pytest.raises(UserError, match="no episode"):
+        recorder.end_episode()
+    recorder.close()
+    (episode,) = read_journal(path)
+    assert (episode.complete, len(episode.records)) == (False, 1)
+
+
 def test_a_damaged_journal_is_one_sentence(tmp_path):
     path = tmp_path / "drive.sqlite"
     write(path, [200])

@@ -31,6 +31,11 @@ CREATE TABLE samples (
 ) WITHOUT ROWID;
 """
 
+_COLUMNS = {
+    "episodes": ("id", "about", "complete"),
+    "samples": ("episode", "number", "figures", "stop", "limited_by"),
+}
+
 
 @final
 @dataclass(frozen=True)
@@ -139,8 +144,8 @@ class Recorder:
         """Write one step; it is acknowledged when this returns.
 
         Raises:
-            UserError: the journal cannot be written (the disk is full), or no episode is under way, or
-                the record's shapes differ from those before.
+            UserError: the journal cannot be written (the disk is full; the episode then stays incomplete), or
+                no episode is under way, or the record's shapes differ from those before.
         """
         if self._episode is None:
             raise UserError(f"{self._path} has no episode under way: begin one before recording.")
@@ -159,6 +164,8 @@ class Recorder:
         try:
             self._database.execute("INSERT INTO samples VALUES (?, ?, ?, ?, ?)", row)
         except sqlite3.Error as error:
+            # A sample is missing now: this episode can no longer become complete.
+            self._episode = None
             raise _unwritable(self._path, error) from error
         self._widths = widths
         self._number += 1
@@ -212,7 +219,13 @@ def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: 
     """
     (version,) = database.execute("PRAGMA user_version").fetchone()
     (tables,) = database.execute("SELECT count(*) FROM sqlite_master").fetchone()
-    if version == SCHEMA_VERSION or (may_be_empty and version == 0 and tables == 0):
+    if may_be_empty and version == 0 and tables == 0:
+        return
+    # Other programs count their versions too: the tables tell whose file it is.
+    if version == SCHEMA_VERSION and all(
+        [column for _, column, *_ in database.execute(f"PRAGMA table_info({table})")] == list(columns)
+        for table, columns in _COLUMNS.items()
+    ):
         return
     raise UserError(f"{path} is not a journal of this program's version: choose another file.")
 
