@@ -75,8 +75,11 @@ class InputPort(InputSource):
             sequence: number of this input; must grow.
 
         Returns:
-            Whether it was taken; False where it is stale.
+            Whether it was taken; False where it is stale, or its nonce or number is none.
         """
+        # A NaN would compare with nothing, and every number after it would seem to grow.
+        if not _is_stamp(nonce, sequence):
+            return False
         u = np.array(given.u)
         with self._lock:
             now_s = self._clock.now_s()
@@ -99,3 +102,7 @@ class InputPort(InputSource):
             if now_s - self._issued_s > NONCE_LIFE_S:
                 age_s = math.inf
             return Input(self._u, switch), max(age_s, 0.0)
+
+
+def _is_stamp(nonce: object, sequence: object) -> bool:
+    return isinstance(nonce, str) and isinstance(sequence, int)

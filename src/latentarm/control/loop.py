@@ -19,9 +19,9 @@ class ControlLoop:
     """Runs a `Step` at a fixed rate, in the thread that calls `run`.
 
     Tick k is due at ``start + k period``: a late tick does not shift the ones after it. A tick that begins
-    after the last command has run out finds an arm that has already stopped by itself: the watchdog
-    stops it for good, until the person enables it again. Ticks that were missed altogether are
-    skipped, never caught up.
+    after the last command has run out, or is done only then, finds an arm that has already stopped by
+    itself: the watchdog stops it for good, until the person enables it again. Ticks that were missed
+    altogether are skipped, never caught up.
 
     The command is sent before observers see the record, so that a slow recorder costs slack, not lag.
 
@@ -57,6 +57,7 @@ class ControlLoop:
         self._stop_reasons: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._enable_asked = threading.Event()
         self._refusal: Stop | None = None
+        self._ending = False
 
     @property
     def refusal(self) -> Stop | None:
@@ -96,6 +97,7 @@ class ControlLoop:
         self._step.reset(self._arm.state())
         self._start_s = self._sent_s = self._clock.now_s()
         self._next = 0
+        self._ending = False
         try:
             while not self._finished.is_set() and (ticks is None or self._log.ticks < ticks):
                 self._tick(self._observers)
@@ -109,29 +111,52 @@ class ControlLoop:
         return self.statistics()
 
     def _come_to_rest(self, observers: Sequence[Callable[[StepRecord], None]]) -> None:
+        self._ending = True
         self._step.stop("The loop has ended.")
         while not self._step.at_rest:
             self._tick(observers)
+
+    def _ran_out(self, now_s: float) -> bool:
+        """Whether the last command has run out; if so, the arm stays stopped."""
+        if now_s - self._sent_s <= self._step.hold_s:
+            return False
+        self._arm.stop()
+        self._step.halted("The loop was too late; the arm has stopped by itself.")
+        return True
+
+    def _enabled(self, stopped: bool) -> Stop | None:
+        """Enable the arm, unless somebody has stopped it in this very tick or the loop is ending."""
+        if self._ending:
+            return Stop("The loop is ending.")
+        if stopped:
+            return Stop("The arm was stopped at the same moment: enable it again.")
+        return self._step.enable()
 
     def _tick(self, observers: Sequence[Callable[[StepRecord], None]]) -> None:
         """Wait for the next tick, and do it."""
         due_s = self._start_s + self._next * self._period_s
         self._clock.wait_until(due_s)
         now_s = self._clock.now_s()
-        overrun = now_s - self._sent_s > self._step.hold_s
-        if overrun:
-            self._arm.stop()
-            self._step.halted("The loop was too late; the arm has stopped by itself.")
+        overrun = self._ran_out(now_s)
+        stopped = False
         while not self._stop_reasons.empty():
             self._step.stop(self._stop_reasons.get())
+            stopped = True
         given, age_s = self._source.latest(now_s)
         record = self._step(given, age_s, self._arm.state(), now_s)
+        ready_s = self._clock.now_s()
+        if not overrun and self._ran_out(ready_s):
+            # The step itself took too long: what it decided is about an arm that was still moving.
+            overrun = True
+            record = self._step(given, math.inf, self._arm.state(), ready_s)
+            ready_s = self._clock.now_s()
+        # Counted from before it is sent: the arm's own count begins no earlier.
+        self._sent_s = ready_s
         self._arm.send(record.command)
-        self._sent_s = self._clock.now_s()
-        self._log.add(now_s - due_s, self._sent_s - due_s, overrun=overrun)
+        self._log.add(now_s - due_s, self._clock.now_s() - due_s, overrun=overrun)
         if self._enable_asked.is_set():
             self._enable_asked.clear()
-            self._refusal = self._step.enable()
+            self._refusal = self._enabled(stopped)
         for observe in observers:
             observe(record)
         # The next tick whose due time lies ahead.

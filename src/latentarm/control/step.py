@@ -42,7 +42,8 @@ class Step:
         step.enable()
 
     An input within the dead zone wants no motion, whatever the decoder makes of zero, and no help.
-    No input of any kind and no failing controller raises an exception here.
+    No input of any kind and no failing controller raises an exception here. Controllers and observers see
+    arrays that they cannot write to: what they are shown is what the safety filters go by.
 
     Args:
         robot: the arm.
@@ -85,8 +86,8 @@ class Step:
         self._hold_s = self._stack.bounds.hold_s
         # The belief counts evidence per its own period, whatever the loop's.
         self._ticks_per_update = 1 if belief is None else max(1, round(belief.period_s / dt_s))
-        self._no_motion = np.zeros(robot.dof)
-        self._no_input = np.zeros(controller.input_dim)
+        self._no_motion = _sealed(np.zeros(robot.dof))
+        self._no_input = _sealed(np.zeros(controller.input_dim))
         self._engagement = Engagement()
         self._mode = 0
         self._switch_held = False
@@ -178,6 +179,7 @@ class Step:
         Returns:
             What was read and decided; its command is what the arm must be sent.
         """
+        self._stack.tick(time_s)
         q = self._joint_positions(state)
         if q is None:
             self.stop("The arm's joint positions are not numbers near its limits.")
@@ -188,7 +190,7 @@ class Step:
             return self._record(time_s, q, Passed(self._stack.stop()))
         neutral = u is self._no_input
         self._engagement.saw(neutral)
-        self._switch(given.switch_mode)
+        self._switch(bool(given.switch_mode))
         if self._engagement.stopped is not None:
             return self._record(time_s, q, Passed(self._stack.stop()))
         if neutral:
@@ -211,7 +213,7 @@ class Step:
                     wanted = blend(a_h, a_r, alpha)
                     self._update_belief(u, context)
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
-            stop = Stop(f"The controller failed ({type(error).__name__}: {error}).")
+            stop = Stop(f"The controller failed ({_said(error)}).")
             return self._record(time_s, q, self._refused(stop), u)
         if z.shape != u.shape or a_h.shape != q.shape:
             stop = Stop("The controller gave a latent action or an action of the wrong size.")
@@ -243,7 +245,7 @@ class Step:
         updated = self._belief_rule.update(context.belief, u, context.state, action_of)
         if not np.isfinite(updated).all():
             raise ValueError("the belief is not finite")
-        self._belief = updated
+        self._belief = _sealed(updated)
 
     def _passed(self, wanted: FloatArray, q: FloatArray, input_age_s: float) -> Passed:
         """Through the safety stack; a refusal disengages."""
@@ -258,13 +260,14 @@ class Step:
 
     def _usable(self, given: Input, input_age_s: float) -> FloatArray | Stop:
         """The input as (d,) floats in [-1, 1], zero within the dead zone, or why it cannot be used."""
-        stale = Freshness.refusal(input_age_s, self._config.input_timeout_s)
-        if stale is not None:
-            return stale
         try:
+            stale = Freshness.refusal(input_age_s, self._config.input_timeout_s)
+            if stale is not None:
+                return stale
             u = np.asarray(given.u)
-        except ValueError:  # a ragged list
-            u = np.asarray(None)
+            bool(given.switch_mode)
+        except Exception as error:  # noqa: BLE001 - a ragged list, None, whatever an interface gives
+            return Stop(f"The input cannot be read ({_said(error)}).")
         if u.shape != self._no_input.shape or u.dtype.kind not in "iuf":
             return Stop(f"The input must be {len(self._no_input)} numbers.")
         values = [float(value) for value in u.tolist()]
@@ -273,30 +276,33 @@ class Step:
             return Stop("The input is outside [-1, 1].")
         if math.hypot(*values) <= self._config.dead_zone:
             return self._no_input
-        return np.array([min(max(value, -1.0), 1.0) for value in values])
+        return _sealed(np.array([min(max(value, -1.0), 1.0) for value in values]))
 
     def _joint_positions(self, state: FloatArray) -> FloatArray | None:
         """The state as a private copy of (n,) floats, or None where it is not that."""
-        q = np.asarray(state)
+        try:
+            q = np.asarray(state)
+        except Exception:  # noqa: BLE001 - a ragged list, whatever a driver gives
+            return None
         if q.shape != (self._dof,) or q.dtype.kind not in "iuf":
             return None
         # Written so that a value that is not a number fails too.
         for low, value, high in zip(self._lowest, q.tolist(), self._highest, strict=True):
             if not low <= value <= high:
                 return None
-        return q.astype(np.float64)
+        return _sealed(q.astype(np.float64))
 
     def _switch(self, wanted: bool) -> None:
         """Next mode when the switch goes down; holding it changes nothing more."""
         if wanted and not self._switch_held:
             self._mode = (self._mode + 1) % len(self._controller.modes)
-        self._switch_held = bool(wanted)
+        self._switch_held = wanted
 
     def _first_belief(self) -> FloatArray:
         if self._belief_rule is not None:
-            return self._belief_rule.initial()
+            return _sealed(np.array(self._belief_rule.initial()))
         count = len(self._goals)
-        return np.full(count, 1.0 / count) if count else np.zeros(0)
+        return _sealed(np.full(count, 1.0 / count) if count else np.zeros(0))
 
     def _command(self, passed: Passed) -> Command:
         return Command(passed.velocity, self._hold_s, self._engagement.stopped, passed.limited_by)
@@ -317,3 +323,17 @@ class Step:
             mode=self._mode,
             command=self._command(passed),
         )
+
+
+def _sealed(array: FloatArray) -> FloatArray:
+    """The array itself, closed to writing."""
+    array.flags.writeable = False
+    return array
+
+
+def _said(error: Exception) -> str:
+    """What an error says, where it can say anything."""
+    try:
+        return f"{type(error).__name__}: {error}"
+    except Exception:  # noqa: BLE001 - an error that cannot even be printed
+        return type(error).__name__

@@ -54,6 +54,8 @@ class Bounds:
     """
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
+        if not _is_number(dt_s):
+            raise UserError(f"The loop's period must be a number of seconds, not {dt_s!r}.")
         if not (math.isfinite(dt_s) and 0.001 <= dt_s <= 0.05):
             raise UserError(
                 f"The loop's period is {dt_s} s: it must be from 0.001 to 0.05 s (1000 to 20 Hz)."
@@ -115,3 +117,7 @@ class Bounds:
         """All joints at full speed is the longest phase two, full deceleration the longest phase one."""
         settle = float((self.stop_acceleration / self.stop_jerk).max())
         return settle + self.brake(self.speed, np.zeros(self.dof)).ramp_s
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)

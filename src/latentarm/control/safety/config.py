@@ -2,11 +2,11 @@
 
 import math
 from dataclasses import dataclass, fields
-from typing import final
+from typing import cast, final
 
 import numpy as np
 
-from latentarm.control.safety.obstacles import checked_obstacle
+from latentarm.control.safety.obstacles import as_array, checked_obstacle
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.types import FloatArray
@@ -30,7 +30,7 @@ class Workspace:
 
     def __post_init__(self) -> None:
         for name in ("lower", "upper"):
-            given = np.asarray(getattr(self, name))
+            given = as_array(getattr(self, name))
             if given.shape != (3,) or given.dtype.kind not in "iuf" or not np.isfinite(given).all():
                 raise UserError(f"The workspace's {name} corner must be three finite numbers in m.")
             value = given.astype(np.float64)
@@ -91,7 +91,8 @@ class SafetyConfig:
                 "The safety limit stop_fraction must be at least acceleration_fraction and jerk_fraction:"
                 " a stop may not be softer than ordinary motion."
             )
-        object.__setattr__(self, "obstacles", tuple(checked_obstacle(item) for item in self.obstacles))
+        _check_workspace(self.workspace)
+        object.__setattr__(self, "obstacles", _checked_obstacles(self.obstacles))
 
 
 _RANGES: dict[str, tuple[float, float, str]] = {
@@ -115,9 +116,23 @@ def _figure(name: str, value: object) -> float:
     lowest, highest, unit = _RANGES[name]
     if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
         raise UserError(f"The safety limit {name} must be a number, not {value!r}.")
-    figure = float(value)
+    try:
+        figure = float(value)
+    except OverflowError:
+        figure = math.inf
     inside = lowest <= figure <= highest if name in _MAY_TOUCH else lowest < figure <= highest
     if not math.isfinite(figure) or not inside:
         bounds = f"{'at least' if name in _MAY_TOUCH else 'above'} {lowest:g} and at most {highest:g} {unit}"
         raise UserError(f"The safety limit {name} is {figure:g}: it must be {bounds}.")
     return figure
+
+
+def _check_workspace(value: object) -> None:
+    if value is not None and not isinstance(value, Workspace):
+        raise UserError("The safety limit workspace must be a Workspace, or None for anywhere.")
+
+
+def _checked_obstacles(value: object) -> tuple[Obstacle, ...]:
+    if not isinstance(value, tuple | list):
+        raise UserError("The safety limit obstacles must be a tuple of obstacles.")
+    return tuple(checked_obstacle(item) for item in cast("tuple[object, ...]", value))

@@ -1,8 +1,10 @@
 """Obstacles as the safety filters take them: checked, and the usual ones by name."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
@@ -23,13 +25,16 @@ def table(height: float) -> HalfSpace:
     return plane
 
 
-def checked_obstacle(obstacle: Obstacle) -> Obstacle:
+def checked_obstacle(obstacle: object) -> Obstacle:
     """The obstacle with float arrays, or a sentence about what is wrong with it.
 
     Raises:
         UserError: a figure is not finite or absurd, a size is not positive, a normal is not of unit
             length, or a rotation is not one.
     """
+    # What has no case below would be left out in silence.
+    if not isinstance(obstacle, Obstacle):
+        raise UserError(f"{obstacle!r} is no obstacle: use HalfSpace, Sphere, Capsule or Box.")
     name = obstacle.name
     match obstacle:
         case HalfSpace():
@@ -61,8 +66,16 @@ def checked_obstacle(obstacle: Obstacle) -> Obstacle:
             )
 
 
+def as_array(value: object) -> NDArray[Any]:
+    """The value as an array; of objects where it is ragged."""
+    try:
+        return np.asarray(value)
+    except ValueError:
+        return np.asarray(None)
+
+
 def _numbers(name: str, field: str, value: FloatArray, shape: tuple[int, ...]) -> FloatArray:
-    given = np.asarray(value)
+    given = as_array(value)
     if given.shape != shape or given.dtype.kind not in "iuf" or not np.isfinite(given).all():
         count = "×".join(map(str, shape))
         raise UserError(f"The obstacle {name!r} needs {count} finite numbers as its {field}.")

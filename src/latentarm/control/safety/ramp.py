@@ -3,7 +3,7 @@
 from typing import final
 
 import numpy as np
-from ruckig import ControlInterface, InputParameter, Result, Ruckig, Synchronization, Trajectory
+from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Synchronization, Trajectory
 
 from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.filter import SafetyFilter, Situation
@@ -59,7 +59,11 @@ class Ramp(SafetyFilter):
         wanted.current_velocity = velocity.tolist()
         wanted.current_acceleration = acceleration.tolist()
         wanted.target_velocity = target.tolist()
-        result = self._generator.calculate(wanted, self._trajectory)
+        try:
+            result = self._generator.calculate(wanted, self._trajectory)
+        except RuckigError:
+            # It happens in the middle of a stop, whose acceleration is above that of ordinary motion.
+            result = Result.Error
         if result not in (Result.Working, Result.Finished):
             return Stop("No smooth way to the wanted velocity was found.")
         _, velocities, accelerations = self._trajectory.at_time(self._dt_s)

@@ -71,10 +71,14 @@ class SafetyStack:
         self._ramp = Ramp(self.bounds)
         self._guard = Guard()
         self._rest = np.zeros(robot.dof)
+        # What leaves is also what the next tick goes by: nobody may write to it.
+        self._rest.flags.writeable = False
         self._velocity = self._rest
         self._acceleration = self._rest
         self._brake: Brake | None = None
-        self._braking_s = 0.0
+        self._brake_ticks = 0
+        self._brake_began_s = 0.0
+        self._now_s = 0.0
 
     @property
     def at_rest(self) -> bool:
@@ -85,6 +89,14 @@ class SafetyStack:
         """Begin anew from an arm that stands still."""
         self._velocity = self._acceleration = self._rest
         self._brake = None
+
+    def tick(self, time_s: float) -> None:
+        """Take note of the time, for a stop that is under way when ticks come late.
+
+        Args:
+            time_s: the loop's clock, s.
+        """
+        self._now_s = time_s
 
     def command(self, wanted: FloatArray, state: FloatArray, input_age_s: float) -> Passed:
         """The next command.
@@ -108,10 +120,13 @@ class SafetyStack:
         for target in (shaped, self._rest):
             ramped = self._ramp.ramped(target, self._velocity, self._acceleration)
             if isinstance(ramped, Stop):
-                return Passed(self.stop(), (self._ramp.name,), ramped)
+                if self._ramp.name not in limited_by:
+                    limited_by.append(self._ramp.name)
+                continue
             velocity, acceleration = ramped
             objection = self._guard.objection(velocity, self.bounds.brake(velocity, acceleration), situation)
             if objection is None:
+                velocity.flags.writeable = False
                 self._velocity, self._acceleration = velocity, acceleration
                 self._brake = None
                 if largest(np.abs(velocity - shaped)) > _SAME_RAD_S:
@@ -147,12 +162,17 @@ class SafetyStack:
     def stop(self) -> FloatArray:
         """Begin the proven stop, or go on with it.
 
+        It was proven to go on in real time, so a late tick takes up the ramp where it should be by now.
+
         Returns:
             (n,), the next velocity, rad/s.
         """
         if self._brake is None:
             self._brake = self.bounds.brake(self._velocity, self._acceleration)
-            self._braking_s = 0.0
-        self._braking_s += self.bounds.dt_s
-        self._velocity, self._acceleration = self._brake.at(self._braking_s)
+            self._brake_ticks, self._brake_began_s = 0, self._now_s
+        self._brake_ticks += 1
+        dt_s = self.bounds.dt_s
+        braking_s = max(self._brake_ticks * dt_s, self._now_s - self._brake_began_s + dt_s)
+        self._velocity, self._acceleration = self._brake.at(braking_s)
+        self._velocity.flags.writeable = False
         return self._velocity
