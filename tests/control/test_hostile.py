@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.input_port import InputPort, InputSource
@@ -196,6 +197,32 @@ def test_a_stop_wins_over_an_enable_of_the_same_tick(arm, scripted):
     parts.loop.run(ticks=80)
     assert "same moment" in parts.loop.refusal.reason
     assert not any(record.command.velocity.any() for record in parts.records[60:])
+
+
+def test_an_arm_that_several_links_are_wedged_with_can_be_backed_out(arm, scripted, oracle):
+    # At home hand, wrist and forearm are all inside this ball, and want out in different directions.
+    rng = np.random.default_rng(4)
+    np.linalg.qr(rng.normal(size=(3, 3)))
+    centre = arm.chain.forward(arm.home).position + rng.normal(size=3) * 0.03
+    measure = oracle(arm, (Sphere("ball", centre, rng.uniform(0.03, 0.1)),))
+    depth = measure.clearance(arm.home)
+    assert depth < -0.05
+    controller = scripted(np.zeros((1, 7)))
+    step = Step(arm, controller, SafetyConfig(obstacles=measure.obstacles), dt_s=DT)
+    step(NEUTRAL, 0.0, arm.home, 0.0)
+    assert step.enable() is None
+    # The way in which what is too near gets further away fastest, all of it at once.
+    q, nudge = arm.home, 1e-6 * np.eye(7)
+    near = measure.distances(q) < 0.02
+    slopes = ((measure.distances(q + nudge) - measure.distances(q - nudge)) / 2e-6)[:, near].T
+    slopes = slopes[np.abs(slopes).max(axis=1) > 1e-6]
+    most = np.hstack([-slopes, np.ones((len(slopes), 1))])
+    out = linprog([0.0] * 7 + [-1.0], most, np.zeros(len(slopes)), bounds=[(-1, 1)] * 7 + [(None, None)])
+    controller.matrix = out.x[None, :7]
+    for tick in range(200):
+        q = q + step(PUSH, 0.0, q, tick * DT).command.velocity * DT
+        assert measure.clearance(q) >= depth - 1e-8
+    assert measure.clearance(q) > depth + 0.01
 
 
 @pytest.mark.parametrize("sequence", [math.nan, math.inf, "7", None, 8.0])

@@ -51,7 +51,10 @@ def slide(velocity: FloatArray, rows: FloatArray, floor: FloatArray, passed: Boo
     if slid is velocity:
         return velocity
     if slid @ velocity <= 0.0 or (rate[passed] < 0.0).any():
-        return np.zeros_like(velocity)
+        # Wedged in between several things: what was asked for may still be the narrow way out.
+        slid, rate = velocity, rows @ velocity
+        if (rate[passed] <= 0.0).any():
+            return np.zeros_like(velocity)
     share = min(1.0, math.sqrt((velocity @ velocity) / (slid @ slid)))
     falling = rate < np.minimum(floor, -1e-12)
     if falling.any():
