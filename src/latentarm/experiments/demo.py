@@ -165,8 +165,8 @@ def _write(
         out / "results.md",
         "# What the demo measured\n\n"
         f"A simulated operator drove a simulated Panda {count} times per column ({config.drives} to each of"
-        f" {len(task.goals)} goals; the {config.seeds} trained models of a kind take turns), seed {config.seed};"
-        " mean ± SD over the drives, failed ones included"
+        f" {len(task.goals)} goals; the {config.seeds} trained models of a kind take turns),"
+        f" seed {config.seed}; mean ± SD over the drives, failed ones included"
         f" (they end after {TIME_LIMIT_S:g} s). No person took part.\n\n"
         f"{markdown_table(rows)}\n"
         f"The figures show the {MODELS[0]}. ![Paths of the tool](paths.png)\n\n"
