@@ -1,0 +1,16 @@
+"""The tasks of section 8.1 by name."""
+
+from typing import Final
+
+from latentarm.tasks.planar.circle import Circle
+from latentarm.tasks.planar.motion import PlanarMotion
+from latentarm.tasks.planar.reach import ReachRegion
+from latentarm.tasks.planar.rotate import Rotate
+from latentarm.tasks.planar.sine import Sine
+
+MOTIONS: Final[dict[str, type[PlanarMotion]]] = {
+    "sine": Sine,
+    "rotate": Rotate,
+    "circle": Circle,
+    "reach": ReachRegion,
+}

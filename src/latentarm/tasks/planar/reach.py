@@ -1,0 +1,90 @@
+"""Reach: one arm goes from a start to somewhere in a goal region (1-D latent action).
+
+Straight lines at constant tool speed, from anywhere on the start side to anywhere in the goal region: where
+to, not how fast, is all that the latent action has to say. Starts are spread as widely as goals are, so that
+at every place on the way some demonstrations bear left and others right; were all of them to begin in one
+point, the place alone would tell the rest of the way.
+"""
+
+from functools import cached_property
+from typing import final
+
+import numpy as np
+
+from latentarm.robots.planar import planar
+from latentarm.robots.robot import Robot
+from latentarm.tasks.planar.motion import POSTURE_SPREAD_RAD, PlanarMotion
+from latentarm.tasks.planar.resolved_rate import curled, follow, plane_point
+from latentarm.types import Demonstrations, FloatArray
+
+DISTANCE_M = 0.3
+"""From the middle of the starts to the middle of the goal region, along x."""
+WIDTH_M = 0.2
+"""Of the starts and of the goal region, along y."""
+DURATION_S = 2.0
+"""Of every demonstration: the tool moves at about 0.15 m/s."""
+DEPTH_M = 0.05
+"""Of the goal region, along x."""
+
+
+@final
+class ReachRegion(PlanarMotion):
+    """From a start to any place of a goal region."""
+
+    @property
+    def name(self) -> str:
+        """``reach``."""
+        return "reach"
+
+    @cached_property
+    def robot(self) -> Robot:
+        """One planar arm of 5 links."""
+        return planar(5)
+
+    @property
+    def latent_dim(self) -> int:
+        """1: to which part of the region."""
+        return 1
+
+    @property
+    def guides(self) -> tuple[FloatArray, ...]:
+        """The outline of the goal region."""
+        corner = np.array([[-1, -1], [-1, 1], [1, 1], [1, -1], [-1, -1]])
+        return (self._region + corner * (DEPTH_M / 2, WIDTH_M / 2),)
+
+    def sample_goals(self, count: int, rng: np.random.Generator) -> FloatArray:
+        """Places (count, 2) in the goal region, m."""
+        offset = rng.uniform(-0.5, 0.5, (count, 2)) * (DEPTH_M, WIDTH_M)
+        return self._region + offset
+
+    def sample_starts(self, count: int, rng: np.random.Generator) -> FloatArray:
+        """Places (count, 2) to begin from, m."""
+        along_side = rng.uniform(-0.5, 0.5, count) * WIDTH_M
+        return self._middle + np.stack([np.full(count, -DISTANCE_M / 2), along_side], axis=-1)
+
+    def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
+        """Straight from a start to a place in the goal region.
+
+        Raises:
+            UserError: fewer than one episode is asked for.
+        """
+        count = max(episodes, 0)
+        start, goal = self.sample_starts(count, rng), self.sample_goals(count, rng)
+        posture = curled(self.robot) + rng.normal(0.0, POSTURE_SPREAD_RAD, (count, self.robot.dof))
+        return follow(
+            self.robot,
+            posture,
+            lambda time: start + (goal - start) * time / DURATION_S,
+            lambda state: plane_point(self.robot, state),
+            lambda state: self.robot.chain.jacobian(state)[..., :2, :],
+            DURATION_S,
+            "reach into the goal region",
+        )
+
+    @property
+    def _middle(self) -> FloatArray:
+        return plane_point(self.robot, curled(self.robot))
+
+    @property
+    def _region(self) -> FloatArray:
+        return self._middle + (DISTANCE_M / 2, 0.0)
