@@ -4,13 +4,11 @@ The circles share a centre and differ in radius. A demonstration goes in strokes
 straight in and out to another, in turn, each at its own speed and for its own time.
 """
 
-from functools import cached_property
 from typing import final
 
 import numpy as np
 
 from latentarm.robots.planar import planar
-from latentarm.robots.robot import Robot
 from latentarm.tasks.planar.motion import BACK_AND_FORTH_S, POSTURE_SPREAD_RAD, STEP_S, PlanarMotion
 from latentarm.tasks.planar.resolved_rate import curled, follow, plane_point
 from latentarm.types import Demonstrations, FloatArray
@@ -28,15 +26,13 @@ _STEPS = round(BACK_AND_FORTH_S / STEP_S)
 class Circle(PlanarMotion):
     """Along circles about the nominal place of the tool, and between them."""
 
+    def __init__(self) -> None:
+        super().__init__(planar(5))
+
     @property
     def name(self) -> str:
         """``circle``."""
         return "circle"
-
-    @cached_property
-    def robot(self) -> Robot:
-        """One planar arm of 5 links."""
-        return planar(5)
 
     @property
     def latent_dim(self) -> int:

@@ -32,17 +32,19 @@ BEARING_RAD = 0.75 * np.pi
 
 
 class PlanarMotion(ABC):
-    """A continuous motion to be demonstrated and learned, without discrete goals."""
+    """A continuous motion to be demonstrated and learned, without discrete goals.
+
+    Attributes:
+        robot: the arm, or the two arms.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
 
     @property
     @abstractmethod
     def name(self) -> str:
         """Short name, in snake_case."""
-
-    @property
-    @abstractmethod
-    def robot(self) -> Robot:
-        """The arm or the two arms."""
 
     @property
     @abstractmethod

@@ -6,13 +6,11 @@ at every place on the way some demonstrations bear left and others right; were a
 point, the place alone would tell the rest of the way.
 """
 
-from functools import cached_property
 from typing import final
 
 import numpy as np
 
 from latentarm.robots.planar import planar
-from latentarm.robots.robot import Robot
 from latentarm.tasks.planar.motion import POSTURE_SPREAD_RAD, PlanarMotion
 from latentarm.tasks.planar.resolved_rate import curled, follow, plane_point
 from latentarm.types import Demonstrations, FloatArray
@@ -31,15 +29,13 @@ DEPTH_M = 0.05
 class ReachRegion(PlanarMotion):
     """From a start to any place of a goal region."""
 
+    def __init__(self) -> None:
+        super().__init__(planar(5))
+
     @property
     def name(self) -> str:
         """``reach``."""
         return "reach"
-
-    @cached_property
-    def robot(self) -> Robot:
-        """One planar arm of 5 links."""
-        return planar(5)
 
     @property
     def latent_dim(self) -> int:
@@ -87,4 +83,4 @@ class ReachRegion(PlanarMotion):
 
     @property
     def _region(self) -> FloatArray:
-        return self._middle + (DISTANCE_M / 2, 0.0)
+        return self._middle + np.array([DISTANCE_M / 2, 0.0])

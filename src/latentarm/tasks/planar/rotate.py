@@ -6,7 +6,6 @@ three constraints for each arm of 5 joints); the grippers lead away from the bas
 The nominal posture is one from which a turn of the box asks for about the same joint speed everywhere.
 """
 
-from functools import cached_property
 from typing import final
 
 import numpy as np
@@ -35,15 +34,13 @@ _PLANE = (0, 1, 5)
 class Rotate(PlanarMotion):
     """Turn a box that both arms hold."""
 
+    def __init__(self) -> None:
+        super().__init__(planar(5, arms=2))
+
     @property
     def name(self) -> str:
         """``rotate``."""
         return "rotate"
-
-    @cached_property
-    def robot(self) -> Robot:
-        """Two planar arms of 5 links each."""
-        return planar(5, arms=2)
 
     @property
     def latent_dim(self) -> int:

@@ -4,13 +4,11 @@ The wave has three half-periods and a slope of up to 40 degrees, so that no sing
 of it, and lies about the tool's place in the nominal posture. Speeds vary within and between demonstrations.
 """
 
-from functools import cached_property
 from typing import final
 
 import numpy as np
 
 from latentarm.robots.planar import planar
-from latentarm.robots.robot import Robot
 from latentarm.tasks.planar.motion import BACK_AND_FORTH_S, POSTURE_SPREAD_RAD, PlanarMotion
 from latentarm.tasks.planar.resolved_rate import curled, follow, plane_point
 from latentarm.types import Demonstrations, FloatArray
@@ -26,15 +24,13 @@ SWING_RAD_S = (0.6, 1.2)
 class Sine(PlanarMotion):
     """Along ``y = A sin(2 pi x / wavelength)`` about the nominal place of the tool."""
 
+    def __init__(self) -> None:
+        super().__init__(planar(5))
+
     @property
     def name(self) -> str:
         """``sine``."""
         return "sine"
-
-    @cached_property
-    def robot(self) -> Robot:
-        """One planar arm of 5 links."""
-        return planar(5)
 
     @property
     def latent_dim(self) -> int:
