@@ -1,4 +1,4 @@
-"""How large the study is: as in the paper, or small enough to try."""
+"""How large the study is."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -6,24 +6,23 @@ from typing import Final
 
 @dataclass(frozen=True)
 class Preset:
-    """Sizes of the study of section 8.1.
+    """Sizes of the study.
 
     Attributes:
-        name: what the user calls it.
-        episodes: demonstrations to learn from, each of 100 state-action pairs; a fifth of them says which
-            epoch was best. The paper has 10000 pairs.
-        test_episodes: further demonstrations to measure on.
-        seeds: models of each kind.
-        epochs: passes over the training pairs.
-        batch_size: pairs per step of the training.
-        hidden: units of each hidden layer, of encoder and decoder.
-        kl_weight: lambda of equations 7 and 8 for the variational models; the paper says only that it is
-            below 1.
-        reach_pairs: start-goal pairs for controllability.
-        reach_goals: goals in the region of the reach task.
-        states: states for consistency, scalability and angles.
-        grid: values of z in [-1, 1] at each of these states.
-        noises_rad: SDs of the noise on states; the first, 0, is the study as the paper has it.
+        name: what it is called on the command line.
+        episodes: demonstrations to train on, of 100 pairs each; the paper trains on 10000 pairs.
+        test_episodes: further demonstrations, that every figure is taken on.
+        seeds: models of each kind; the paper's figures are over 10.
+        epochs: passes over the training pairs, at most.
+        batch_size: pairs per step.
+        hidden: units of each hidden layer; the paper leaves them open.
+        kl_weight: lambda of equations 7 and 8; the paper says below 1.
+        reach_pairs: pairs of start and goal states by which controllability is measured; 1000 in the paper.
+        reach_goals: goals in the region that reach is driven to.
+        states: along the task, from which the effects of a grid of latent actions are measured; 25 in the
+            paper.
+        grid: latent actions in [-1, 1] at each of them.
+        noises_rad: standard deviations of the noise on states, rad; 0 is the paper's setting.
     """
 
     name: str
@@ -31,7 +30,7 @@ class Preset:
     test_episodes: int = 20
     seeds: int = 10
     epochs: int = 80
-    batch_size: int = 128
+    batch_size: int = 100
     hidden: tuple[int, ...] = (64, 64)
     kl_weight: float = 0.001
     reach_pairs: int = 1000
@@ -44,13 +43,6 @@ class Preset:
 PRESETS: Final[dict[str, Preset]] = {
     "paper": Preset("paper"),
     "smoke": Preset(
-        "smoke",
-        episodes=10,
-        test_episodes=4,
-        seeds=2,
-        epochs=4,
-        hidden=(16, 16),
-        reach_pairs=20,
-        reach_goals=10,
+        "smoke", episodes=12, test_episodes=4, seeds=2, epochs=4, reach_pairs=20, reach_goals=5, states=9
     ),
 }
