@@ -20,6 +20,7 @@ NAMES: dict[str, str] = {
     "error_percent_of_pca": "error, of PCA's",
     "noise_free_error_percent_of_pca": "noise-free error, of PCA's",
     "controllability_m": "reaches goals to",
+    "controllability_percent_of_pca": "reaches goals to, of PCA's",
     "controllability_state_error": "joint error then",
     "start_distance_m": "distance at the start",
     "r2": "R², mean of axes",
@@ -32,7 +33,10 @@ NAMES: dict[str, str] = {
     "input_magnitude": "input magnitude",
     "mode_switches": "mode switches",
     "path_length": "path length",
+    "path_length_percent_of_vae": "path length, of the VAE's",
+    "path_over_straight": "path, over the straight way",
     "final_distance": "final distance",
+    "final_distance_percent_of_vae": "final distance, of the VAE's",
 }
 
 AXIS_NAMES: dict[str, str] = {"r2": "R²", "r2_local": "local R²"}
