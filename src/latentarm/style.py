@@ -19,13 +19,13 @@ class Look:
         label: its name as people read it.
         colour: hex colour of the Okabe-Ito palette (distinct for colour-blind readers).
         marker: matplotlib marker, so that the series is told apart in grey too.
-        dash: matplotlib line style.
+        dash: matplotlib line style, by name or as (offset, lengths of ink and gap in line widths).
     """
 
     label: str
     colour: str
     marker: str
-    dash: str
+    dash: str | tuple[float, tuple[float, ...]]
 
 
 LOOKS: dict[str, Look] = {
@@ -36,6 +36,7 @@ LOOKS: dict[str, Look] = {
     "cvae": Look("cVAE", "#009E73", "D", "-"),
     "cae_zero": Look("cAE, zero penalty", "#56B4E9", "P", "-."),
     "scl": Look("SCL", "#D55E00", "X", "-."),
+    "isometric": Look("isometric", "#000000", "*", (0.0, (6.0, 1.5, 1.5, 1.5, 1.5, 1.5))),
     "latent": Look("latent actions", "#0072B2", "o", "-"),
     "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),
     "end_effector": Look("mode switching", "#7f7f7f", "s", ":"),
@@ -43,6 +44,7 @@ LOOKS: dict[str, Look] = {
 
 FIGURE_DPI = 200
 COLUMN_MM = 85.0
+TWO_COLUMNS_MM = 175.0
 FONT_SIZE = 8.0
 SMALL_FONT_SIZE = 7.0
 MM_PER_INCH = 25.4
@@ -63,6 +65,24 @@ def tidy(axes: "Axes") -> None:
 def look_of(name: str) -> Look:
     """The look of a model or condition; a plain one under its own name where none is laid down."""
     return LOOKS.get(name, Look(name, "#000000", "o", "-"))
+
+
+def shade(colour: str, depth: float) -> str:
+    """A model's colour from pale to dark, to grade one series without another colour.
+
+    Args:
+        colour: hex colour.
+        depth: from -1, mostly white, to 1, a little darker than the colour itself.
+
+    Returns:
+        Hex colour.
+    """
+    from matplotlib.colors import to_hex, to_rgb
+
+    white = 0.4 - (0.4 if depth > 0 else 0.35) * depth
+    black = max(0.25 * depth, 0.0)
+    red, green, blue = (white + (1.0 - white - black) * channel for channel in to_rgb(colour))
+    return to_hex((red, green, blue))
 
 
 def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> "Figure":
