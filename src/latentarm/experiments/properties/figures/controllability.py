@@ -1,0 +1,48 @@
+"""Figure: how near latent actions alone bring the tool to its goal, on every task."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+from latentarm.experiments.properties.figures.bars import draw_bars, log_axis
+from latentarm.experiments.properties.figures.panels import in_mm, points, title
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure
+from latentarm.types import Row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ROW_MM: Final = 52.0
+ACROSS: Final = 2
+
+
+def measure_of(task: str) -> str:
+    """The measure that says so: on the reach task goals are places, elsewhere states."""
+    return "final_distance" if task == "reach" else "controllability_m"
+
+
+def controllability_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure":
+    """Least distance of the tool from its goal, one panel per task, with the distance at the start.
+
+    Args:
+        rows: of the study.
+        tasks: those that were run.
+    """
+    down = -(-len(tasks) // ACROSS)
+    figure = new_figure(down * ROW_MM + 6.0, TWO_COLUMNS_MM)
+    figure.suptitle(
+        "How near simulated arms come to their goals by latent actions alone, mean ± SD over seeds",
+        fontsize=FONT_SIZE,
+    )
+    panels = list(figure.subplots(down, ACROSS, squeeze=False).flat)
+    for axes, task in zip(panels, tasks, strict=False):
+        distances = in_mm(points(rows, task, measure_of(task)))
+        starts = in_mm(points(rows, task, "start_distance_m"))
+        left = log_axis(axes, [*distances.values(), *starts.values()])
+        draw_bars(axes, distances, left)
+        for start in list(starts.values())[:1]:  # the same pairs for all models
+            axes.axvline(start.mean, color="black", linestyle=":", linewidth=1.0, zorder=1)
+        title(axes, task.capitalize() + (" (dotted: at the start)" if starts else ""))
+        axes.set_xlabel("tool from goal (mm)")
+    for axes in panels[len(tasks) :]:
+        axes.remove()
+    return figure
