@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 BAR_WIDTH: Final = 0.62
+BELOW: Final = 0.2
+"""How far the paper's figure stands below the middle of a bar, so that no SD is taken for the other."""
 DECADES: Final = 50.0
 """Ratio of the ends of a logarithmic axis from which powers of ten are numbers enough."""
 PAPER_SIGN: Final = "($\\diamond$: the paper)"
@@ -52,7 +54,7 @@ def draw_bars(axes: "Axes", figures: Mapping[str, Point], left: float) -> None:
             place, figure.mean - left, BAR_WIDTH, left=left, color=look_of(model).colour, alpha=0.85, zorder=2
         )
         draw_spread(axes, place, figure.mean, figure.sd, left)
-        draw_paper(axes, place, figure, left)
+        draw_paper(axes, place + BELOW, figure, left)
         axes.text(
             1.02,
             place,
