@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.metrics.controllability import ReachConfig, candidates, reach_goals
+from latentarm.metrics.approach import SolverConfig, candidates
+from latentarm.metrics.controllability import reach_goals
 from latentarm.metrics.samples import StartGoalPairs
 
-CONFIG = ReachConfig(time_s=6.0)
+CONFIG = SolverConfig(time_s=6.0)
 
 
 def some_pairs(count, dof, reach=0.5, seed=0):
@@ -40,7 +41,7 @@ def test_a_decoder_that_never_moves_stays_at_the_start(linear_decoder, gantry):
 
 def test_input_stays_within_its_range(linear_decoder, gantry):
     pairs = StartGoalPairs(start=np.zeros((1, 1)), goal=np.full((1, 1), 5.0))
-    reach = reach_goals([linear_decoder(np.array([[0.5]]))], pairs, gantry, 0.1, ReachConfig(time_s=4.0))
+    reach = reach_goals([linear_decoder(np.array([[0.5]]))], pairs, gantry, 0.1, SolverConfig(time_s=4.0))
     assert reach.tool_error_m[0, 0] == pytest.approx(5.0 - 0.5 * 4.0)
 
 
@@ -61,7 +62,7 @@ def test_a_bent_decoder_is_solved_nearly_as_well_as_a_fine_grid_solves_it(formul
         return 0.3 * np.stack([np.sin(2.0 * first) + second**2, second - 0.5 * first**2], axis=-1)
 
     pairs = some_pairs(100, 2, reach=0.06)
-    reach = reach_goals([formula_decoder(2, bent)], pairs, gantry, 0.1, ReachConfig(time_s=0.1))
+    reach = reach_goals([formula_decoder(2, bent)], pairs, gantry, 0.1, SolverConfig(time_s=0.1))
     axis = np.linspace(-1.0, 1.0, 201)
     z = np.stack(np.meshgrid(axis, axis), -1).reshape(1, -1, 2)
     after = pairs.start[:, None] + 0.1 * bent(z, None)
@@ -77,7 +78,7 @@ def test_the_arm_never_ends_farther_than_it_began_and_flipped_axes_change_nothin
 ):
     matrix = np.random.default_rng(seed).normal(size=(4, dim))
     pairs = some_pairs(5, 4, seed=seed)
-    config = ReachConfig(time_s=1.0)
+    config = SolverConfig(time_s=1.0)
     plain = reach_goals([linear_decoder(matrix)], pairs, gantry, 0.1, config)
     flipped = reach_goals([linear_decoder(-matrix)], pairs, gantry, 0.1, config)
     assert np.all(plain.tool_error_m <= plain.start_distance_m)
@@ -85,8 +86,8 @@ def test_the_arm_never_ends_farther_than_it_began_and_flipped_axes_change_nothin
 
 
 def test_many_axes_do_not_explode_the_candidates():
-    assert len(candidates(2)) == 25
-    assert len(candidates(7)) == 15
+    assert len(candidates(2, 5)) == 25
+    assert len(candidates(7, 5)) == 15
 
 
 def test_two_hundred_pairs_and_five_seeds_take_seconds(linear_decoder, gantry):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from latentarm.errors import UserError
+from latentarm.metrics.approach import SolverConfig
 from latentarm.metrics.controllability import ReachConfig
 from latentarm.metrics.evaluation import EvaluationConfig, evaluate
 from latentarm.metrics.results import read_results, write_results
@@ -14,7 +15,9 @@ from latentarm.metrics.summary import HEADLINE, Subject, headline
 from latentarm.robots.planar import planar
 from latentarm.types import Demonstrations, Episode
 
-SMALL = EvaluationConfig(reach=ReachConfig(pairs=20, separation_s=1.0, time_s=2.0), latents=200)
+SMALL = EvaluationConfig(
+    reach=ReachConfig(pairs=20, separation_s=1.0, solver=SolverConfig(time_s=2.0)), latents=200
+)
 POUR = Path(__file__).parents[3] / "shared" / "demonstrations" / "panda_pour_coffee.npz"
 BASIS = np.linalg.qr(np.random.default_rng(5).normal(size=(5, 3)))[0]
 

@@ -21,7 +21,7 @@ class DecodesActions(Protocol):
         ...
 
     def decode(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        """Decode z (..., d) in context (..., c) to joint velocities (..., m), rad/s."""
+        """Decode z (..., d) in context (..., c) to joint velocities (..., m), rad/s; the two broadcast."""
         ...
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from latentarm.kinematics.rotations import rotation_vector
 from latentarm.metrics.contract import DecodesActions, PlacesTool, next_context
 from latentarm.types import FloatArray
 
@@ -36,16 +37,57 @@ def axis_effects(
     """
     effects: list[FloatArray] = []
     for decoder in decoders:
-        dim = decoder.latent_dim
-        z = np.einsum("k,ij->ikj", grid, np.eye(dim))[:, None]  # (d, 1, K, d)
-        shape = (dim, len(context), len(grid))
-        repeated = np.broadcast_to(context[:, None], (*shape, context.shape[-1]))
-        action = decoder.decode(np.broadcast_to(z, (*shape, dim)), repeated)
-        dof = action.shape[-1]
-        before = chain.forward(context[:, :dof], tool).position
-        after = chain.forward(next_context(repeated, action, step_s)[..., :dof], tool).position
-        effects.append(after - before[:, None])
+        before, after = _axis_states(decoder, context, grid, step_s)
+        moved = chain.forward(after, tool).position - chain.forward(before, tool).position[:, None]
+        effects.append(moved)
     return np.stack(effects)
+
+
+def axis_turns(
+    decoders: Sequence[DecodesActions],
+    context: FloatArray,
+    grid: FloatArray,
+    chain: PlacesTool,
+    step_s: float,
+    tools: Sequence[int] = (0,),
+) -> FloatArray:
+    """How far the end-effectors turn in one step for each latent axis alone, the other axes at zero.
+
+    Args:
+        decoders: S decoders.
+        context: (N, c), contexts; their first entries are the state, rad.
+        grid: (K,), values that each axis takes in turn.
+        chain: the robot's forward kinematics.
+        step_s: how long each latent action is held, s.
+        tools: T end-effectors, each of which counts as N further states.
+
+    Returns:
+        (S, d, T N, K, 3), rotation vectors in the base frame, rad.
+    """
+    turns: list[FloatArray] = []
+    for decoder in decoders:
+        before, after = _axis_states(decoder, context, grid, step_s)
+        of_tools = [
+            rotation_vector(
+                chain.forward(after, tool).rotation @ chain.forward(before, tool).rotation[:, None].mT
+            )
+            for tool in tools
+        ]
+        turns.append(np.concatenate(of_tools, axis=1))
+    return np.stack(turns)
+
+
+def _axis_states(
+    decoder: DecodesActions, context: FloatArray, grid: FloatArray, step_s: float
+) -> tuple[FloatArray, FloatArray]:
+    """States (N, n) before and (d, N, K, n) after one step of each axis alone, rad."""
+    dim = decoder.latent_dim
+    z = np.einsum("k,ij->ikj", grid, np.eye(dim))[:, None]  # (d, 1, K, d)
+    shape = (dim, len(context), len(grid))
+    repeated = np.broadcast_to(context[:, None], (*shape, context.shape[-1]))
+    action = decoder.decode(np.broadcast_to(z, (*shape, dim)), repeated)
+    dof = action.shape[-1]
+    return context[:, :dof], next_context(repeated, action, step_s)[..., :dof]
 
 
 def held_paths(

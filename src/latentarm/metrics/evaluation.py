@@ -120,7 +120,7 @@ def evaluate(
     pairs = start_goal_pairs(
         episodes, model.context, separation_s=config.reach.separation_s, count=config.reach.pairs
     )
-    reach = reach_goals(decoders, pairs, robot.chain, step_s, config.reach, config.tool)
+    reach = reach_goals(decoders, pairs, robot.chain, step_s, config.reach.solver, (config.tool,))
     figures["controllability_m"] = reach.tool_error_m.mean(axis=1)
     figures["controllability_state_error"] = reach.state_error_rad.mean(axis=1)
 

@@ -14,6 +14,7 @@ UNITS: dict[str, str] = {
     "error_percent_of_pca": "%",
     "noise_free_error_percent_of_pca": "%",
     "controllability_m": "m",
+    "controllability_percent_of_pca": "%",
     "controllability_state_error": "rad",
     "start_distance_m": "m",
     "r2": "1",
@@ -26,6 +27,7 @@ UNITS: dict[str, str] = {
     "input_magnitude": "s",
     "mode_switches": "1",
     "path_length": "m",
+    "path_over_straight": "1",
     "final_distance": "m",
 }
 """Unit of every measure of this package; "1" is a plain number or ratio."""
