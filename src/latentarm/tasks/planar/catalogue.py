@@ -1,5 +1,6 @@
 """The tasks of section 8.1 by name."""
 
+from collections.abc import Callable
 from typing import Final
 
 from latentarm.tasks.planar.circle import Circle
@@ -8,7 +9,7 @@ from latentarm.tasks.planar.reach import ReachRegion
 from latentarm.tasks.planar.rotate import Rotate
 from latentarm.tasks.planar.sine import Sine
 
-MOTIONS: Final[dict[str, type[PlanarMotion]]] = {
+MOTIONS: Final[dict[str, Callable[[], PlanarMotion]]] = {
     "sine": Sine,
     "rotate": Rotate,
     "circle": Circle,
