@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from latentarm.types import Row
 
-ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl"]
+ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "isometric"]
 
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
 Seed = Annotated[int, arg(help="Seed of everything random.")]
@@ -306,6 +306,51 @@ def drive(
     return 0 if any(row.measure == "success_rate" and row.mean for row in rows) else 1
 
 
+studies = app.command(
+    SubcommandApp(), name="reproduce", help="Reproduce a study of the paper; `reproduce --help` lists them."
+)
+
+
+@studies.command
+def properties(
+    preset: Annotated[
+        Literal["paper", "smoke"],
+        arg(help="The sizes of the paper, or small ones that only show that it runs."),
+    ] = "paper",
+    task: Annotated[
+        Literal["all", "sine", "rotate", "circle", "reach"], arg(help="One of the tasks, or all four.")
+    ] = "all",
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")] = Path(
+        "reproduced/properties"
+    ),
+    seed: Seed = 0,
+    jobs: Annotated[int, arg(help="Processes that measure side by side; -1 is one per core.")] = -1,
+    backend: Annotated[
+        Literal["joblib", "ray", "dask"],
+        arg(
+            help="Processes of this machine, or a cluster: that of RAY_ADDRESS or DASK_SCHEDULER_ADDRESS,"
+            " or else a new one here."
+        ),
+    ] = "joblib",
+    json: Json = False,
+) -> int:
+    """Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.
+
+    For example: latentarm reproduce properties --preset smoke --task sine
+    """
+    from latentarm.experiments.properties.preset import PRESETS
+    from latentarm.experiments.properties.run import PropertiesConfig, run_properties
+    from latentarm.tasks.planar.catalogue import MOTIONS
+
+    tasks = tuple(MOTIONS) if task == "all" else (task,)
+    bars = not json and sys.stderr.isatty()
+    config = PropertiesConfig(out, PRESETS[preset], tasks, seed, jobs, backend, quiet=json, bars=bars)
+    rows = run_properties(config)
+    _show(rows, json, *_tables_by_task(rows))
+    _say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
+    return 0
+
+
 @app.command
 def bench(
     repeats: Annotated[int, arg(help="Timed online steps.")] = 20_000,
@@ -357,6 +402,20 @@ def _show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
         from latentarm.metrics.table import rich_tables
 
         _print(rich_tables(rows, width=Console().width))
+
+
+def _tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
+    """One table per task, of the rows without a condition."""
+    from rich.console import Console
+
+    from latentarm.metrics.table import rich_tables
+
+    width = Console().width
+    main_rows = [row for row in rows if row.condition is None]
+    return [
+        rich_tables([row for row in main_rows if row.task == task], title=f"{task}, simulated", width=width)
+        for task in dict.fromkeys(row.task for row in main_rows)
+    ]
 
 
 def _say(sentence: str, json: bool) -> None:

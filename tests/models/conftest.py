@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 import torch
 
+from latentarm.robots.planar import planar
 from latentarm.types import Demonstrations, Episode
 
 JOINTS = 4
@@ -27,10 +28,21 @@ def ring(rng, samples=80, rate_hz=20.0):
 
 
 @pytest.fixture(scope="session")
-def demonstrations():
+def arm_file(tmp_path_factory):
+    """A planar arm of as many joints as a model file, for models that look at the tool."""
+    path = tmp_path_factory.mktemp("arm") / "arm.xml"
+    path.write_text(planar(JOINTS).mjcf)
+    return path
+
+
+@pytest.fixture(scope="session")
+def demonstrations(arm_file):
     rng = np.random.default_rng(3)
     return Demonstrations(
-        tuple(ring(rng) for _ in range(12)), 20.0, tuple(f"joint{i + 1}" for i in range(JOINTS))
+        tuple(ring(rng) for _ in range(12)),
+        20.0,
+        tuple(f"joint{i + 1}" for i in range(JOINTS)),
+        robot=str(arm_file),
     )
 
 

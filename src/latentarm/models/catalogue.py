@@ -6,6 +6,7 @@ from typing import Any, Final, cast
 
 from latentarm.errors import UserError
 from latentarm.models.autoencoders import AE, CAE, CVAE, VAE
+from latentarm.models.isometric import Isometric
 from latentarm.models.linear import SCL
 from latentarm.models.model import LatentActionModel
 from latentarm.models.parameters import check_parameters
@@ -21,6 +22,7 @@ MODELS: Final[dict[str, type[LatentActionModel]]] = {
     "cvae": CVAE,
     "cae_zero": CAEZero,
     "scl": SCL,
+    "isometric": Isometric,
 }
 
 

@@ -7,7 +7,9 @@ from typing import Final, cast, final
 import numpy as np
 
 from latentarm.models.layout import DecoderForm
+from latentarm.models.normaliser import Normaliser
 from latentarm.models.saving import read_model
+from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.trained import TrainedModel
 from latentarm.types import FloatArray
 
@@ -15,6 +17,9 @@ Layer = tuple[FloatArray, FloatArray]
 
 NORM_FLOOR: Final = 1e-12
 """Added under the root of a squared column length, so that a column of zeros divides by a number."""
+
+BEND_SIZE: Final = 0.3
+"""What the network's bend is multiplied by: it begins small."""
 
 
 @final
@@ -147,11 +152,69 @@ class _Matrix(_Form):
         return action
 
 
+@final
+class _Isometry(_Form):
+    """g(r) R(c, r) z / r of the isometric model."""
+
+    def __init__(self, trained: TrainedModel, seed: int) -> None:
+        self._contexts = ToolContexts.of_tensors(trained.tensors)
+        self._twist = _halve_hidden(_layers(trained, seed, "decoder"))
+        self._posture = _halve_hidden(_layers(trained, seed, "posture"))
+        ((weight, bias),) = _layers(trained, seed, "gain")
+        self._saturation = float(np.logaddexp(0.0, weight[0, 0] + bias[0]))
+        self._speed = float(trained.actions.scale[0] / np.tanh(self._saturation))
+        self._latents = trained.dimensions.latent
+
+    def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
+        straight, bend, bend_twist = self._geometry(context)
+        radius = np.sqrt(np.vecdot(z, z))[..., None]
+        direction = z / np.maximum(radius, NORM_FLOOR)
+        turn = 2 * np.minimum(radius, 1.0) - 1
+        aside = np.matvec(bend, direction)
+        twist = np.matvec(bend_twist, direction)
+        aside_size = np.vecdot(twist, twist) + self._contexts.damping * np.vecdot(aside, aside)
+        led = np.matvec(straight, direction) + turn * aside
+        speed = self._speed * np.tanh(self._saturation * radius)
+        return speed * led / np.sqrt(1 + turn**2 * aside_size[..., None])
+
+    def _geometry(self, context: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """M (..., m, d), N (..., m, d) and the tools' weighted twists (..., 6 k, d) along N."""
+        sizes, damping, d = self._contexts.sizes, self._contexts.damping, self._latents
+        observed, lead = self._contexts.apply(context), context.shape[:-1]
+        seen = observed[..., : sizes.seen]
+        jacobian = observed[..., sizes.jacobian].reshape(*lead, sizes.twists, sizes.joints)
+        lift = observed[..., sizes.lift].reshape(*lead, sizes.joints, sizes.twists)
+        twist = _network(seen, self._twist).reshape(*lead, 2 * d, sizes.twists)
+        posture = _network(seen, self._posture).reshape(*lead, 2 * d, sizes.joints)
+        columns = lift @ twist.mT + posture.mT
+        straight, straight_twist = columns[..., :d], jacobian @ columns[..., :d]
+
+        def inner(first: int, second: int) -> FloatArray:
+            """``a^T G b`` of two of the first columns, (..., 1)."""
+            joints = np.vecdot(straight[..., first], straight[..., second])
+            twists = np.vecdot(straight_twist[..., first], straight_twist[..., second])
+            return (twists + damping * joints)[..., None]
+
+        for axis in range(d):
+            for other in range(axis):
+                along = inner(axis, other)
+                straight[..., axis] -= along * straight[..., other]
+                straight_twist[..., axis] -= along * straight_twist[..., other]
+            size = np.sqrt(inner(axis, axis) + NORM_FLOOR)
+            straight[..., axis] /= size
+            straight_twist[..., axis] /= size
+        bend = BEND_SIZE * columns[..., d:]
+        bend_twist = jacobian @ bend
+        along = straight_twist.mT @ bend_twist + damping * (straight.mT @ bend)
+        return straight, bend - straight @ along, bend_twist - straight_twist @ along
+
+
 _FORMS: Final[dict[DecoderForm, type[_Form]]] = {
     "linear": _Latent,
     "latent": _Latent,
     "latent_context": _LatentContext,
     "matrix": _Matrix,
+    "isometry": _Isometry,
 }
 
 
@@ -180,12 +243,18 @@ def _orthonormal(columns: list[FloatArray]) -> list[FloatArray]:
     return done
 
 
-def _layers(trained: TrainedModel, seed: int) -> list[Layer]:
-    """The decoder's weights (in, out) and biases (out,) of one seed, copied out of the stack."""
+def _network(values: FloatArray, layers: list[Layer]) -> FloatArray:
+    """Through all layers, whose weights `_halve_hidden` gave."""
+    (weight, bias), *rest = layers
+    return _propagate(values @ weight + bias, rest)
+
+
+def _layers(trained: TrainedModel, seed: int, network: str = "decoder") -> list[Layer]:
+    """A network's weights (in, out) and biases (out,) of one seed, copied out of the stack."""
     tensors, count = trained.tensors, 0
     layers: list[Layer] = []
-    while f"decoder.{count}.weight" in tensors:
-        weight, bias = tensors[f"decoder.{count}.weight"], tensors[f"decoder.{count}.bias"]
+    while f"{network}.{count}.weight" in tensors:
+        weight, bias = tensors[f"{network}.{count}.weight"], tensors[f"{network}.{count}.bias"]
         layers.append((weight[seed].copy(), bias[seed, 0].copy()))
         count += 1
     return layers
@@ -206,7 +275,7 @@ def _scale_latent(layer: Layer, trained: TrainedModel, seed: int) -> Layer:
 def _scale_context(layer: Layer, trained: TrainedModel) -> Layer:
     """Let a first layer that takes a normalised context take a raw one."""
     weight, bias = layer
-    contexts = trained.contexts
+    contexts = Normaliser(trained.tensors["context.centre"], trained.tensors["context.scale"])
     scaled = weight / contexts.scale[:, None]
     return scaled, bias - contexts.centre @ scaled
 

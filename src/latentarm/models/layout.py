@@ -4,9 +4,15 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, Literal
 
-DecoderForm = Literal["linear", "latent", "latent_context", "matrix"]
-EncoderForm = Literal["projection", "deterministic", "gaussian"]
+DecoderForm = Literal["linear", "latent", "latent_context", "matrix", "isometry"]
+EncoderForm = Literal["projection", "nearest", "deterministic", "gaussian"]
 Shape = tuple[int, ...]
+
+TWIST: Final = 6
+"""Entries of a tool's twist: 3 of velocity, 3 of angular velocity."""
+
+PLACE: Final = 9
+"""Numbers that tell a network where a tool is: its position and the first two columns of its rotation."""
 
 
 @dataclass(frozen=True)
@@ -15,9 +21,10 @@ class Layout:
 
     Attributes:
         decoder: ``linear`` is phi(z) without hidden layers, ``latent`` is phi(z), ``latent_context`` is
-            phi(z, c), ``matrix`` is M(c) z.
-        encoder: ``projection`` onto the columns of the decoder (no weights of its own), or a network
-            of (c, a) whose output is z (``deterministic``) or (mu, log sigma^2) (``gaussian``).
+            phi(z, c), ``matrix`` is M(c) z, ``isometry`` is M(c, ‖z‖) z in the metric of the tools.
+        encoder: ``projection`` onto the columns of the decoder or the ``nearest`` action that it can
+            decode (neither has weights of its own), or a network of (c, a) whose output is z
+            (``deterministic``) or (mu, log sigma^2) (``gaussian``).
     """
 
     decoder: DecoderForm
@@ -32,6 +39,7 @@ LAYOUTS: Final[dict[str, Layout]] = {
     "cvae": Layout("latent_context", "gaussian"),
     "cae_zero": Layout("latent_context", "deterministic"),
     "scl": Layout("matrix", "projection"),
+    "isometric": Layout("isometry", "nearest"),
 }
 """Every kind of model, by the name that it has on disk and on the command line."""
 
@@ -46,6 +54,7 @@ class Dimensions:
         context: c.
         action: m.
         hidden: units of each hidden layer, the same in encoder and decoder.
+        tools: k, end-effectors of the arm; 0 where the model does not look at them.
     """
 
     seeds: int
@@ -53,19 +62,23 @@ class Dimensions:
     context: int
     action: int
     hidden: tuple[int, ...]
+    tools: int = 0
 
 
 def network_sizes(layout: Layout, dimensions: Dimensions) -> dict[str, Shape]:
     """Layer widths, input first, of each network that a model has."""
     d, c, m, hidden = dimensions.latent, dimensions.context, dimensions.action, dimensions.hidden
+    seen = c + PLACE * dimensions.tools
     decoder: dict[DecoderForm, Shape] = {
         "linear": (d, m),
         "latent": (d, *hidden, m),
         "latent_context": (d + c, *hidden, m),
         "matrix": (c, *hidden, d * m),
+        "isometry": (seen, *hidden, 2 * d * TWIST * dimensions.tools),
     }
     encoder: dict[EncoderForm, dict[str, Shape]] = {
         "projection": {},
+        "nearest": {"posture": (seen, *hidden, 2 * d * m), "gain": (1, 1)},
         "deterministic": {"encoder": (c + m, *hidden, d)},
         "gaussian": {"encoder": (c + m, *hidden, 2 * d)},
     }
@@ -86,9 +99,27 @@ def tensor_shapes(layout: Layout, dimensions: Dimensions) -> dict[str, Shape]:
     """Shape of every tensor of a saved model: the learned ones, the normalisers and the latent scale."""
     return {
         **weight_shapes(layout, dimensions),
+        **(_tool_shapes(dimensions) if layout.decoder == "isometry" else {}),
         "context.centre": (dimensions.context,),
         "context.scale": (dimensions.context,),
         "action.scale": (1,),
         "latent.centre": (dimensions.seeds, dimensions.latent),
         "latent.scale": (dimensions.seeds, dimensions.latent),
+    }
+
+
+def _tool_shapes(dimensions: Dimensions) -> dict[str, Shape]:
+    """Shapes of what a decoder keeps of the arm that it was trained for (see `ToolContexts`)."""
+    n, k = dimensions.action, dimensions.tools
+    return {
+        "place.centre": (PLACE * k,),
+        "place.scale": (PLACE * k,),
+        "metric.scale": (2,),
+        "chain.parent": (n,),
+        "chain.offset": (n, 4, 4),
+        "chain.axis": (n, 3),
+        "chain.anchor": (n, 3),
+        "chain.slide": (n,),
+        "chain.tool_link": (k,),
+        "chain.tool": (k, 4, 4),
     }

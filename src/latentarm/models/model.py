@@ -12,10 +12,11 @@ import numpy as np
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import split_episodes
 from latentarm.errors import UserError
+from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import TrainingData
 from latentarm.models.decoder import Decoder
 from latentarm.models.layout import LAYOUTS, Dimensions
-from latentarm.models.normaliser import action_normaliser, context_normaliser
+from latentarm.models.normaliser import Normaliser, action_normaliser, context_normaliser
 from latentarm.models.parameters import check_held_out, check_parameters, check_rows
 from latentarm.models.saving import write_model
 from latentarm.models.scaling import (
@@ -25,9 +26,12 @@ from latentarm.models.scaling import (
     effect_of_dimensions,
     find_collapsed,
     latent_scale,
+    unit_scale,
 )
+from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.trained import TrainedModel, TrainingSummary
 from latentarm.models.training import TrainingResult
+from latentarm.robots.catalogue import load_robot
 from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs
 
 ROWS_AT_ONCE: Final = 4096
@@ -74,6 +78,9 @@ class LatentActionModel(ABC):
     """Whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must stay u = 0.
     Where it does not, u = 0 is the mean latent action of the demonstrations."""
 
+    sees_tools: ClassVar[bool] = False
+    """Whether the model looks at the arm's tools and their Jacobians, so that fitting needs a known arm."""
+
     latent_dim: int = 2
     context: Literal["state", "state_belief"] = "state"
     actions: Literal["displacement", "recorded"] = "displacement"
@@ -111,6 +118,7 @@ class LatentActionModel(ABC):
         demonstrations: Demonstrations,
         *,
         held_out: Sequence[int] | None = None,
+        chain: Chain | None = None,
         checkpoint: Path | None = None,
         progress: bool = False,
     ) -> Self:
@@ -120,6 +128,8 @@ class LatentActionModel(ABC):
             demonstrations: at least two episodes.
             held_out: indices of the episodes that the weights are not fitted to; the loss on them
                 says when to stop. Drawn by ``data_seed`` where None.
+            chain: the arm's kinematics, for models that look at the tools; where None, those of the
+                robot that the demonstrations name.
             checkpoint: file to write the training's state to and, if it exists, to go on from. It
                 stays when the training is done; delete it once the model is saved.
             progress: show a bar.
@@ -129,7 +139,8 @@ class LatentActionModel(ABC):
 
         Raises:
             UserError: a parameter makes no sense, the demonstrations have too few episodes or lack
-                what the parameters ask for, training diverged, or CUDA is asked for and absent.
+                what the parameters ask for, the arm is needed and not known, training diverged, or
+                CUDA is asked for and absent.
 
         Warns:
             CollapseWarning: a latent dimension moves nothing; ``collapsed_`` says which.
@@ -145,7 +156,9 @@ class LatentActionModel(ABC):
         pairs = make_pairs(
             demonstrations, self.window, self.state_noise_rad, self.context, rng, actions=self.actions
         )
-        self.trained_ = self._fit_pairs(pairs, tuple(int(index) for index in held_out), checkpoint, progress)
+        arm = self._arm(demonstrations, chain) if self.sees_tools else None
+        chosen = tuple(int(index) for index in held_out)
+        self.trained_ = self._fit_pairs(pairs, chosen, arm, checkpoint, progress)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds
             warn(CollapseWarning(describe_collapse(self.kind, seeds, self.collapsed_)), stacklevel=2)
@@ -242,8 +255,30 @@ class LatentActionModel(ABC):
         """Held-out loss after each epoch, (E, S)."""
         return self._fitted().summary.history
 
+    def _arm(self, demonstrations: Demonstrations, chain: Chain | None) -> Chain:
+        """The arm that was given, or else that of the robot that the demonstrations name.
+
+        Raises:
+            UserError: there is neither, or it has other joints than the demonstrations.
+        """
+        if chain is None:
+            if not demonstrations.robot:
+                raise UserError(
+                    f"The {self.kind} model looks at the arm's tool, and the demonstrations do not say which "
+                    "arm they are of: name it when they are imported (--robot)."
+                )
+            chain = load_robot(demonstrations.robot).chain
+        if chain.dof != demonstrations.dof:
+            raise UserError(f"The arm has {chain.dof} joints and the demonstrations {demonstrations.dof}.")
+        return chain
+
     def _fit_pairs(
-        self, pairs: Pairs, held_out: tuple[int, ...], checkpoint: Path | None, progress: bool
+        self,
+        pairs: Pairs,
+        held_out: tuple[int, ...],
+        arm: Chain | None,
+        checkpoint: Path | None,
+        progress: bool,
     ) -> TrainedModel:
         outside = np.isin(pairs.episode, held_out)
         if outside.all() or not outside.any():
@@ -253,13 +288,16 @@ class LatentActionModel(ABC):
         context, action = pairs.context[~outside], pairs.action[~outside]
         if not action.any():
             raise UserError("Every recorded action is zero: take actions from the states (displacement).")
-        dimensions = Dimensions(self.seeds, self.latent_dim, context.shape[1], action.shape[1], self.hidden)
+        tools = len(arm.tools) if arm else 0
+        dimensions = Dimensions(
+            self.seeds, self.latent_dim, context.shape[1], action.shape[1], self.hidden, tools
+        )
         if dimensions.latent > dimensions.action:
             raise UserError(
                 f"A latent action of {dimensions.latent} dimensions is no smaller than the arm's "
                 f"{dimensions.action}: choose at most {dimensions.action}."
             )
-        contexts, actions = context_normaliser(context), action_normaliser(action)
+        contexts, actions = _normalisers(arm, context, action)
         data = TrainingData(
             context=contexts.apply(context),
             action=actions.apply(action),
@@ -270,7 +308,9 @@ class LatentActionModel(ABC):
         weights = learned.weights
         latents = self._encode_rows(weights, data.context, data.action)
         centre = np.zeros_like(latents[:, 0]) if self.rests_at_zero else latents.mean(axis=1)
-        scale = latent_scale(latents, centre)
+        # A model that searches for z does so within the input's range.
+        in_input_units = LAYOUTS[self.kind].encoder == "nearest"
+        scale = unit_scale(latents) if in_input_units else latent_scale(latents, centre)
         rows = np.linspace(0, len(context) - 1, min(EFFECT_SAMPLES, len(context))).astype(np.int64)
         effect = effect_of_dimensions(
             lambda u: self._decode(weights, scale.invert(u), data.context[rows]),
@@ -283,8 +323,7 @@ class LatentActionModel(ABC):
             dimensions=dimensions,
             tensors={
                 **weights,
-                "context.centre": contexts.centre,
-                "context.scale": contexts.scale,
+                **contexts.tensors(),
                 "action.scale": actions.scale,
                 "latent.centre": scale.centre[:, 0],
                 "latent.scale": scale.scale[:, 0],
@@ -309,6 +348,16 @@ class LatentActionModel(ABC):
         if self.trained_ is None:
             raise UserError(f"This {self.kind} model is not fitted yet: call fit first, or load a saved one.")
         return self.trained_
+
+
+def _normalisers(
+    arm: Chain | None, context: FloatArray, action: FloatArray
+) -> tuple[Normaliser | ToolContexts, Normaliser]:
+    """What brings contexts and actions to size; in the metric of an arm's tools where there is one."""
+    if arm is None:
+        return context_normaliser(context), action_normaliser(action)
+    contexts = ToolContexts.fitted(arm, context)
+    return contexts, contexts.action_normaliser(context, action)
 
 
 def _in_rows(compute: Callable[[slice], FloatArray], rows: int) -> FloatArray:

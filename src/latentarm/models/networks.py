@@ -93,14 +93,21 @@ class FlatNetworks:
             views[name] = flat[:, start : start + math.prod(rest)].unflatten(1, rest)
         return views
 
-    def initialise(self, generators: Sequence[torch.Generator]) -> None:
-        """Draw each seed's weights from its own generator: uniform within ±1/sqrt(inputs)."""
+    def initialise(self, generators: Sequence[torch.Generator], start: Mapping[str, FloatArray]) -> None:
+        """Draw each seed's weights from its own generator, uniform within ±1/sqrt(inputs).
+
+        Args:
+            generators: one for each seed.
+            start: weights that begin with these values instead, by name.
+        """
         views = self.views(self.values)
         for seed, generator in enumerate(generators):
             for name, view in views.items():
                 inputs = self._shapes[name.replace(".bias", ".weight")][1]
                 draw = torch.rand(view.shape[1:], generator=generator) * 2 - 1
                 view[seed] = (draw / math.sqrt(inputs)).to(view.device)
+        for name, values in start.items():
+            views[name].copy_(torch.from_numpy(values))
 
     def fill_gradient(self, loss: Tensor) -> None:
         """Put the gradient of a scalar loss into ``gradient``."""

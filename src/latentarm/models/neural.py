@@ -2,9 +2,10 @@
 
 import json
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import final
+from typing import ClassVar, final
 
 import numpy as np
 import torch
@@ -18,6 +19,9 @@ from latentarm.models.networks import Networks, mlp, networks_from_arrays
 from latentarm.models.training import TrainingConfig, TrainingResult, train
 from latentarm.types import FloatArray
 
+Start = Callable[[TrainingData, Dimensions], dict[str, FloatArray]]
+"""From the training pairs to weights to begin with, by name."""
+
 
 @dataclass(kw_only=True, eq=False)
 class NeuralModel(LatentActionModel, ABC):
@@ -26,6 +30,9 @@ class NeuralModel(LatentActionModel, ABC):
     Training is in float32; encoding and decoding afterwards in float64. A model says how it encodes,
     decodes and what it minimises, on batches with a leading seed axis and normalised values.
     """
+
+    start: ClassVar[Start | None] = None
+    """What is known about good weights before training; a model without it draws all of them."""
 
     @abstractmethod
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
@@ -60,6 +67,7 @@ class NeuralModel(LatentActionModel, ABC):
                 checkpoint_interval_s=self.checkpoint_interval_s,
             ),
             device=choose_device(self.device),
+            start=self.start(data, dimensions) if self.start else None,
             checkpoint=checkpoint,
             identity=json.dumps({"kind": self.kind, **identity}, sort_keys=True),
             progress=progress,

@@ -33,6 +33,10 @@ class Normaliser:
         """Undo `apply`, (..., k)."""
         return normalised * self.scale + self.centre
 
+    def tensors(self) -> dict[str, FloatArray]:
+        """Both arrays by name, as a normaliser of contexts is saved."""
+        return {"context.centre": self.centre, "context.scale": self.scale}
+
 
 def context_normaliser(context: FloatArray) -> Normaliser:
     """Zero mean and unit spread for every context feature on its own; a constant one is only centred.

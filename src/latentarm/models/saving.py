@@ -31,6 +31,7 @@ CONFIG_LIMIT: Final = 16 * 2**20
 """Bytes; a config with the training curves of a hundred seeds stays far below."""
 HEADER_LIMIT: Final = 2**20
 WEIGHTS_LIMIT: Final = 2**30
+LINKS: Final = ("chain.parent", "chain.tool_link")
 PACKAGES: Final = ("latentarm", "numpy", "safetensors", "scikit-learn", "torch")
 
 
@@ -59,6 +60,7 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
             "context": dimensions.context,
             "action": dimensions.action,
             "hidden": list(dimensions.hidden),
+            "tools": dimensions.tools,
         },
         "seeds": list(summary.seeds),
         "training": {
@@ -103,6 +105,7 @@ def read_model(folder: Path) -> TrainedModel:
         context=sizes.integer("context", 1),
         action=sizes.integer("action", 1),
         hidden=tuple(sizes.integers("hidden", 1)),
+        tools=sizes.integer("tools", 0),
     )
     shapes = tensor_shapes(LAYOUTS[kind], dimensions)
     parameters = section.section("parameters")
@@ -160,7 +163,15 @@ def _read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[
             raise UserError(f"{path}: tensor '{name}' holds a NaN or an infinity.")
         if name.endswith(".scale") and not (array > 0).all():
             raise UserError(f"{path}: tensor '{name}' holds a scale that is not positive.")
+        if name in LINKS and not _are_links(array, tensors["chain.parent"].size, name == "chain.parent"):
+            raise UserError(f"{path}: tensor '{name}' names links that the arm does not have.")
     return tensors
+
+
+def _are_links(links: FloatArray, joints: int, each_before_its_own: bool) -> bool:
+    """Whether these are indices of links, -1 for the base; of parents, each that of an earlier link."""
+    limit = np.arange(len(links)) if each_before_its_own else joints
+    return bool(((links == np.round(links)) & (links >= -1) & (links < limit)).all())
 
 
 def _versions() -> dict[str, str]:

@@ -46,6 +46,16 @@ def latent_scale(latents: FloatArray, centre: FloatArray) -> Normaliser:
     return Normaliser(centre=centre[:, None], scale=np.maximum(scale, SMALLEST_SCALE)[:, None])
 
 
+def unit_scale(latents: FloatArray) -> Normaliser:
+    """The map between z and u of a model whose z is the input as it is.
+
+    Args:
+        latents: (S, N, d).
+    """
+    seeds, _, dimensions = latents.shape
+    return Normaliser(centre=np.zeros((seeds, 1, dimensions)), scale=np.ones((seeds, 1, dimensions)))
+
+
 def effect_of_dimensions(
     decode: Callable[[FloatArray], FloatArray], inputs: FloatArray, action_size: float
 ) -> FloatArray:

@@ -7,6 +7,7 @@ from typing import final
 from latentarm.errors import UserError
 from latentarm.models.layout import LAYOUTS, Dimensions, Layout
 from latentarm.models.normaliser import Normaliser
+from latentarm.models.tool_contexts import ToolContexts
 from latentarm.types import BoolArray, FloatArray, IntArray
 
 
@@ -58,8 +59,10 @@ class TrainedModel:
         return LAYOUTS[self.kind]
 
     @property
-    def contexts(self) -> Normaliser:
-        """Normaliser of contexts (..., c)."""
+    def contexts(self) -> Normaliser | ToolContexts:
+        """The map from contexts (..., c) to what the networks see."""
+        if self.layout.decoder == "isometry":
+            return ToolContexts.of_tensors(self.tensors)
         return Normaliser(self.tensors["context.centre"], self.tensors["context.scale"])
 
     @property

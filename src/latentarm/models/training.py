@@ -1,7 +1,7 @@
 """The one training loop: S seeds of any model in one batched fit."""
 
 import math
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -74,6 +74,7 @@ def train(
     config: TrainingConfig,
     *,
     device: torch.device,
+    start: Mapping[str, FloatArray] | None = None,
     checkpoint: Path | None = None,
     identity: str = "",
     progress: bool = False,
@@ -91,6 +92,8 @@ def train(
         seeds: S seeds.
         config: how long and how fast.
         device: where to compute.
+        start: values that weights begin with instead of being drawn, by name, each of a shape that
+            broadcasts to (S, in, out).
         checkpoint: file to go on from, if it exists, and to write to.
         identity: what else fixes the result; a checkpoint of another identity is refused.
         progress: show a bar.
@@ -108,7 +111,7 @@ def train(
         read_checkpoint(checkpoint, print_of, state)
         adam.steps = state.steps
     else:
-        networks.initialise([seed_generator(seed, 0) for seed in seeds])
+        networks.initialise([seed_generator(seed, 0) for seed in seeds], start or {})
 
     batches = Batches(data, seeds, config.batch_size, noise_dim, device)
     written = monotonic()

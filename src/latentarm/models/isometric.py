@@ -1,0 +1,257 @@
+"""A decoder that is an isometry: as far as the input is pushed, so far the tools move, anywhere."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Final, NamedTuple, final
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from latentarm.models.batches import Batch, TrainingData
+from latentarm.models.decoder import BEND_SIZE, NORM_FLOOR
+from latentarm.models.layout import PLACE, TWIST, Dimensions
+from latentarm.models.networks import Networks, mlp
+from latentarm.models.neural import NeuralModel
+from latentarm.models.objectives import reconstruction_error
+from latentarm.models.tool_contexts import DAMPING_M2, ToolSizes
+from latentarm.types import FloatArray
+
+STRAIGHT_START: Final = 2.0
+"""Size of the first guess of M(c), where what an untrained network adds is about 0.5: large enough to give
+every seed the same orientation everywhere. M and -M reconstruct alike, and a network that chose between them
+by chance, here this way and there that, would have a seam between the two that no training mends."""
+
+SATURATION_START: Final = 1.0
+"""First guess of kappa, before softplus."""
+
+RADII: Final = 12
+"""Values of ‖z‖ that the encoder tries before it refines the best."""
+
+REFINEMENTS: Final = 3
+"""Rounds of refinement, each six times finer than the one before."""
+
+LEAST_RADIUS: Final = 1e-4
+MOST_RADIUS: Final = 1.5
+"""The encoder's smallest and largest ‖z‖; the fastest hundredth of the demonstrations lies beyond 1."""
+
+
+def principal_start(data: TrainingData, dimensions: Dimensions) -> dict[str, FloatArray]:
+    """Begin with M(c) along the tools' d principal twists everywhere, and the bend along the next d."""
+    sizes = ToolSizes(dimensions.context, dimensions.action, dimensions.tools)
+    jacobian = data.context[:, sizes.jacobian].reshape(-1, sizes.twists, sizes.joints)
+    twist = np.einsum("nij,nj->ni", jacobian, data.action)
+    principal = np.linalg.eigh(twist.T @ twist)[1].T[::-1]
+    columns = np.zeros((2, dimensions.latent, sizes.twists))
+    for column, direction in zip(columns.reshape(-1, sizes.twists), principal, strict=False):
+        column[:] = direction
+    columns[0] *= STRAIGHT_START
+    return {
+        f"decoder.{len(dimensions.hidden)}.bias": columns.reshape(-1),
+        "gain.0.weight": np.zeros(1),
+        "gain.0.bias": np.array([SATURATION_START]),
+    }
+
+
+@final
+@dataclass(kw_only=True, eq=False)
+class Isometric(NeuralModel):
+    """Isometric latent actions: ``phi(z, c) = g(r) R(c, r) z / r`` with r = ‖z‖.
+
+    ``R(c, r) = M(c) + (2 r - 1) N(c)``, brought to unit length: d directions M(c), orthonormal in the metric
+    of the tools ``G(s) = J^T W J + damping 1``, and a bend N(c), metric-orthogonal to them, by which a
+    harder push may lead elsewhere than a soft one. So, by construction, for every context and all weights:
+
+    - ``phi(0, c) = 0``: rest is rest;
+    - ``phi(-z, c) = -phi(z, c)``: the opposite input takes a motion back, to first order in the step;
+    - ``‖phi(z, c)‖_G = g(‖z‖)``: the same push moves the tools equally fast everywhere and in every
+      direction, and a harder push faster. ``g(r) = v tanh(kappa r) / tanh(kappa)``: a full push has the
+      demonstrations' highest speed v, and kappa is learned, near zero (a straight line) unless the
+      demonstrations ask for more;
+    - where the bend is zero, the axes move the tools at right angles.
+
+    The bend lets d inputs serve demonstrations that differ in more than d ways (a fan of directions at one
+    speed); ``bend_weight`` prices it, so that it stays near zero where M(c) alone will do. What the
+    networks give are twists of the tools, lifted to the joints by the damped pseudo-inverse
+    ``G^-1 J^T W``, plus joint speeds for what no tool shows. The encoder is the latent action whose action
+    is nearest; it has no weights. All of this builds on the state-conditioned linear decoder (Przystupa et
+    al., arXiv 2410.21441).
+
+    Attributes:
+        bend_weight: price of bend and saturation, per unit of their squares.
+    """
+
+    kind: ClassVar[str] = "isometric"
+    rests_at_zero: ClassVar[bool] = True
+    sees_tools: ClassVar[bool] = True
+    start = staticmethod(principal_start)
+    bend_weight: float = 1e-3
+
+    def _loss(self, networks: Networks, batch: Batch) -> Tensor:
+        gain = _gain(networks)
+        geometry = _geometry(networks, batch.context, self.latent_dim)
+        latent = _nearest(geometry, gain, batch.action)
+        error = reconstruction_error(batch.action, _decoded(geometry, gain, latent))
+        bend = geometry.bend_twist.square().sum(dim=(1, 2, 3)) / batch.action.shape[1]
+        return error + self.bend_weight * (bend + gain.saturation.square()[:, 0, 0])
+
+    def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
+        return _nearest(_geometry(networks, context, self.latent_dim), _gain(networks), action)
+
+    def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
+        return _decoded(_geometry(networks, context, self.latent_dim), _gain(networks), latent)
+
+
+class _Gain(NamedTuple):
+    """How fast the tools move for a push of r, in normalised units: ``g(r) = tanh(kappa r) / tanh(kappa)``.
+
+    Attributes:
+        saturation: (S, 1, 1), kappa.
+    """
+
+    saturation: Tensor
+
+    def at(self, radius: Tensor) -> Tensor:
+        """g(r) for radii (S, B, ...)."""
+        return torch.tanh(self.saturation * radius) / torch.tanh(self.saturation)
+
+
+class _Geometry(NamedTuple):
+    """The decoder in each context.
+
+    Attributes:
+        straight: (S, B, m, d), M(c), orthonormal in the metric.
+        bend: (S, B, m, d), N(c), metric-orthogonal to M(c).
+        bend_twist: (S, B, 6 k, d), the tools' weighted twists along the bend.
+    """
+
+    straight: Tensor
+    bend: Tensor
+    bend_twist: Tensor
+
+
+def _gain(networks: Networks) -> _Gain:
+    ((weight, bias),) = networks["gain"]
+    return _Gain(torch.nn.functional.softplus(weight + bias))
+
+
+def _geometry(networks: Networks, context: Tensor, latent_dim: int) -> _Geometry:
+    """M, N and the twists along N in contexts observed by `ToolContexts`, (S, B, ...)."""
+    twists = networks["decoder"][-1][0].shape[-1] // (2 * latent_dim)
+    joints = networks["posture"][-1][0].shape[-1] // (2 * latent_dim)
+    tools = twists // TWIST
+    sizes = ToolSizes(networks["decoder"][0][0].shape[-2] - PLACE * tools, joints, tools)
+    seen = context[..., : sizes.seen]
+    jacobian = context[..., sizes.jacobian].unflatten(-1, (twists, joints))
+    lift = context[..., sizes.lift].unflatten(-1, (joints, twists))
+    twist = mlp(networks["decoder"], seen).unflatten(-1, (2 * latent_dim, twists))
+    posture = mlp(networks["posture"], seen).unflatten(-1, (2 * latent_dim, joints))
+    columns = lift @ twist.mT + posture.mT
+    straight, straight_twist = _orthonormal(columns[..., :latent_dim], jacobian)
+    bend = BEND_SIZE * columns[..., latent_dim:]
+    bend_twist = jacobian @ bend
+    along = straight_twist.mT @ bend_twist + DAMPING_M2 * (straight.mT @ bend)
+    return _Geometry(straight, bend - straight @ along, bend_twist - straight_twist @ along)
+
+
+def _orthonormal(columns: Tensor, jacobian: Tensor) -> tuple[Tensor, Tensor]:
+    """Gram-Schmidt in the metric over columns (S, B, m, d): they, and their weighted twists."""
+    done: list[Tensor] = []
+    done_twist: list[Tensor] = []
+    for raw, raw_twist in zip(columns.unbind(-1), (jacobian @ columns).unbind(-1), strict=True):
+        column, twist = raw, raw_twist
+        for other, other_twist in zip(done, done_twist, strict=True):
+            along = _inner(column, twist, other, other_twist)
+            column, twist = column - along * other, twist - along * other_twist
+        size = (_inner(column, twist, column, twist) + NORM_FLOOR).rsqrt()
+        done.append(column * size)
+        done_twist.append(twist * size)
+    return torch.stack(done, dim=-1), torch.stack(done_twist, dim=-1)
+
+
+def _inner(first: Tensor, first_twist: Tensor, second: Tensor, second_twist: Tensor) -> Tensor:
+    """``a^T G b`` of joint velocities (..., m) with weighted twists (..., 6 k): (..., 1)."""
+    return (first_twist * second_twist).sum(-1, keepdim=True) + DAMPING_M2 * (first * second).sum(
+        -1, keepdim=True
+    )
+
+
+def _decoded(geometry: _Geometry, gain: _Gain, latent: Tensor) -> Tensor:
+    """Phi of latents (S, B, d): (S, B, m)."""
+    radius = torch.linalg.vector_norm(latent, dim=-1, keepdim=True)
+    direction = (latent / radius.clamp_min(NORM_FLOOR))[..., None]
+    turn = _turn(radius)
+    bend, bend_twist = (geometry.bend @ direction)[..., 0], (geometry.bend_twist @ direction)[..., 0]
+    bend_size = _inner(bend, bend_twist, bend, bend_twist)
+    led = (geometry.straight @ direction)[..., 0] + turn * bend
+    return gain.at(radius) * led * (1 + turn.square() * bend_size).rsqrt()
+
+
+def _turn(radius: Tensor) -> Tensor:
+    """How much of the bend counts at a radius: from -1 at rest to 1 at full push and beyond."""
+    return 2 * radius.clamp_max(1) - 1
+
+
+@torch.no_grad()
+def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
+    """The latents (S, B, d) whose actions are nearest to ``action`` (S, B, m).
+
+    For a given radius the best direction is that of least squares (to first order in the bend), so only
+    the radius is searched for: over a grid, then around its best with parabolas. No gradient flows
+    through the search: at a minimum over z the loss does not change with z, so its gradient with respect
+    to the weights is that at fixed z (the envelope theorem).
+    """
+    straight, bend, bend_twist = geometry
+    overlap, cross, spread = straight.mT @ straight, straight.mT @ bend, bend.mT @ bend
+    cross = cross + cross.mT
+    bend_metric = bend_twist.mT @ bend_twist + DAMPING_M2 * spread
+    on_straight, on_bend = (
+        (action[..., None, :] @ straight)[..., 0, :],
+        (action[..., None, :] @ bend)[..., 0, :],
+    )
+
+    def fit(radius: Tensor) -> tuple[Tensor, Tensor]:
+        """Error, less ‖a‖^2, (S, B, K) and best directions (S, B, K, d) for radii (S, B, K)."""
+        turn = _turn(radius)[..., None]
+        target = on_straight[..., None, :] + turn * on_bend[..., None, :]
+        square = turn[..., None]
+        gram = (
+            overlap[..., None, :, :] + square * cross[..., None, :, :] + square**2 * spread[..., None, :, :]
+        )
+        direction = _direction(gram, target)
+        column = direction[..., None]
+        bend_size = (column.mT @ bend_metric[..., None, :, :] @ column)[..., 0, 0]
+        reach = gain.at(radius) * (1 + turn[..., 0].square() * bend_size).rsqrt()
+        length = (column.mT @ gram @ column)[..., 0, 0]
+        return reach.square() * length - 2 * reach * (direction * target).sum(-1), direction
+
+    # Finer towards rest: of a slow action even a small radius can be several times too much.
+    share = torch.arange(1, RADII + 1, dtype=action.dtype, device=action.device) / RADII
+    grid, spacing = MOST_RADIUS * share.square(), 2 * MOST_RADIUS / RADII * share
+    chosen = fit(grid.expand(*action.shape[:-1], RADII))[0].argmin(-1, keepdim=True)
+    best, step = grid[chosen], spacing[chosen]
+    around = torch.linspace(-1, 1, 5, dtype=action.dtype, device=action.device)
+    for _ in range(REFINEMENTS):
+        radii = (best + step * around).clamp(LEAST_RADIUS, MOST_RADIUS)
+        error = fit(radii)[0]
+        middle = error.argmin(-1, keepdim=True).clamp(1, 3)
+        before, here, after = (error.gather(-1, middle + shift) for shift in (-1, 0, 1))
+        curvature = before - 2 * here + after
+        vertex = torch.where(curvature > 0, 0.5 * (before - after) / curvature.clamp_min(NORM_FLOOR), 0.0)
+        best = (radii.gather(-1, middle) + vertex.clamp(-1, 1) * step / 2).clamp(LEAST_RADIUS, MOST_RADIUS)
+        step = step / 6
+    return best * fit(best)[1][..., 0, :]
+
+
+def _direction(gram: Tensor, target: Tensor) -> Tensor:
+    """Unit vectors (..., d) along ``gram^-1 target``, by elimination: d is small and the batch is not."""
+    d = target.shape[-1]
+    if d == 1:
+        return torch.where(target < 0, -1.0, 1.0).to(target.dtype)
+    rows = [torch.cat([gram[..., row, :], target[..., row, None]], dim=-1) for row in range(d)]
+    for pivot in range(d):
+        rows[pivot] = rows[pivot] / rows[pivot][..., pivot, None].clamp_min(NORM_FLOOR)
+        for row in range(d):
+            if row != pivot:
+                rows[row] = rows[row] - rows[row][..., pivot, None] * rows[pivot]
+    solution = torch.stack([row[..., -1] for row in rows], dim=-1)
+    return solution / torch.linalg.vector_norm(solution, dim=-1, keepdim=True).clamp_min(NORM_FLOOR)

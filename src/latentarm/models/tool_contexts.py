@@ -1,0 +1,200 @@
+"""What a decoder that measures motion at the tool is shown: the context, and the arm's geometry in it."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.chain import Chain, Frame
+from latentarm.models.layout import PLACE, TWIST
+from latentarm.models.normaliser import Normaliser, context_normaliser
+from latentarm.models.scaling import SPAN_QUANTILE
+from latentarm.types import FloatArray
+
+ROTATION_WEIGHT_M: Final = 0.05
+"""What a turn of a tool by 1 rad counts beside a motion by 1 m. Low, so that directions of z are told apart
+by where they move the tools; not zero, so that turning a tool in place counts too."""
+
+DAMPING_M2: Final = 1e-2
+"""What a joint's motion by 1 rad counts beside the square of a tool's motion by 1 m: enough to keep motions
+that no tool shows from being free."""
+
+
+@final
+@dataclass(frozen=True)
+class ToolSizes:
+    """Where the parts of an observation lie along its last axis.
+
+    Attributes:
+        context: c.
+        joints: n.
+        tools: k.
+    """
+
+    context: int
+    joints: int
+    tools: int
+
+    @property
+    def seen(self) -> int:
+        """What the network sees: the context and the tools' places."""
+        return self.context + PLACE * self.tools
+
+    @property
+    def twists(self) -> int:
+        """6 k, entries of all tools' twists."""
+        return TWIST * self.tools
+
+    @property
+    def jacobian(self) -> slice:
+        """The weighted Jacobian, 6 k rows of n."""
+        return slice(self.seen, self.seen + self.twists * self.joints)
+
+    @property
+    def lift(self) -> slice:
+        """From twists to joint velocities, n rows of 6 k."""
+        return slice(self.jacobian.stop, self.jacobian.stop + self.twists * self.joints)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class ToolContexts:
+    """The map from contexts to observations ``[c, x, J_w, G^-1 J_w^T]``.
+
+    The metric of the task is ``G(s) = J_w^T J_w + damping 1`` with ``J_w = W^(1/2) J / sqrt(k)`` over all k
+    tools: ``a^T G a`` is the squared speed of the tools, m^2/s^2, where a turn of 1 rad/s counts as much as
+    ``rotation_weight`` m/s, and a little for motion of the joints that no tool shows.
+
+    Attributes:
+        chain: the arm.
+        contexts: normaliser of contexts (..., c), of which the first n entries are the state.
+        places: normaliser of the tools' places (..., 9 k).
+        rotation_weight: m/rad.
+        damping: m^2/rad^2, positive.
+    """
+
+    chain: Chain
+    contexts: Normaliser
+    places: Normaliser
+    rotation_weight: float
+    damping: float
+
+    @staticmethod
+    def fitted(chain: Chain, context: FloatArray) -> "ToolContexts":
+        """The map whose normalisers suit contexts (N, c)."""
+        return ToolContexts(
+            chain=chain,
+            contexts=context_normaliser(context),
+            places=context_normaliser(_places(chain, context[:, : chain.dof])[0]),
+            rotation_weight=ROTATION_WEIGHT_M,
+            damping=DAMPING_M2,
+        )
+
+    @staticmethod
+    def of_tensors(tensors: Mapping[str, FloatArray]) -> "ToolContexts":
+        """The map that `tensors` gave."""
+        parent = tensors["chain.parent"].astype(np.int64)
+        chain = Chain(
+            joint_names=tuple(f"joint{joint + 1}" for joint in range(len(parent))),
+            parent=parent,
+            offset=tensors["chain.offset"],
+            axis=tensors["chain.axis"],
+            anchor=tensors["chain.anchor"],
+            slide=tensors["chain.slide"] > 0.5,
+            tools=tuple(
+                Frame(f"tool{tool + 1}", int(link), transform)
+                for tool, (link, transform) in enumerate(
+                    zip(tensors["chain.tool_link"], tensors["chain.tool"], strict=True)
+                )
+            ),
+        )
+        rotation_weight, damping = tensors["metric.scale"]
+        return ToolContexts(
+            chain=chain,
+            contexts=Normaliser(tensors["context.centre"], tensors["context.scale"]),
+            places=Normaliser(tensors["place.centre"], tensors["place.scale"]),
+            rotation_weight=float(rotation_weight),
+            damping=float(damping),
+        )
+
+    def tensors(self) -> dict[str, FloatArray]:
+        """Everything that the map consists of, as float64 arrays by name."""
+        chain = self.chain
+        return {
+            **self.contexts.tensors(),
+            "place.centre": self.places.centre,
+            "place.scale": self.places.scale,
+            "metric.scale": np.array([self.rotation_weight, self.damping]),
+            "chain.parent": chain.parent.astype(np.float64),
+            "chain.offset": chain.offset.copy(),
+            "chain.axis": chain.axis.copy(),
+            "chain.anchor": chain.anchor.copy(),
+            "chain.slide": chain.slide.astype(np.float64),
+            "chain.tool_link": np.array([float(tool.link) for tool in chain.tools]),
+            "chain.tool": np.stack([tool.transform for tool in chain.tools]),
+        }
+
+    @cached_property
+    def sizes(self) -> ToolSizes:
+        """The sizes of an observation."""
+        return ToolSizes(len(self.contexts.centre), self.chain.dof, len(self.chain.tools))
+
+    def apply(self, context: FloatArray) -> FloatArray:
+        """Observe contexts.
+
+        Args:
+            context: (..., c).
+
+        Returns:
+            (..., c + 9 k + 12 k n), laid out as `ToolSizes` has it.
+        """
+        sizes = self.sizes
+        places, jacobian = _places(self.chain, context[..., : sizes.joints])
+        jacobian = jacobian * self._twist_weight[:, None]
+        metric = jacobian.mT @ jacobian + self.damping * np.eye(sizes.joints)
+        lift = np.asarray(np.linalg.solve(metric, jacobian.mT), dtype=np.float64)
+        lead = context.shape[:-1]
+        return np.concatenate(
+            [
+                self.contexts.apply(context),
+                self.places.apply(places),
+                jacobian.reshape(*lead, -1),
+                lift.reshape(*lead, -1),
+            ],
+            axis=-1,
+        )
+
+    def action_normaliser(self, context: FloatArray, action: FloatArray) -> Normaliser:
+        """One scale for all joints, so that the fastest tools, outliers aside, have the speed 1.
+
+        Args:
+            context: (N, c).
+            action: (N, n), rad/s, not all zero.
+        """
+        jacobian = self.apply(context)[:, self.sizes.jacobian].reshape(len(context), -1, self.sizes.joints)
+        twist = np.matvec(jacobian, action)
+        speed = np.sqrt(np.vecdot(twist, twist) + self.damping * np.vecdot(action, action))
+        return Normaliser(centre=np.zeros(1), scale=np.quantile(speed, SPAN_QUANTILE).reshape(1))
+
+    @cached_property
+    def _twist_weight(self) -> FloatArray:
+        """(6 k,), the square root of W over k."""
+        one = np.concatenate([np.ones(3), np.full(3, self.rotation_weight)])
+        weight: FloatArray = np.tile(one, self.sizes.tools) / math.sqrt(self.sizes.tools)
+        return weight
+
+
+def _places(chain: Chain, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Places (..., 9 k) of all tools at states (..., n), and their Jacobians (..., 6 k, n)."""
+    transforms = chain.link_transforms(state)
+    places: list[FloatArray] = []
+    jacobians: list[FloatArray] = []
+    for tool in range(len(chain.tools)):
+        pose = chain.tool_pose(transforms, tool)
+        axes = pose.rotation[..., :2].reshape(*state.shape[:-1], TWIST)
+        places.append(np.concatenate([pose.position, axes], axis=-1))
+        jacobians.append(chain.jacobian_at(transforms, pose, tool))
+    return np.concatenate(places, axis=-1), np.concatenate(jacobians, axis=-2)
