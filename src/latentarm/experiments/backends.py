@@ -6,17 +6,22 @@ makes its backend the active one and ends what it has started, and nothing else.
 
 import logging
 import os
+import socket
 from collections.abc import Callable, Generator
-from contextlib import AbstractContextManager, ExitStack, contextmanager
-from typing import Any, Final, Literal, cast
+from contextlib import AbstractContextManager, contextmanager
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import joblib
 
 from latentarm.errors import UserError
 
-BackendName = Literal["joblib", "ray", "dask"]
+if TYPE_CHECKING:
+    from dask.distributed import Client
 
 EXTRA: Final = "pip install 'latentarm[cluster]'"
+
+ANSWER_S: Final = 10.0
+"""How long a cluster may take to answer at its address, s."""
 
 
 @contextmanager
@@ -28,7 +33,7 @@ def _processes(jobs: int) -> Generator[int]:
 
 @contextmanager
 def _ray(jobs: int) -> Generator[int]:
-    """A Ray cluster: that of ``RAY_ADDRESS``, one that runs on this machine, or a new one on it."""
+    """A Ray cluster: that of ``RAY_ADDRESS``, or a new one on this machine."""
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Ray would tell its makers that it was used
     try:
         import ray
@@ -49,18 +54,31 @@ def _ray(jobs: int) -> Generator[int]:
 
 
 def _start_ray() -> None:
-    """Join the cluster that the environment names, or start one.
+    """Join the cluster that the environment names, or else start one.
+
+    Without a name Ray would look for a cluster here by itself, and wait for one that is long gone.
 
     Raises:
-        UserError: the cluster does not answer.
+        UserError: the cluster does not answer, or wants a token that the environment does not name.
     """
     import ray
 
+    address = os.environ.get("RAY_ADDRESS", "local")
+    if address.startswith("ray://"):
+        raise UserError(
+            f"RAY_ADDRESS is {address}: run on a machine of the cluster instead, with RAY_ADDRESS=host:port."
+        )
+    host, _, port = address.rpartition(":")
     try:
-        ray.init(include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
-    except ConnectionError as error:
-        address = os.environ.get("RAY_ADDRESS", "this machine")
-        raise UserError(f"No Ray cluster answers at {address}: see RAY_ADDRESS.") from error
+        if port.isdigit():  # and not "auto" or "local"
+            # Ray itself would try for a quarter of an hour.
+            socket.create_connection((host, int(port)), ANSWER_S).close()
+        ray.init(address, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
+    except OSError as error:
+        raise UserError(
+            f"The Ray cluster at {address} does not answer or does not let us in:"
+            " see RAY_ADDRESS and RAY_AUTH_MODE."
+        ) from error
 
 
 @contextmanager
@@ -68,28 +86,46 @@ def _dask(jobs: int) -> Generator[int]:
     """A Dask cluster: that of ``DASK_SCHEDULER_ADDRESS``, or a new one of processes on this machine."""
     try:
         import dask.config
-        from dask.distributed import Client, LocalCluster
     except ImportError as error:
         raise UserError(f"Dask is not installed here: {EXTRA}.") from error
     address: str | None = dask.config.get("scheduler-address", None)
-    with ExitStack() as stack:
-        if address is None:
-            settings: dict[str, Any] = {
-                "threads_per_worker": 1,
-                "dashboard_address": None,
-                "memory_limit": None,
-            }
-            cluster = LocalCluster(n_workers=None if jobs == -1 else jobs, **settings)
-            client = stack.enter_context(Client(stack.enter_context(cluster)))
-        else:
-            try:
-                client = stack.enter_context(Client(address))
-            except (OSError, ValueError) as error:
-                raise UserError(
-                    f"No Dask scheduler answers at {address}: see DASK_SCHEDULER_ADDRESS."
-                ) from error
-        stack.enter_context(joblib.parallel_config("dask", client=client))
+    processes = _dask_processes(jobs) if address is None else _dask_cluster(address)
+    with processes as client, joblib.parallel_config("dask", client=client):
         yield _at_most(jobs, _available(-1))
+
+
+@contextmanager
+def _dask_processes(jobs: int) -> Generator["Client"]:
+    """A client of a new Dask cluster on this machine, which ends with it."""
+    from dask.distributed import Client, LocalCluster
+
+    settings: dict[str, Any] = {"threads_per_worker": 1, "dashboard_address": None, "memory_limit": None}
+    with (
+        LocalCluster(n_workers=None if jobs == -1 else jobs, **settings) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+@contextmanager
+def _dask_cluster(address: str) -> Generator["Client"]:
+    """A client of the Dask cluster at an address.
+
+    Raises:
+        UserError: it does not answer, or has no workers.
+    """
+    from dask.distributed import Client
+
+    try:
+        client = Client(address, timeout=ANSWER_S)
+    except (OSError, ValueError) as error:
+        raise UserError(f"No Dask scheduler answers at {address}: see DASK_SCHEDULER_ADDRESS.") from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=ANSWER_S)
+        except TimeoutError as error:
+            raise UserError(f"The Dask scheduler at {address} has no workers: start some.") from error
+        yield client
 
 
 def _available(jobs: int) -> int:

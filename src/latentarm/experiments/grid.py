@@ -68,10 +68,7 @@ def run_grid(
             raised one; then it says which.
         CellError: a cell raised anything else.
     """
-    if jobs != -1 and jobs < 1:
-        raise UserError(f"The number of jobs is {jobs}: it must be at least 1, or -1 for one per core.")
-    if backend not in BACKENDS:
-        raise UserError(f"There is no backend {backend!r}: choose {', '.join(BACKENDS)}.")
+    check_processes(jobs, backend)
     with BACKENDS[backend](jobs) as workers, _bar(bars) as bar:
         # One cell at a time to each process: a cell takes seconds, and so the bar is told of each.
         one_by_one: dict[str, Any] = {"batch_size": 1, "pre_dispatch": workers}
@@ -89,6 +86,18 @@ def run_grid(
         for category, text in entry.warnings:
             warnings.warn(f"{label(cell)}: {text}", category, stacklevel=2)
     return [entry.result for entry in results]
+
+
+def check_processes(jobs: int, backend: str) -> None:
+    """Refuse what no grid can run on, before any work is done for it.
+
+    Raises:
+        UserError: the number of jobs or the backend is none.
+    """
+    if jobs != -1 and jobs < 1:
+        raise UserError(f"The number of jobs is {jobs}: it must be at least 1, or -1 for one per core.")
+    if backend not in BACKENDS:
+        raise UserError(f"There is no backend {backend!r}: choose from {', '.join(BACKENDS)}.")
 
 
 def _measure(function: Callable[[Cell], Result], cell: Cell, name: str) -> _Measured[Result]:

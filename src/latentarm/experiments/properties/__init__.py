@@ -1,1 +1,1 @@
-"""`latentarm reproduce properties`: do learned latent actions have the user-friendly properties (section 8.1)?"""
+"""`latentarm reproduce properties`: do learned latent actions have the user-friendly properties?"""

@@ -26,6 +26,9 @@ TASK_FIGURES: Final[dict[str, Callable[[Decoders, Sequence[Row]], "Figure"]]] = 
     "reach": reach_figure,
 }
 
+FIGURES: Final = ("beside_paper", "controllability", "noise", *TASK_FIGURES)
+"""Names of all files that `draw_figures` may write, without ``.png``."""
+
 
 def draw_figures(results: Sequence[CellResult], rows: Sequence[Row], out: Path) -> list[Path]:
     """Write a PNG per task, and those over all tasks: noise, controllability, the paper beside ours.

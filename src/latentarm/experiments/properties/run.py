@@ -1,0 +1,229 @@
+"""`latentarm reproduce properties`: every model on every task (section 8.1), as a page with figures."""
+
+import json
+import math
+import platform
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from itertools import product
+from pathlib import Path
+from time import perf_counter
+from typing import Final, cast
+
+from rich.console import Console
+
+from latentarm.errors import UserError
+from latentarm.experiments.checks import check_seed
+from latentarm.experiments.grid import check_processes, run_grid
+from latentarm.experiments.properties.cell import Cell, CellResult, measure_cell
+from latentarm.experiments.properties.figures.draw import FIGURES, draw_figures
+from latentarm.experiments.properties.figures.noise import condition
+from latentarm.experiments.properties.hypotheses import compare_models
+from latentarm.experiments.properties.page import write_page
+from latentarm.experiments.properties.paper import with_paper
+from latentarm.experiments.properties.preset import Preset
+from latentarm.experiments.runs import git_commit
+from latentarm.files import write_text
+from latentarm.metrics.results import write_results
+from latentarm.metrics.summary import Subject, summarise
+from latentarm.models.catalogue import MODELS
+from latentarm.tasks.planar.catalogue import MOTIONS
+from latentarm.types import Row
+
+STUDY: Final = "properties"
+
+CONFIG: Final = "config.json"
+"""What was asked for; it is written first and tells this study's folders from others."""
+
+MADE: Final = (
+    "results.json",
+    "results.md",
+    "seeds.json",
+    "hypotheses.json",
+    "timings.json",
+    *(f"{name}.png" for name in FIGURES),
+)
+"""Every other file of the folder."""
+
+PACKAGES: Final = ("latentarm", "numpy", "scikit-learn", "scipy", "torch")
+
+
+@dataclass(frozen=True)
+class PropertiesConfig:
+    """What `latentarm reproduce properties` was asked for.
+
+    Attributes:
+        out: a new folder, or that of an earlier run of this study, which is replaced.
+        preset: sizes of the study.
+        tasks: names in `MOTIONS`.
+        seed: of everything random.
+        jobs: processes side by side; -1 is one per core.
+        backend: where they run, a name in `latentarm.experiments.backends.BACKENDS`.
+        quiet: say nothing while working.
+        bars: show how far the grid is.
+
+    Raises:
+        UserError: there are no tasks, one is unknown or named twice, or seed, jobs or backend are out of
+            range.
+    """
+
+    out: Path
+    preset: Preset
+    tasks: tuple[str, ...] = tuple(MOTIONS)
+    seed: int = 0
+    jobs: int = -1
+    backend: str = "joblib"
+    quiet: bool = False
+    bars: bool = False
+
+    def __post_init__(self) -> None:
+        check_seed(self.seed)
+        check_processes(self.jobs, self.backend)
+        known = ", ".join(MOTIONS)
+        for task in self.tasks:
+            if task not in MOTIONS:
+                raise UserError(f"There is no task {task!r}: choose from {known}.")
+        if not self.tasks or len(set(self.tasks)) < len(self.tasks):
+            raise UserError(f"Name at least one task, and none twice: choose from {known}.")
+
+
+def run_properties(config: PropertiesConfig) -> list[Row]:
+    """Measure every cell of the study and write figures, tables and tests to ``config.out``.
+
+    ``results.json`` depends on preset, tasks and seed alone; how long it took stands in ``timings.json``.
+
+    Returns:
+        Per task the figures without noise, with the paper's beside them, and those of the noise sweep, whose
+        condition is ``noise ... rad``.
+
+    Raises:
+        UserError: the folder holds something else or cannot be written, the backend is not to be had, or a
+            cell cannot be measured as asked; then it says which.
+    """
+    _claim(config)
+    console = Console(stderr=True, quiet=config.quiet)
+    cells = _cells(config)
+    console.print(
+        f"1/2  {len(MODELS)} models on {', '.join(config.tasks)} at {len(config.preset.noises_rad)} levels of"
+        f" noise: {len(cells)} cells, {config.preset.seeds} seeds each."
+    )
+    began = perf_counter()
+    results = run_grid(
+        measure_cell, cells, jobs=config.jobs, backend=config.backend, label=_label, bars=config.bars
+    )
+    took_s = perf_counter() - began
+    console.print("2/2  Drawing, testing the hypotheses, writing the page.")
+    rows = with_paper([row for task in config.tasks for row in _rows(results, task)])
+    _write(config, results, rows, took_s)
+    return rows
+
+
+def _cells(config: PropertiesConfig) -> list[Cell]:
+    return [
+        Cell(task=task, model=model, noise_rad=noise_rad, preset=config.preset, seed=config.seed)
+        for task, model, noise_rad in product(config.tasks, MODELS, config.preset.noises_rad)
+    ]
+
+
+def _label(cell: Cell) -> str:
+    return f"{cell.task}, {cell.model}, {condition(cell.noise_rad)}"
+
+
+def _rows(results: Sequence[CellResult], task: str) -> list[Row]:
+    """One task's rows: without noise everything, and in the sweep what is measured under every noise."""
+    here = [result for result in results if result.cell.task == task]
+    rows = [
+        summarise(Subject(STUDY, task, result.cell.model), measure, values)
+        for result in here
+        if result.cell.noise_rad == 0
+        for measure, values in result.figures.items()
+    ]
+    if len({result.cell.noise_rad for result in here}) < 2:
+        return rows
+    swept = set[str].intersection(*(set(result.figures) for result in here))
+    rows += [
+        summarise(Subject(STUDY, task, result.cell.model, condition(result.cell.noise_rad)), measure, values)
+        for result in here
+        for measure, values in result.figures.items()
+        if measure in swept
+    ]
+    return rows
+
+
+def _write(
+    config: PropertiesConfig, results: Sequence[CellResult], rows: Sequence[Row], took_s: float
+) -> None:
+    out = config.out
+    tests = compare_models(results)
+    draw_figures(results, rows, out)
+    write_page(out, results, rows, tests, config.preset, config.tasks, config.seed)
+    _write_json(out / "hypotheses.json", [test.as_json() for test in tests])
+    _write_json(
+        out / "seeds.json",
+        [
+            {
+                **_place(result.cell),
+                "measure": measure,
+                "values": [x if math.isfinite(x) else None for x in values.tolist()],
+            }
+            for result in results
+            for measure, values in result.figures.items()
+        ],
+    )
+    _write_json(
+        out / "timings.json",
+        {
+            "backend": config.backend,
+            "jobs": config.jobs,
+            "grid_s": took_s,
+            "cells": [{**_place(result.cell), "fit_s": result.fit_s} for result in results],
+        },
+    )
+    write_results(out / "results.json", rows, _about(config))
+
+
+def _place(cell: Cell) -> dict[str, object]:
+    return {"task": cell.task, "model": cell.model, "condition": condition(cell.noise_rad)}
+
+
+def _about(config: PropertiesConfig) -> dict[str, object]:
+    """What the figures depend on."""
+    return {
+        "study": STUDY,
+        "preset": asdict(config.preset),
+        "tasks": list(config.tasks),
+        "seed": config.seed,
+        "arms": "simulated",
+    }
+
+
+def _claim(config: PropertiesConfig) -> None:
+    """Make room for a new run: an earlier one is removed, anything else is left alone.
+
+    Raises:
+        UserError: the folder holds something that this study did not write, or cannot be written.
+    """
+    out = config.out
+    if out.exists() and not (out.is_dir() and (_is_earlier(out) or not any(out.iterdir()))):
+        raise UserError(
+            f"{out} is there already and is no earlier run of this study: choose another folder with --out."
+        )
+    if out.exists():
+        for name in MADE:
+            (out / name).unlink(missing_ok=True)
+    versions = {"python": platform.python_version(), **{package: version(package) for package in PACKAGES}}
+    _write_json(out / CONFIG, {**_about(config), "versions": versions, "git_commit": git_commit()})
+
+
+def _is_earlier(out: Path) -> bool:
+    """Whether a folder says of itself that it is of this study."""
+    try:
+        config: object = json.loads((out / CONFIG).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(config, dict) and cast(dict[str, object], config).get("study") == STUDY
+
+
+def _write_json(path: Path, document: object) -> None:
+    write_text(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
