@@ -24,10 +24,10 @@ by chance, here this way and there that, would have a seam between the two that 
 SATURATION_START: Final = 1.0
 """First guess of kappa, before softplus."""
 
-RADII: Final = 12
+RADII: Final = 10
 """Values of ‖z‖ that the encoder tries before it refines the best."""
 
-REFINEMENTS: Final = 3
+REFINEMENTS: Final = 2
 """Rounds of refinement, each six times finer than the one before."""
 
 LEAST_RADIUS: Final = 1e-4
@@ -146,18 +146,32 @@ def _geometry(networks: Networks, context: Tensor, latent_dim: int) -> _Geometry
     twist = mlp(networks["decoder"], seen).unflatten(-1, (2 * latent_dim, twists))
     posture = mlp(networks["posture"], seen).unflatten(-1, (2 * latent_dim, joints))
     columns = lift @ twist.mT + posture.mT
-    straight, straight_twist = _orthonormal(columns[..., :latent_dim], jacobian)
-    bend = BEND_SIZE * columns[..., latent_dim:]
-    bend_twist = jacobian @ bend
-    along = straight_twist.mT @ bend_twist + DAMPING_M2 * (straight.mT @ bend)
-    return _Geometry(straight, bend - straight @ along, bend_twist - straight_twist @ along)
+    column_twist = jacobian @ columns
+    straight, straight_twist = _orthonormal(columns[..., :latent_dim], column_twist[..., :latent_dim])
+    bend, bend_twist = BEND_SIZE * columns[..., latent_dim:], BEND_SIZE * column_twist[..., latent_dim:]
+    along = _gram(straight_twist, bend_twist) + DAMPING_M2 * _gram(straight, bend)
+    for axis in range(latent_dim):
+        part = along[..., axis, None, :]
+        bend = bend - straight[..., axis, None] * part
+        bend_twist = bend_twist - straight_twist[..., axis, None] * part
+    return _Geometry(straight, bend, bend_twist)
 
 
-def _orthonormal(columns: Tensor, jacobian: Tensor) -> tuple[Tensor, Tensor]:
-    """Gram-Schmidt in the metric over columns (S, B, m, d): they, and their weighted twists."""
+def _gram(first: Tensor, second: Tensor) -> Tensor:
+    """``A^T B`` of (..., k, d) and (..., k, e): element by element, since they are small and many."""
+    return (first[..., :, None] * second[..., None, :]).sum(-3)
+
+
+def _applied(matrix: Tensor, vector: Tensor) -> Tensor:
+    """``A v`` of (..., k, d) and (..., d): (..., k)."""
+    return (matrix * vector[..., None, :]).sum(-1)
+
+
+def _orthonormal(columns: Tensor, twists: Tensor) -> tuple[Tensor, Tensor]:
+    """Gram-Schmidt in the metric over columns (S, B, m, d) and their weighted twists (S, B, 6 k, d)."""
     done: list[Tensor] = []
     done_twist: list[Tensor] = []
-    for raw, raw_twist in zip(columns.unbind(-1), (jacobian @ columns).unbind(-1), strict=True):
+    for raw, raw_twist in zip(columns.unbind(-1), twists.unbind(-1), strict=True):
         column, twist = raw, raw_twist
         for other, other_twist in zip(done, done_twist, strict=True):
             along = _inner(column, twist, other, other_twist)
@@ -178,11 +192,11 @@ def _inner(first: Tensor, first_twist: Tensor, second: Tensor, second_twist: Ten
 def _decoded(geometry: _Geometry, gain: _Gain, latent: Tensor) -> Tensor:
     """Phi of latents (S, B, d): (S, B, m)."""
     radius = torch.linalg.vector_norm(latent, dim=-1, keepdim=True)
-    direction = (latent / radius.clamp_min(NORM_FLOOR))[..., None]
+    direction = latent / radius.clamp_min(NORM_FLOOR)
     turn = _turn(radius)
-    bend, bend_twist = (geometry.bend @ direction)[..., 0], (geometry.bend_twist @ direction)[..., 0]
+    bend, bend_twist = _applied(geometry.bend, direction), _applied(geometry.bend_twist, direction)
     bend_size = _inner(bend, bend_twist, bend, bend_twist)
-    led = (geometry.straight @ direction)[..., 0] + turn * bend
+    led = _applied(geometry.straight, direction) + turn * bend
     return gain.at(radius) * led * (1 + turn.square() * bend_size).rsqrt()
 
 
@@ -218,11 +232,9 @@ def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
             overlap[..., None, :, :] + square * cross[..., None, :, :] + square**2 * spread[..., None, :, :]
         )
         direction = _direction(gram, target)
-        column = direction[..., None]
-        bend_size = (column.mT @ bend_metric[..., None, :, :] @ column)[..., 0, 0]
+        bend_size = _quadratic(bend_metric[..., None, :, :], direction)
         reach = gain.at(radius) * (1 + turn[..., 0].square() * bend_size).rsqrt()
-        length = (column.mT @ gram @ column)[..., 0, 0]
-        return reach.square() * length - 2 * reach * (direction * target).sum(-1), direction
+        return reach.square() * _quadratic(gram, direction) - 2 * reach * (direction * target).sum(-1), direction
 
     # Finer towards rest: of a slow action even a small radius can be several times too much.
     share = torch.arange(1, RADII + 1, dtype=action.dtype, device=action.device) / RADII
@@ -240,6 +252,11 @@ def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
         best = (radii.gather(-1, middle) + vertex.clamp(-1, 1) * step / 2).clamp(LEAST_RADIUS, MOST_RADIUS)
         step = step / 6
     return best * fit(best)[1][..., 0, :]
+
+
+def _quadratic(matrix: Tensor, vector: Tensor) -> Tensor:
+    """``v^T A v`` for (..., d, d) and (..., d): element by element, since d is small and the batch is not."""
+    return (matrix * vector[..., :, None] * vector[..., None, :]).sum((-2, -1))
 
 
 def _direction(gram: Tensor, target: Tensor) -> Tensor:
