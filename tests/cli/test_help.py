@@ -7,14 +7,22 @@ from importlib.metadata import entry_points
 import pytest
 
 from latentarm.cli import main
+from latentarm.experiments.backends import BACKENDS
+from latentarm.experiments.properties.preset import PRESETS
+from latentarm.tasks.planar.catalogue import MOTIONS
 
-COMMANDS = ["demo", "import", "inspect", "train", "evaluate", "drive", "bench", "robots"]
+COMMANDS = ["demo", "import", "inspect", "train", "evaluate", "drive", "reproduce", "bench", "robots"]
+STUDIES = ["properties"]
+HEAVY = {"torch", "mujoco", "matplotlib", "scipy", "pyarrow", "sklearn", "joblib", "pandas"}
 Run = Callable[..., tuple[int, str, str]]
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize(
+    "command",
+    [name for name in COMMANDS if name != "reproduce"] + [f"reproduce {study}" for study in STUDIES],
+)
 def test_every_command_shows_an_example_and_json(run: Run, command: str) -> None:
-    code, out, _ = run(command, "--help")
+    code, out, _ = run(*command.split(), "--help")
     assert code == 0
     assert f"For example: latentarm {command}" in " ".join(out.split())
     assert "--json" in out
@@ -26,12 +34,25 @@ def test_the_list_of_commands(run: Run) -> None:
     assert "{" + ",".join(COMMANDS) + "}" in out
 
 
-def test_help_loads_nothing_heavy() -> None:
+def test_the_list_of_studies(run: Run) -> None:
+    code, out, _ = run("reproduce", "--help")
+    assert code == 0
+    assert "{" + ",".join(STUDIES) + "}" in out
+
+
+def test_a_study_offers_what_there_is(run: Run) -> None:
+    _, out, _ = run("reproduce", "properties", "--help")
+    for names in (["all", *MOTIONS], PRESETS, BACKENDS):
+        assert "{" + ",".join(names) + "}" in out
+
+
+@pytest.mark.parametrize("words", [["--help"], ["reproduce", "properties", "--help"]])
+def test_help_loads_nothing_heavy(words: list[str]) -> None:
     script = (
         "import sys, latentarm.cli\n"
-        "try: latentarm.cli.main(['--help'])\n"
+        f"try: latentarm.cli.main({words})\n"
         "except SystemExit: pass\n"
-        "heavy = {'torch', 'mujoco', 'matplotlib', 'scipy', 'pyarrow', 'sklearn'} & set(sys.modules)\n"
+        f"heavy = {HEAVY} & set(sys.modules)\n"
         "sys.exit(f'loaded {heavy}' if heavy else 0)"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)

@@ -38,6 +38,11 @@ REFUSED = {
     "nothing to time": (("bench", "--repeats", "0"), "at least 1"),
     "table for another arm": (("drive", "--task", "table_top", "--robot", "planar"), "Panda"),
     "held-out episodes of nothing": (("drive", "--task", "held_out"), "run"),
+    "a study over something else": (
+        ("reproduce", "properties", "--preset", "smoke", "--out", "."),
+        "no earlier run",
+    ),
+    "a study on no process": (("reproduce", "properties", "--jobs", "0"), "jobs is 0"),
     "demo over something else": (("demo", "--out", "."), "no earlier demo"),
 }
 
@@ -58,7 +63,17 @@ def test_refused_in_one_sentence(run: Run, workplace: Path, case: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "words", [("fly",), ("train",), ("train", "--demonstrations", "d", "--model", "gan")]
+    "words",
+    [
+        ("fly",),
+        ("train",),
+        ("train", "--demonstrations", "d", "--model", "gan"),
+        ("reproduce",),
+        ("reproduce", "everything"),
+        ("reproduce", "properties", "--task", "square"),
+        ("reproduce", "properties", "--preset", "huge"),
+        ("reproduce", "properties", "--backend", "slurm"),
+    ],
 )
 def test_words_that_no_command_has(run: Run, words: tuple[str, ...]) -> None:
     code, _, err = run(*words)
