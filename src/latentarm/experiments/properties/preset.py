@@ -29,7 +29,7 @@ class Preset:
     episodes: int = 100
     test_episodes: int = 20
     seeds: int = 10
-    epochs: int = 80
+    epochs: int = 70
     batch_size: int = 100
     hidden: tuple[int, ...] = (64, 64)
     kl_weight: float = 0.001
@@ -43,6 +43,14 @@ class Preset:
 PRESETS: Final[dict[str, Preset]] = {
     "paper": Preset("paper"),
     "smoke": Preset(
-        "smoke", episodes=12, test_episodes=4, seeds=2, epochs=4, reach_pairs=20, reach_goals=5, states=9
+        "smoke",
+        episodes=12,
+        test_episodes=4,
+        seeds=2,
+        epochs=4,
+        reach_pairs=20,
+        reach_goals=5,
+        states=9,
+        noises_rad=(0.0, 0.1),
     ),
 }
