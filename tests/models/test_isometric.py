@@ -128,7 +128,7 @@ def test_no_latent_action_is_nearer_than_the_encoders(demonstrations, samples):
     for seed in range(2):
         decoded = model.decoder(seed).decode(np.linspace(-1.5, 1.5, 2000)[:, None], context[:, None])
         nearest = np.linalg.norm(decoded - action[:, None], axis=-1).min(axis=1)
-        assert (error[seed] <= nearest * 1.001).all()
+        assert (error[seed] <= nearest * 1.005).all()
 
 
 def test_the_loss_is_the_distance_to_what_was_decoded_plus_the_price_of_bending(model, demonstrations):

@@ -27,7 +27,7 @@ SATURATION_START: Final = 1.0
 RADII: Final = 10
 """Values of ‖z‖ that the encoder tries before it refines the best."""
 
-REFINEMENTS: Final = 2
+REFINEMENTS: Final = 3
 """Rounds of refinement, each six times finer than the one before."""
 
 LEAST_RADIUS: Final = 1e-4
@@ -215,26 +215,21 @@ def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
     to the weights is that at fixed z (the envelope theorem).
     """
     straight, bend, bend_twist = geometry
-    overlap, cross, spread = straight.mT @ straight, straight.mT @ bend, bend.mT @ bend
-    cross = cross + cross.mT
-    bend_metric = bend_twist.mT @ bend_twist + DAMPING_M2 * spread
-    on_straight, on_bend = (
-        (action[..., None, :] @ straight)[..., 0, :],
-        (action[..., None, :] @ bend)[..., 0, :],
-    )
+    overlap, cross, spread = _gram(straight, straight), _gram(straight, bend), _gram(bend, bend)
+    bend_metric = _entries(_gram(bend_twist, bend_twist) + DAMPING_M2 * spread)
+    overlap, cross, spread = _entries(overlap), _entries(cross + cross.mT), _entries(spread)
+    on_straight, on_bend = _applied(straight.mT, action)[..., None], _applied(bend.mT, action)[..., None]
+    axes = range(len(overlap))
 
-    def fit(radius: Tensor) -> tuple[Tensor, Tensor]:
-        """Error, less ‖a‖^2, (S, B, K) and best directions (S, B, K, d) for radii (S, B, K)."""
-        turn = _turn(radius)[..., None]
-        target = on_straight[..., None, :] + turn * on_bend[..., None, :]
-        square = turn[..., None]
-        gram = (
-            overlap[..., None, :, :] + square * cross[..., None, :, :] + square**2 * spread[..., None, :, :]
-        )
+    def fit(radius: Tensor) -> tuple[Tensor, list[Tensor]]:
+        """Error, less ‖a‖^2, (S, B, K) and the d entries of the best directions for radii (S, B, K)."""
+        turn = _turn(radius)
+        target = [on_straight[..., axis, :] + turn * on_bend[..., axis, :] for axis in axes]
+        gram = [[overlap[i][j] + turn * (cross[i][j] + turn * spread[i][j]) for j in axes] for i in axes]
         direction = _direction(gram, target)
-        bend_size = _quadratic(bend_metric[..., None, :, :], direction)
-        reach = gain.at(radius) * (1 + turn[..., 0].square() * bend_size).rsqrt()
-        return reach.square() * _quadratic(gram, direction) - 2 * reach * (direction * target).sum(-1), direction
+        reach = gain.at(radius) * (1 + turn.square() * _quadratic(bend_metric, direction)).rsqrt()
+        along = torch.stack([u * v for u, v in zip(direction, target, strict=True)]).sum(0)
+        return reach.square() * _quadratic(gram, direction) - 2 * reach * along, direction
 
     # Finer towards rest: of a slow action even a small radius can be several times too much.
     share = torch.arange(1, RADII + 1, dtype=action.dtype, device=action.device) / RADII
@@ -251,24 +246,37 @@ def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
         vertex = torch.where(curvature > 0, 0.5 * (before - after) / curvature.clamp_min(NORM_FLOOR), 0.0)
         best = (radii.gather(-1, middle) + vertex.clamp(-1, 1) * step / 2).clamp(LEAST_RADIUS, MOST_RADIUS)
         step = step / 6
-    return best * fit(best)[1][..., 0, :]
+    return best * torch.cat(fit(best)[1], dim=-1)
 
 
-def _quadratic(matrix: Tensor, vector: Tensor) -> Tensor:
-    """``v^T A v`` for (..., d, d) and (..., d): element by element, since d is small and the batch is not."""
-    return (matrix * vector[..., :, None] * vector[..., None, :]).sum((-2, -1))
+Entries = list[list[Tensor]]
+"""Matrices (S, B, K, d, d), entry by entry: they are small and many, and torch is slow at such."""
 
 
-def _direction(gram: Tensor, target: Tensor) -> Tensor:
-    """Unit vectors (..., d) along ``gram^-1 target``, by elimination: d is small and the batch is not."""
-    d = target.shape[-1]
-    if d == 1:
-        return torch.where(target < 0, -1.0, 1.0).to(target.dtype)
-    rows = [torch.cat([gram[..., row, :], target[..., row, None]], dim=-1) for row in range(d)]
-    for pivot in range(d):
-        rows[pivot] = rows[pivot] / rows[pivot][..., pivot, None].clamp_min(NORM_FLOOR)
-        for row in range(d):
+def _entries(matrices: Tensor) -> Entries:
+    """Matrices (S, B, d, d) entry by entry, each (S, B, 1)."""
+    return [[entry[..., None] for entry in row.unbind(-1)] for row in matrices.unbind(-2)]
+
+
+def _quadratic(matrix: Entries, vector: list[Tensor]) -> Tensor:
+    """``v^T A v``, (S, B, K)."""
+    terms = [matrix[i][j] * (vector[i] * vector[j]) for i in range(len(vector)) for j in range(len(vector))]
+    return torch.stack(terms).sum(0) if len(terms) > 1 else terms[0]
+
+
+def _direction(gram: Entries, target: list[Tensor]) -> list[Tensor]:
+    """Unit vectors along ``gram^-1 target``, by elimination."""
+    if len(target) == 1:
+        return [torch.where(target[0] < 0, -1.0, 1.0).to(target[0].dtype)]
+    rows = [[*row, value] for row, value in zip(gram, target, strict=True)]
+    for pivot in range(len(rows)):
+        scale = rows[pivot][pivot].clamp_min(NORM_FLOOR)
+        rows[pivot] = [entry / scale for entry in rows[pivot]]
+        for row in range(len(rows)):
             if row != pivot:
-                rows[row] = rows[row] - rows[row][..., pivot, None] * rows[pivot]
-    solution = torch.stack([row[..., -1] for row in rows], dim=-1)
-    return solution / torch.linalg.vector_norm(solution, dim=-1, keepdim=True).clamp_min(NORM_FLOOR)
+                factor = rows[row][pivot]
+                pairs = zip(rows[row], rows[pivot], strict=True)
+                rows[row] = [entry - factor * above for entry, above in pairs]
+    solution = [row[-1] for row in rows]
+    size = torch.stack(solution).square().sum(0).sqrt().clamp_min(NORM_FLOOR)
+    return [entry / size for entry in solution]

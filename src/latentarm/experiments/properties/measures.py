@@ -34,7 +34,7 @@ from latentarm.tasks.planar.reach import ReachRegion
 from latentarm.tasks.planar.rotate import Rotate
 from latentarm.types import Demonstrations, FloatArray, Pairs
 
-SOLVER: Final = SolverConfig(time_s=6.0, joint_weight_m=0.0, refinements=1, hold=5, stall_s=0.75)
+SOLVER: Final = SolverConfig(time_s=5.0, joint_weight_m=0.0, refinements=1, hold=5, stall_s=0.6)
 """Only the tools' distance counts, in the search as in the figure: whatever else the search weighed would
 enlarge the figure of a model that is free to wander in the other joints."""
 

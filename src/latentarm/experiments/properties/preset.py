@@ -29,7 +29,7 @@ class Preset:
     episodes: int = 100
     test_episodes: int = 20
     seeds: int = 10
-    epochs: int = 70
+    epochs: int = 60
     batch_size: int = 100
     hidden: tuple[int, ...] = (64, 64)
     kl_weight: float = 0.001
