@@ -84,8 +84,10 @@ def train_run(config: TrainConfig) -> list[Row]:
     """
     _check_folder(config)
     demonstrations = prepared(read_dataset(config.demonstrations), config.context)
+    chain = None
     if demonstrations.robot in ROBOTS or Path(demonstrations.robot).is_file():
-        load_robot(demonstrations.robot, config.end_effector)  # says now what evaluating would say later
+        # Says now what evaluating would say later.
+        chain = load_robot(demonstrations.robot, config.end_effector).chain
     training, held_out = split_episodes(
         demonstrations, config.held_out, np.random.default_rng([HOLD_OUT_STREAM, config.seed])
     )
@@ -93,7 +95,12 @@ def train_run(config: TrainConfig) -> list[Row]:
     checkpoint = config.out / CHECKPOINT
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        model.fit(select_episodes(demonstrations, training), checkpoint=checkpoint, progress=config.progress)
+        model.fit(
+            select_episodes(demonstrations, training),
+            chain=chain,
+            checkpoint=checkpoint,
+            progress=config.progress,
+        )
     run = Run(
         folder=config.out,
         demonstrations=config.demonstrations,

@@ -4,7 +4,8 @@ H1: only models conditioned on the context reconstruct actions accurately. Read 
 has a lower error than every unconditioned one, on every task.
 
 H2: cAE and cVAE learn a latent space that is controllable, consistent and scalable. Read as: every
-conditioned model comes nearer to its goals than every unconditioned one, a line through its effects has an
+conditioned model comes nearer to its goals than every unconditioned one (not on the circle, where two latent
+axes span the plane and every model comes as near as the solver can), a line through its effects has an
 R^2 above `LINEAR` on the two tasks where the paper fits one, and on the circle its axes lie farther apart in
 angle.
 
@@ -65,7 +66,7 @@ class Claim:
 # Path length is no part of this: an arm that stops far from its goal has a short path.
 CLAIMS: Final = (
     Claim("H1", "error_percent_of_pca", "less"),
-    Claim("H2", "controllability_m", "less"),
+    Claim("H2", "controllability_m", "less", tasks=("sine", "rotate")),
     Claim("H2", "final_distance", "less"),
     Claim("H2", "r2", "greater", threshold=LINEAR, tasks=("sine", "rotate")),
     Claim("H2", "disentanglement_deg", "greater"),
