@@ -220,6 +220,12 @@ def test_it_needs_to_know_the_arm(demonstrations):
     assert given_arm.trained_.dimensions.tools == 1
 
 
+def test_a_model_of_another_metric_is_refused(demonstrations):
+    contexts = ToolContexts.fitted(planar(4).chain, demonstrations.episodes[0].state)
+    with pytest.raises(UserError, match="train it again"):
+        ToolContexts.of_tensors({**contexts.tensors(), "metric.scale": np.array([0.1, DAMPING_M2])})
+
+
 @pytest.mark.parametrize(
     ("tensor", "value"), [("chain.parent", 7.0), ("chain.parent", 0.5), ("chain.tool_link", -3.0)]
 )

@@ -93,7 +93,7 @@ FAULTS = {
         lambda folder: (folder / CONFIG).write_text(" " * (17 * 2**20)),
         "is the most that is read",
     ),
-    "another schema": (lambda folder: change_config(folder, put("schema", 2)), "has schema 2"),
+    "another schema": (lambda folder: change_config(folder, put("schema", 1)), "has schema 1"),
     "no schema": (lambda folder: change_config(folder, lambda model: model.pop("schema")), "has no 'schema'"),
     "unknown kind": (lambda folder: change_config(folder, put("kind", "gan")), "names the model 'gan'"),
     "another kind": (lambda folder: change_config(folder, put("kind", "vae")), "is not what its config.json"),

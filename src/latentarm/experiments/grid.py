@@ -64,8 +64,8 @@ def run_grid(
         The results in the order of the cells.
 
     Raises:
-        UserError: jobs or backend are none, the backend is not to be had, a process was killed, or a cell
-            raised one; then it says which.
+        UserError: jobs or backend are none, the backend is not to be had, one of joblib's own processes
+            was killed, or a cell raised one; then it says which.
         CellError: a cell raised anything else.
     """
     check_processes(jobs, backend)

@@ -26,7 +26,8 @@ BEND_SIZE: Final = 0.3
 class Decoder:
     """``a_h = phi(u, c)`` in rad/s, with u in [-1, 1] spanning what the demonstrations used.
 
-    Normalisers and the latent scale are folded into the first and last layers. Nothing is checked in
+    Normalisers and the latent scale are folded into the first and last layers, save for the isometric model,
+    which looks at the arm first. Nothing is checked in
     `decode`: the control loop has checked its input, and a wrong shape raises in NumPy.
 
     Attributes:

@@ -57,27 +57,29 @@ def principal_start(data: TrainingData, dimensions: Dimensions) -> dict[str, Flo
 class Isometric(NeuralModel):
     """Isometric latent actions: ``phi(z, c) = g(r) R(c, r) z / r`` with r = ‖z‖.
 
-    ``R(c, r) = M(c) + (2 r - 1) N(c)``, brought to unit length: d directions M(c), orthonormal in the metric
-    of the tools ``G(s) = J^T W J + damping 1``, and a bend N(c), metric-orthogonal to them, by which a
-    harder push may lead elsewhere than a soft one. So, by construction, for every context and all weights:
+    ``R(c, r) = M(c) + (2 min(r, 1) - 1) N(c)``, brought to unit length: d directions M(c), orthonormal in
+    the metric of the tools ``G(s) = J^T W J + damping 1``, and a bend N(c), metric-orthogonal to them, by
+    which a harder push may lead elsewhere than a soft one. So, by construction, for every context and all
+    weights:
 
     - ``phi(0, c) = 0``: rest is rest;
     - ``phi(-z, c) = -phi(z, c)``: the opposite input takes a motion back, to first order in the step;
-    - ``‖phi(z, c)‖_G = g(‖z‖)``: the same push moves the tools equally fast everywhere and in every
-      direction, and a harder push faster. ``g(r) = v tanh(kappa r) / tanh(kappa)``: a full push has the
-      demonstrations' highest speed v, and kappa is learned, near zero (a straight line) unless the
+    - ``‖phi(z, c)‖_G = g(‖z‖)``: the same push moves the tools equally fast, in that metric, everywhere and
+      in every direction, and a harder push faster. ``g(r) = v tanh(kappa r) / tanh(kappa)``: a full push
+      has the demonstrations' highest speed v, and kappa is learned, near zero (a straight line) unless the
       demonstrations ask for more;
-    - where the bend is zero, the axes move the tools at right angles.
+    - where the bend is zero, the axes are orthogonal in that metric, which counts turns and joint speeds a
+      little: they move the tools nearly at right angles.
 
     The bend lets d inputs serve demonstrations that differ in more than d ways (a fan of directions at one
     speed); ``bend_weight`` prices it, so that it stays near zero where M(c) alone will do. What the
     networks give are twists of the tools, lifted to the joints by the damped pseudo-inverse
-    ``G^-1 J^T W``, plus joint speeds for what no tool shows. The encoder is the latent action whose action
-    is nearest; it has no weights. All of this builds on the state-conditioned linear decoder (Przystupa et
-    al., arXiv 2410.21441).
+    ``G^-1 J^T W``, plus joint speeds, also for what no tool shows. The encoder searches for the latent
+    action whose action is nearest; it has no weights. All of this builds on the state-conditioned linear
+    decoder (Przystupa et al., arXiv 2410.21441).
 
     Attributes:
-        bend_weight: price of bend and saturation, per unit of their squares.
+        bend_weight: price of the bend, as the tools show it, and of kappa, per unit of their squares.
     """
 
     kind: ClassVar[str] = "isometric"
@@ -209,8 +211,9 @@ def _turn(radius: Tensor) -> Tensor:
 def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
     """The latents (S, B, d) whose actions are nearest to ``action`` (S, B, m).
 
-    For a given radius the best direction is that of least squares (to first order in the bend), so only
-    the radius is searched for: over a grid, then around its best with parabolas. No gradient flows
+    The direction is that of least squares, so only the radius is searched for: over a grid, then around
+    its best with parabolas. That is exact for d = 1, and for d > 1 where nothing bends and the best radius
+    is below `MOST_RADIUS`; otherwise it is an approximation. No gradient flows
     through the search: at a minimum over z the loss does not change with z, so its gradient with respect
     to the weights is that at fixed z (the envelope theorem).
     """

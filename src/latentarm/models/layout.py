@@ -21,7 +21,8 @@ class Layout:
 
     Attributes:
         decoder: ``linear`` is phi(z) without hidden layers, ``latent`` is phi(z), ``latent_context`` is
-            phi(z, c), ``matrix`` is M(c) z, ``isometry`` is M(c, ‖z‖) z in the metric of the tools.
+            phi(z, c), ``matrix`` is M(c) z, ``isometry`` is g(‖z‖) R(c, ‖z‖) z / ‖z‖ in the metric of the
+            tools.
         encoder: ``projection`` onto the columns of the decoder or the ``nearest`` action that it can
             decode (neither has weights of its own), or a network of (c, a) whose output is z
             (``deterministic``) or (mu, log sigma^2) (``gaussian``).
@@ -76,13 +77,16 @@ def network_sizes(layout: Layout, dimensions: Dimensions) -> dict[str, Shape]:
         "matrix": (c, *hidden, d * m),
         "isometry": (seen, *hidden, 2 * d * TWIST * dimensions.tools),
     }
+    beside: dict[str, Shape] = (
+        {"posture": (seen, *hidden, 2 * d * m), "gain": (1, 1)} if layout.decoder == "isometry" else {}
+    )
     encoder: dict[EncoderForm, dict[str, Shape]] = {
         "projection": {},
-        "nearest": {"posture": (seen, *hidden, 2 * d * m), "gain": (1, 1)},
+        "nearest": {},
         "deterministic": {"encoder": (c + m, *hidden, d)},
         "gaussian": {"encoder": (c + m, *hidden, 2 * d)},
     }
-    return {"decoder": decoder[layout.decoder], **encoder[layout.encoder]}
+    return {"decoder": decoder[layout.decoder], **beside, **encoder[layout.encoder]}
 
 
 def weight_shapes(layout: Layout, dimensions: Dimensions) -> dict[str, Shape]:

@@ -26,7 +26,7 @@ from latentarm.types import FloatArray
 
 CONFIG_NAME: Final = "config.json"
 WEIGHTS_NAME: Final = "model.safetensors"
-SCHEMA: Final = 1
+SCHEMA: Final = 2
 CONFIG_LIMIT: Final = 16 * 2**20
 """Bytes; a config with the training curves of a hundred seeds stays far below."""
 HEADER_LIMIT: Final = 2**20
@@ -107,6 +107,12 @@ def read_model(folder: Path) -> TrainedModel:
         hidden=tuple(sizes.integers("hidden", 1)),
         tools=sizes.integer("tools", 0),
     )
+    if LAYOUTS[kind].decoder == "isometry" and (
+        dimensions.tools < 1 or dimensions.context < dimensions.action
+    ):
+        raise UserError(
+            f"{path}: a model of kind '{kind}' has at least one tool, and the state in its context."
+        )
     shapes = tensor_shapes(LAYOUTS[kind], dimensions)
     parameters = section.section("parameters")
     parameters.choice("context", ("state", "state_belief"))

@@ -8,6 +8,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain, Frame
 from latentarm.models.layout import PLACE, TWIST
 from latentarm.models.normaliser import Normaliser, context_normaliser
@@ -95,7 +96,11 @@ class ToolContexts:
 
     @staticmethod
     def of_tensors(tensors: Mapping[str, FloatArray]) -> "ToolContexts":
-        """The map that `tensors` gave."""
+        """The map that `tensors` gave.
+
+        Raises:
+            UserError: it measures in another metric than this version.
+        """
         parent = tensors["chain.parent"].astype(np.int64)
         chain = Chain(
             joint_names=tuple(f"joint{joint + 1}" for joint in range(len(parent))),
@@ -112,6 +117,12 @@ class ToolContexts:
             ),
         )
         rotation_weight, damping = tensors["metric.scale"]
+        if (rotation_weight, damping) != (ROTATION_WEIGHT_M, DAMPING_M2):
+            raise UserError(
+                f"The model measures motion with a rotation weight of {rotation_weight:g} m/rad and a "
+                f"damping of {damping:g} m^2/rad^2, this version with {ROTATION_WEIGHT_M:g} and {DAMPING_M2:g}: "
+                "train it again."
+            )
         return ToolContexts(
             chain=chain,
             contexts=Normaliser(tensors["context.centre"], tensors["context.scale"]),

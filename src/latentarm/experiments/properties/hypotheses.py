@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 Direction = Literal["less", "greater"]
 
 LEVEL: Final = 0.05
-"""Largest p, after Holm's correction, that counts as support."""
+"""A test holds where p, after Holm's correction, is below this."""
 
 LINEAR: Final = 0.9
 """R^2 above which effects count as consistent and scalable. The paper calls 0.94 ± 0.04 "roughly linear", the
 lowest that it prints; this is one SD below, where a line still explains nine tenths of the variance."""
 
 NO_SPREAD: Final = 1e-9
-"""SD in the mean below which the figures of several seeds are the same but for rounding."""
+"""SD, in the largest figure, below which the figures of several seeds are the same but for rounding."""
 
 CONTEXT_FREE: Final = frozenset({"linear", "latent"})
 """Forms of decoder (see `latentarm.models.layout`) that do not see the context."""

@@ -17,7 +17,6 @@ from latentarm.experiments.properties.tables import (
 from latentarm.experiments.properties.verdicts import Verdict, verdicts
 from latentarm.files import write_text
 from latentarm.style import look_of
-from latentarm.tasks.planar.catalogue import MOTIONS
 from latentarm.tasks.planar.motion import SAMPLES, STEP_S
 from latentarm.types import Row
 
@@ -81,7 +80,7 @@ def write_page(
 
 def _introduction(preset: Preset, tasks: Sequence[str], seed: int) -> str:
     """What was done, in numbers, and the command that does it again."""
-    chosen = "".join(f" --task {task}" for task in tasks) if set(tasks) != set(MOTIONS) else ""
+    chosen = f" --task {tasks[0]}" if len(tasks) == 1 else ""
     layers = " and ".join(map(str, preset.hidden))
     return f"""Section 8.1 of Losey et al., *Learning Latent Actions to Control Assistive Robots*, done again.
 Everything is **simulated**: planar arms, and the people who demonstrate. No person took part.
@@ -91,8 +90,9 @@ latentarm reproduce properties --preset {preset.name}{chosen} --seed {seed}
 ```
 
 - For each task a simulated person gives {preset.episodes} demonstrations of {SAMPLES} state-action pairs
-  ({preset.episodes * SAMPLES} pairs), and {preset.test_episodes} more to measure on; every model has the
-  same ones.
+  ({preset.episodes * SAMPLES} pairs), and {preset.test_episodes} more to measure on (drives into the goal
+  region have starts and goals of their own); every model has the same ones. A fifth of the training
+  demonstrations is not fitted to: it says which epoch was best.
 - {preset.seeds} models of each kind; at most {preset.epochs} passes over the pairs, hidden layers of
   {layers} units, KL weight {preset.kl_weight:g}.
 - Controllability: {preset.reach_pairs} pairs of start and goal (reach: {preset.reach_goals} goals in the
@@ -133,8 +133,8 @@ def _reading() -> str:
   tasks are nor how they are demonstrated: the same order of models is to be expected, equal figures are
   not.
 - {UNIT_NOT_STATED} marks a length of the paper, whose unit it does not state. Compare only the rows in
-  percent of PCA's or of the VAE's; on sine and reach the paper's percentages are ratios of the means
-  that it prints, and so have no SD.
+  percent of PCA's or of the VAE's; sine's controllability and reach's lengths in percent are ratios of
+  the means that the paper prints, and so have no SD.
 - On rotate the paper prints R² twice for cVAE (0.995 ± 0.004, then 0.996 ± 0.002) and not for cAE; the
   second is read as cAE.
 - *At least as good* compares means, and names the best of the paper's models (PCA, AE, VAE, cAE, cVAE), as

@@ -46,7 +46,7 @@ MADE: Final = (
 )
 """Every other file of the folder."""
 
-PACKAGES: Final = ("latentarm", "numpy", "scikit-learn", "scipy", "torch")
+PACKAGES: Final = ("latentarm", "numpy", "pingouin", "scikit-learn", "scipy", "torch")
 
 
 @dataclass(frozen=True)

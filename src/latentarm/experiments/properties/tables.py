@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Final
 
 from latentarm.experiments.properties.hypotheses import Comparison
+from latentarm.experiments.properties.measures import RESOLUTION_M
 from latentarm.experiments.properties.paper import LENGTHS, MODELS_OF_THE_PAPER
 from latentarm.experiments.properties.verdicts import format_p
 from latentarm.metrics.table import ABSENT, format_figure, measure_name
@@ -32,6 +33,11 @@ UNIT_NOT_STATED: Final = "†"
 
 EQUAL: Final = 1e-9
 """Difference of two means, in the larger of them, below which they are equal but for rounding."""
+
+SAME_THING: Final = frozenset({"noise_free_error_percent_of_pca", "controllability_percent_of_pca"})
+"""Measures that, without noise, say again what another one says: they do not count twice."""
+
+DISTANCES: Final = frozenset({"controllability_m", "final_distance"})
 
 Cells = dict[tuple[str, str], Row]
 """Rows by measure and model."""
@@ -79,7 +85,7 @@ def comparison_table(comparisons: Sequence[Comparison]) -> str:
 def as_good_as_paper(rows: Iterable[Row], task: str) -> tuple[int, int]:
     """On how many of a task's measures `OURS` is at least as good as the paper's best, and of how many."""
     cells = _cells(row for row in rows if row.task == task and row.condition is None)
-    said = [_as_good(cells, measure) for measure in _edges(cells)[0]]
+    said = [_as_good(cells, measure) for measure in _edges(cells)[0] if measure not in SAME_THING]
     return said.count("yes"), sum(text != ABSENT for text in said)
 
 
@@ -134,6 +140,8 @@ def _as_good(cells: Cells, measure: str) -> str:
     }
     if ours is None or ours.mean is None or not others:
         return ABSENT
+    if measure in DISTANCES and max(ours.mean, *others.values()) < RESOLUTION_M:
+        return ABSENT  # what is left is the solver's
     best = (min if measure in LESS_IS_BETTER else max)(others, key=others.__getitem__)
     near = abs(others[best] - ours.mean) <= EQUAL * max(abs(others[best]), abs(ours.mean))
     if near or not better(others[best], ours.mean):

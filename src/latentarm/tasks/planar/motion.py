@@ -9,8 +9,8 @@ from latentarm.types import Demonstrations, FloatArray
 
 STEP_S = 0.01
 """dt of the transition ``s' = s + a dt``, s: one period of the 100 Hz control loop. The paper leaves it open;
-it is short enough for a step along the tightest curve to turn by less than a degree, so that figures speak of
-the task's shape and not of the step's length."""
+it is short enough for a step along the tightest curve to turn by less than three degrees, so that figures
+speak of the task's shape and not of the step's length."""
 
 SAMPLES = 100
 """State-action pairs of a demonstration, spread evenly over its duration."""

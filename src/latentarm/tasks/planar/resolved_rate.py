@@ -59,7 +59,7 @@ def follow(
 
     Returns:
         E episodes of `SAMPLES` states with the actions ``a`` taken there: ``s + a dt`` with dt = `STEP_S` is
-        on the path. Between two recorded samples are further steps.
+        on the path to first order. Between two recorded samples are further steps.
 
     Raises:
         UserError: no episode is asked for.

@@ -1,4 +1,4 @@
-"""Figure of the Rotate task, after the paper's figure 6."""
+"""Figure of the Rotate task, after the paper's."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final

@@ -1,4 +1,4 @@
-"""Figure of the Sine task, after the paper's figure 5."""
+"""Figure of the Sine task, after the paper's."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
