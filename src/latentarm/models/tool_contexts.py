@@ -120,8 +120,8 @@ class ToolContexts:
         if (rotation_weight, damping) != (ROTATION_WEIGHT_M, DAMPING_M2):
             raise UserError(
                 f"The model measures motion with a rotation weight of {rotation_weight:g} m/rad and a "
-                f"damping of {damping:g} m^2/rad^2, this version with {ROTATION_WEIGHT_M:g} and {DAMPING_M2:g}: "
-                "train it again."
+                f"damping of {damping:g} m^2/rad^2, this version with {ROTATION_WEIGHT_M:g} and "
+                f"{DAMPING_M2:g}: train it again."
             )
         return ToolContexts(
             chain=chain,
