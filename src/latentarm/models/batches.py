@@ -10,6 +10,8 @@ from torch import Tensor
 
 from latentarm.types import FloatArray
 
+ELSEWHERE: Final = 32
+
 FEWEST_STEPS: Final = 16
 """Steps of an epoch, at least: a small dataset is cut into smaller batches."""
 
@@ -22,11 +24,13 @@ class Batch(NamedTuple):
         action: (S, B, m), normalised.
         noise: (S, B, k), standard normal for training and zero for judging; k = 0 where the encoder
             is deterministic.
+        elsewhere: (S, E, c), contexts without demonstrated actions, for terms that need none.
     """
 
     context: Tensor
     action: Tensor
     noise: Tensor
+    elsewhere: Tensor
 
 
 @dataclass(frozen=True)
@@ -38,12 +42,14 @@ class TrainingData:
         action: (N, m).
         held_out_context: (H, c), pairs of the held-out episodes.
         held_out_action: (H, m).
+        elsewhere: (M, c), contexts without demonstrated actions; none where no term asks for them.
     """
 
     context: FloatArray
     action: FloatArray
     held_out_context: FloatArray
     held_out_action: FloatArray
+    elsewhere: FloatArray
 
 
 def seed_generator(seed: int, stream: int) -> torch.Generator:
@@ -74,12 +80,15 @@ class Batches:
         self._seeds, self._noise_dim, self._device = tuple(seeds), noise_dim, device
         self._context, self._action = tensor(data.context), tensor(data.action)
         self._pairs = len(data.context)
+        self._elsewhere = tensor(data.elsewhere)
+        self._rows = min(ELSEWHERE, len(data.elsewhere))
         self.size = max(1, min(batch_size, self._pairs // FEWEST_STEPS))
         many, held_out = len(seeds), len(data.held_out_context)
         self.held_out = Batch(
             context=tensor(data.held_out_context).expand(many, -1, -1).contiguous(),
             action=tensor(data.held_out_action).expand(many, -1, -1).contiguous(),
             noise=torch.zeros(many, held_out, noise_dim, device=device),
+            elsewhere=self._elsewhere.expand(many, -1, -1),
         )
 
     def epoch(self, epoch: int) -> Iterator[Batch]:
@@ -88,16 +97,23 @@ class Batches:
         steps = self._pairs // size
         order = torch.empty(steps, many, size, dtype=torch.int64)
         noise = torch.empty(steps, many, size, self._noise_dim)
+        places = torch.empty(steps, many, self._rows, dtype=torch.int64)
         for index, seed in enumerate(self._seeds):
             generator = seed_generator(seed, epoch)
             order[:, index] = torch.randperm(self._pairs, generator=generator)[: steps * size].view(
                 steps, size
             )
             noise[:, index] = torch.randn(steps, size, self._noise_dim, generator=generator)
+            if self._rows:
+                places[:, index] = torch.randint(
+                    len(self._elsewhere), (steps, self._rows), generator=generator
+                )
         order, noise = order.to(self._device).view(steps, many * size), noise.to(self._device)
-        for chosen, drawn in zip(order, noise, strict=True):
+        places = places.to(self._device).view(steps, many * self._rows)
+        for chosen, drawn, place in zip(order, noise, places, strict=True):
             yield Batch(
                 context=self._context.index_select(0, chosen).view(many, size, -1),
                 action=self._action.index_select(0, chosen).view(many, size, -1),
                 noise=drawn,
+                elsewhere=self._elsewhere.index_select(0, place).view(many, self._rows, self._elsewhere.shape[-1]),
             )

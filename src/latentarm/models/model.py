@@ -28,6 +28,7 @@ from latentarm.models.scaling import (
     latent_scale,
     unit_scale,
 )
+from latentarm.models.term import LossTerm, MeasuredTerm, Units
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.trained import TrainedModel, TrainingSummary
 from latentarm.models.training import TrainingResult
@@ -101,7 +102,12 @@ class LatentActionModel(ABC):
 
     @abstractmethod
     def _learn(
-        self, data: TrainingData, dimensions: Dimensions, checkpoint: Path | None, progress: bool
+        self,
+        data: TrainingData,
+        dimensions: Dimensions,
+        term: MeasuredTerm | None,
+        checkpoint: Path | None,
+        progress: bool,
     ) -> TrainingResult:
         """Fit the weights of S seeds to normalised pairs."""
 
@@ -119,6 +125,7 @@ class LatentActionModel(ABC):
         *,
         held_out: Sequence[int] | None = None,
         chain: Chain | None = None,
+        term: LossTerm | None = None,
         checkpoint: Path | None = None,
         progress: bool = False,
     ) -> Self:
@@ -158,7 +165,7 @@ class LatentActionModel(ABC):
         )
         arm = self._arm(demonstrations, chain) if self.sees_tools else None
         chosen = tuple(int(index) for index in held_out)
-        self.trained_ = self._fit_pairs(pairs, chosen, arm, checkpoint, progress)
+        self.trained_ = self._fit_pairs(pairs, chosen, arm, term, checkpoint, progress)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds
             warn(CollapseWarning(describe_collapse(self.kind, seeds, self.collapsed_)), stacklevel=2)
@@ -277,6 +284,7 @@ class LatentActionModel(ABC):
         pairs: Pairs,
         held_out: tuple[int, ...],
         arm: Chain | None,
+        term: LossTerm | None,
         checkpoint: Path | None,
         progress: bool,
     ) -> TrainedModel:
@@ -303,8 +311,24 @@ class LatentActionModel(ABC):
             action=actions.apply(action),
             held_out_context=contexts.apply(pairs.context[outside]),
             held_out_action=actions.apply(pairs.action[outside]),
+            elsewhere=contexts.apply(
+                term.contexts(context, dimensions.action, np.random.default_rng([self.data_seed, 2]))
+                if term
+                else context[:0]
+            ),
         )
-        learned = self._learn(data, dimensions, checkpoint, progress)
+        of_context = contexts.contexts if isinstance(contexts, ToolContexts) else contexts
+        measured = term and MeasuredTerm(
+            term,
+            Units(
+                context_centre=of_context.centre,
+                context_scale=of_context.scale,
+                action_scale=actions.scale,
+                speed=float(np.sqrt(np.square(action).sum(axis=1).mean())),
+                joints=dimensions.action,
+            ),
+        )
+        learned = self._learn(data, dimensions, measured, checkpoint, progress)
         weights = learned.weights
         latents = self._encode_rows(weights, data.context, data.action)
         centre = np.zeros_like(latents[:, 0]) if self.rests_at_zero else latents.mean(axis=1)

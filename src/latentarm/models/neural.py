@@ -16,6 +16,8 @@ from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.layout import LAYOUTS, Dimensions, weight_shapes
 from latentarm.models.model import LatentActionModel, Weights
 from latentarm.models.networks import Networks, mlp, networks_from_arrays
+from latentarm.models.scaling import SPAN_QUANTILE
+from latentarm.models.term import MeasuredTerm
 from latentarm.models.training import TrainingConfig, TrainingResult, train
 from latentarm.types import FloatArray
 
@@ -48,13 +50,37 @@ class NeuralModel(LatentActionModel, ABC):
 
     @final
     def _learn(
-        self, data: TrainingData, dimensions: Dimensions, checkpoint: Path | None, progress: bool
+        self,
+        data: TrainingData,
+        dimensions: Dimensions,
+        term: MeasuredTerm | None,
+        checkpoint: Path | None,
+        progress: bool,
     ) -> TrainingResult:
         layout = LAYOUTS[self.kind]
         apart = ("device", "checkpoint_interval_s")
         identity = {name: value for name, value in self.parameters().items() if name not in apart}
+
+
+        def objective(networks: Networks, batch: Batch) -> Tensor:
+            loss = self._loss(networks, batch)
+            if term is None:
+                return loss
+            with torch.no_grad():
+                latent = self._latent(networks, batch.context, batch.action)
+                if layout.encoder == "nearest":
+                    centre, scale = torch.zeros_like(latent[:, :1]), torch.ones_like(latent[:, :1])
+                else:
+                    centre = latent.mean(dim=1, keepdim=True)
+                    if self.rests_at_zero:
+                        centre = torch.zeros_like(centre)
+                    scale = (latent - centre).abs().quantile(SPAN_QUANTILE, dim=1, keepdim=True)
+            return loss + term.term(
+                lambda z, c: self._action(networks, z, c), batch.elsewhere, centre, scale, term.units
+            )
+
         return train(
-            self._loss,
+            objective,
             weight_shapes(layout, dimensions),
             dimensions.latent if layout.encoder == "gaussian" else 0,
             data,

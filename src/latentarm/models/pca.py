@@ -28,7 +28,7 @@ class PCA(LatentActionModel):
     rests_at_zero: ClassVar[bool] = False
 
     def _learn(
-        self, data: TrainingData, dimensions: Dimensions, checkpoint: Path | None, progress: bool
+        self, data: TrainingData, dimensions: Dimensions, term: object, checkpoint: Path | None, progress: bool
     ) -> TrainingResult:
         if len(data.action) < dimensions.latent:
             raise UserError(
