@@ -22,7 +22,7 @@ from latentarm.metrics.table import markdown_table
 from latentarm.robots.catalogue import load_robot
 from latentarm.types import Row
 
-MODELS = ("pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl")
+MODELS = ("pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "isometric")
 SPLITS = range(5)
 SHOWN = (
     "error_percent_of_pca",

@@ -166,6 +166,20 @@ def test_lengths_stand_in_millimetres_without_the_papers_which_has_no_unit():
     assert in_mm(lengths)["pca"].mean == pytest.approx(10.0)
 
 
+def test_distances_that_are_rounding_are_said_to_be_small_and_not_drawn():
+    rows = [
+        Row("properties", measure, "m", mean, mean, 3, "circle", model)
+        for model, distance in {"pca": 0.0, "cae": 7e-9, "scl": 0.002}.items()
+        for measure, mean in {"controllability_m": distance, "start_distance_m": 0.13}.items()
+    ]
+    figure = controllability_figure(rows, ["circle"])
+    assert_well_drawn(figure)
+    (axes,) = figure.axes
+    assert axes.get_xlim()[0] >= 0.001  # mm
+    assert [text.get_text() for text in axes.texts] == ["< 0.001", "< 0.001", "2.0 ± 2.0"]
+    assert [patch.get_width() > 1.9 for patch in axes.patches] == [True]
+
+
 def test_models_that_differ_in_the_sign_of_z_alone_look_the_same():
     robot = planar(5)
     states = np.random.default_rng(0).normal(1.0, 0.1, (6, 5))

@@ -7,7 +7,12 @@ import pytest
 from scipy import stats
 
 from latentarm.experiments.properties.cell import Cell, CellResult
-from latentarm.experiments.properties.hypotheses import LINEAR, compare_models, conditioned
+from latentarm.experiments.properties.hypotheses import (
+    LINEAR,
+    Comparison,
+    compare_models,
+    conditioned,
+)
 from latentarm.experiments.properties.preset import PRESETS
 from latentarm.experiments.properties.verdicts import format_p, verdicts
 from latentarm.models.catalogue import MODELS
@@ -113,7 +118,7 @@ def test_what_cannot_be_tested_supports_nothing_and_says_why(cae, ae):
     assert not one.holds
     (verdict,) = verdicts([one])
     assert not verdict.supported
-    assert "could not be tested" in verdict.sentence
+    assert "cAE could not be tested against AE in error_percent_of_pca" in verdict.by_task[one.task]
 
 
 def test_a_reference_is_not_excused_by_seeds_that_failed():
@@ -149,13 +154,49 @@ def test_verdicts_name_the_task_and_what_failed_there():
     rng = np.random.default_rng(0)
     good = verdicts(compare_models(study(rng)))
     assert [(one.in_paper, one.supported) for one in good] == [(True, True), (False, True)]
-    assert good[0].sentence == "supported on sine, reach"
+    assert good[0].by_task == {"sine": "supported", "reach": "supported"}
     bad, further = verdicts(compare_models(study(rng, reach_mean=65.0)))
     assert not bad.supported
     assert further.supported
-    assert bad.sentence.startswith("supported on sine; not supported on reach: cVAE's")
-    assert "AE (" in bad.sentence
-    assert "PCA (" not in bad.sentence
+    assert bad.by_task == {
+        "sine": "supported",
+        "reach": "not supported: cVAE is not significantly below AE in error_percent_of_pca",
+    }
+
+
+def a_test(model, against, measure=ERROR, p=0.5):
+    direction = "greater" if measure == "r2" else "less"
+    return Comparison(
+        "H2", True, "sine", measure, model, against, direction, 2.0, 0.9, 3, 3, "Welch", p=p, p_holm=p
+    )
+
+
+def test_models_that_fail_alike_are_named_together():
+    tests = [a_test(model, other) for model in ("cae", "scl") for other in ("ae", "vae")]
+    (verdict,) = verdicts([*tests, a_test("scl", None, "r2")])
+    assert verdict.by_task["sine"] == (
+        "not supported: cAE and SCL are not significantly below AE and VAE in error_percent_of_pca,"
+        " nor SCL above 0.9 in r2"
+    )
+
+
+def test_what_could_not_be_tested_is_told_from_what_failed():
+    (verdict,) = verdicts([a_test("cae", "ae"), a_test("scl", "ae", p=None)])
+    assert verdict.by_task["sine"] == (
+        "not supported: cAE is not significantly below AE in error_percent_of_pca;"
+        " SCL could not be tested against AE in error_percent_of_pca"
+    )
+
+
+def test_where_many_fail_apart_they_are_counted():
+    models, others = ("cae", "cvae", "scl", "isometric"), ("pca", "ae", "vae")
+    tests = [
+        a_test(model, other, p=0.001 if place == kept else 0.5)
+        for place, other in enumerate(others)
+        for kept, model in enumerate(models)
+    ]
+    (verdict,) = verdicts(tests)
+    assert verdict.by_task["sine"] == "not supported: 9 of 12 tests do not hold, in error_percent_of_pca"
 
 
 def test_comparisons_are_plain_figures():

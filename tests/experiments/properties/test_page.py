@@ -133,6 +133,7 @@ def test_the_page_has_every_part(tmp_path):
     ]
     assert "**H1**" in page
     assert "**H2**" in page
+    assert "\n- sine: supported\n" in page
     assert page.index("(overview.png)") < page.index("## Sine") < page.index("(sine_effects.png)")
     assert page.count("(sine_effects.png)") == 1
     assert comparison_table(tests) in page

@@ -105,20 +105,22 @@ latentarm reproduce properties --preset {preset.name}{chosen} --seed {seed}
 
 def _in_short(rows: Sequence[Row], tests: Sequence[Comparison], tasks: Sequence[str]) -> str:
     """The verdicts, and how our model fares."""
-    lines = ["## In short\n", *(_verdict_line(verdict) for verdict in verdicts(tests))]
+    lines = ["## In short\n", *(_verdict_lines(verdict) for verdict in verdicts(tests))]
     counts = {task: as_good_as_paper(rows, task) for task in tasks}
     if any(of for _, of in counts.values()):
         said = ", ".join(f"{good} of {of} on {task}" for task, (good, of) in counts.items() if of)
         lines.append(
-            f"- {look_of(OURS).label} is at least as good as the best of the paper's models in this many "
-            f"measures: {said}."
+            f"In this many measures {look_of(OURS).label} is at least as good as the best of the paper's "
+            f"models: {said}.\n"
         )
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines)
 
 
-def _verdict_line(verdict: Verdict) -> str:
+def _verdict_lines(verdict: Verdict) -> str:
+    """A hypothesis, and below it what each task says of it."""
     of = "the paper's models" if verdict.in_paper else "conditioned models that the paper does not have"
-    return f"- **{verdict.hypothesis}**, {HYPOTHESES[verdict.hypothesis]}; {of}: {verdict.sentence}."
+    lines = [f"**{verdict.hypothesis}**, {HYPOTHESES[verdict.hypothesis]}; {of}:\n"]
+    return "\n".join([*lines, *(f"- {task}: {said}" for task, said in verdict.by_task.items())]) + "\n"
 
 
 def _figures(names: Sequence[str]) -> list[str]:

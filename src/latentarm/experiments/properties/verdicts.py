@@ -1,11 +1,16 @@
-"""What the tests of the hypotheses come to, in one sentence for each family."""
+"""What the tests of the hypotheses come to: for each family of tests, one short line per task."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
-from latentarm.experiments.properties.hypotheses import Comparison
-from latentarm.metrics.table import format_figure
+from latentarm.experiments.properties.hypotheses import Comparison, Direction
 from latentarm.style import look_of
+
+LONGEST: Final = 140
+"""Characters in which a task's verdict says what failed; where that takes more, it counts what failed."""
+
+SIDES: Final[Mapping[Direction, str]] = {"less": "below", "greater": "above"}
 
 
 @dataclass(frozen=True)
@@ -16,13 +21,13 @@ class Verdict:
         hypothesis: ``H1`` or ``H2``.
         in_paper: whether it is about the paper's models or about the further ones.
         supported: whether every comparison holds.
-        sentence: ``supported on ...``, ``not supported on ...: why``.
+        by_task: task -> ``supported`` or ``not supported: why``, in the tasks' order.
     """
 
     hypothesis: str
     in_paper: bool
     supported: bool
-    sentence: str
+    by_task: Mapping[str, str]
 
 
 def verdicts(comparisons: Sequence[Comparison]) -> list[Verdict]:
@@ -42,32 +47,68 @@ def format_p(p: float | None) -> str:
 
 
 def _verdict(family: Sequence[Comparison]) -> Verdict:
-    first = family[0]
-    tasks = list(dict.fromkeys(one.task for one in family))
-    failing = {task: [one for one in family if one.task == task and not one.holds] for task in tasks}
-    supporting = [task for task in tasks if not failing[task]]
-    parts = [f"supported on {', '.join(supporting)}"] if supporting else []
-    parts += [f"not supported on {task}: {_reasons(failing[task])}" for task in tasks if failing[task]]
-    return Verdict(first.hypothesis, first.in_paper, supporting == tasks, "; ".join(parts))
-
-
-def _reasons(failing: Sequence[Comparison]) -> str:
-    """Every failing comparison, those of a model's measure together."""
-    groups = dict.fromkeys((one.model, one.measure) for one in failing)
-    return ", and ".join(
-        _reason([one for one in failing if (one.model, one.measure) == group]) for group in groups
+    tasks = dict.fromkeys(one.task for one in family)
+    return Verdict(
+        hypothesis=family[0].hypothesis,
+        in_paper=family[0].in_paper,
+        supported=all(one.holds for one in family),
+        by_task={task: _said([one for one in family if one.task == task]) for task in tasks},
     )
 
 
-def _reason(failing: Sequence[Comparison]) -> str:
-    first = failing[0]
-    side = {"less": "below", "greater": "above"}[first.direction]
-    others = [look_of(one.against).label if one.against else "the threshold" for one in failing]
-    figures = [
-        f"{other} ({format_figure(one.mean_against, None)})"
-        for other, one in zip(others, failing, strict=True)
+def _said(tests: Sequence[Comparison]) -> str:
+    """What all tests of one task come to."""
+    failing = [one for one in tests if not one.holds]
+    if not failing:
+        return "supported"
+    reasons = [
+        _not_beyond([one for one in failing if one.p is not None]),
+        _untested([one for one in failing if one.p is None]),
     ]
-    ours = f"{look_of(first.model).label}'s `{first.measure}` ({format_figure(first.mean, None)})"
-    if all(one.p is None for one in failing):
-        return f"{ours} could not be tested against {', '.join(figures)}"
-    return f"{ours} is not significantly {side} {', '.join(figures)}"
+    said = f"not supported: {'; '.join(filter(None, reasons))}"
+    if len(said) <= LONGEST:
+        return said
+    measures = _listed(one.measure for one in failing)
+    return f"not supported: {len(failing)} of {len(tests)} tests do not hold, in {measures}"
+
+
+def _not_beyond(failing: Sequence[Comparison]) -> str:
+    """Which models are not on the hypothesis' side of which others."""
+    parts: list[str] = []
+    for alike in _alike(failing):
+        models = _listed(look_of(one.model).label for one in alike)
+        verb = "is" if len({one.model for one in alike}) == 1 else "are"
+        said_before = "" if parts else f" {verb} not significantly"
+        parts.append(f"{models}{said_before} {SIDES[alike[0].direction]} {_others(alike)}")
+    return ", nor ".join(parts)
+
+
+def _untested(failing: Sequence[Comparison]) -> str:
+    """Which models could not be tested against which others."""
+    return "; ".join(
+        f"{_listed(look_of(one.model).label for one in alike)} could not be tested against {_others(alike)}"
+        for alike in _alike(failing)
+    )
+
+
+def _alike(failing: Sequence[Comparison]) -> list[list[Comparison]]:
+    """The comparisons, those together that differ in their model alone: same measure, same others."""
+    others: dict[tuple[str, str], list[Comparison]] = {}
+    for one in failing:
+        others.setdefault((one.measure, one.model), []).append(one)
+    groups: dict[tuple[str, tuple[str | None, ...]], list[Comparison]] = {}
+    for (measure, _), ones in others.items():
+        groups.setdefault((measure, tuple(one.against for one in ones)), []).extend(ones)
+    return list(groups.values())
+
+
+def _others(alike: Sequence[Comparison]) -> str:
+    """``AE and VAE in controllability_m``, or the threshold in their place."""
+    names = _listed(look_of(one.against).label if one.against else f"{one.mean_against:g}" for one in alike)
+    return f"{names} in {alike[0].measure}"
+
+
+def _listed(names: Iterable[str]) -> str:
+    """``A, B and C``, each once."""
+    *most, last = dict.fromkeys(names)
+    return f"{', '.join(most)} and {last}" if most else last

@@ -18,8 +18,13 @@ DECADES: Final = 50.0
 PAPER_SIGN: Final = "($\\diamond$: the paper)"
 
 
-def log_axis(axes: "Axes", figures: Collection[Point]) -> float:
+def log_axis(axes: "Axes", figures: Collection[Point], least: float = 0.0) -> float:
     """Make the x axis logarithmic, around all figures and the paper's.
+
+    Args:
+        axes: the panel.
+        figures: all that are drawn.
+        least: the axis goes no further down.
 
     Returns:
         Its left edge, where bars begin.
@@ -29,7 +34,7 @@ def log_axis(axes: "Axes", figures: Collection[Point]) -> float:
     axes.set_xscale("log")
     spans = [(figure.mean, figure.mean + figure.sd) for figure in figures]
     spans += [(figure.paper, figure.paper) for figure in figures if figure.paper is not None]
-    left = 0.5 * min((low for low, _ in spans if low > 0), default=1.0)
+    left = max(0.5 * min((low for low, _ in spans if low > 0), default=1.0), least)
     right = 1.6 * max((high for _, high in spans), default=1.0)
     axes.set_xlim(left, max(right, 2 * left))
     between = (1.0,) if right > DECADES * left else (1.0, 2.0, 5.0)
@@ -39,7 +44,7 @@ def log_axis(axes: "Axes", figures: Collection[Point]) -> float:
     return left
 
 
-def draw_bars(axes: "Axes", figures: Mapping[str, Point], left: float) -> None:
+def draw_bars(axes: "Axes", figures: Mapping[str, Point], left: float, least: float = 0.0) -> None:
     """Draw bars from the left edge, named on the left and with their figures on the right.
 
     Named and numbered, they need no colour.
@@ -48,8 +53,20 @@ def draw_bars(axes: "Axes", figures: Mapping[str, Point], left: float) -> None:
         axes: where to draw; its scale is already set.
         figures: by model.
         left: where bars begin; on a logarithmic axis above zero.
+        least: a figure below it is no bar, but the words that it is, at the left edge.
     """
     for place, (model, figure) in enumerate(figures.items()):
+        if figure.mean < least:
+            axes.annotate(
+                f"< {least:g}",
+                (left, place),
+                (2.0, 0.0),
+                textcoords="offset points",
+                fontsize=SMALL_FONT_SIZE,
+                verticalalignment="center_baseline",
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},  # no grid line through them
+            )
+            continue
         axes.barh(
             place, figure.mean - left, BAR_WIDTH, left=left, color=look_of(model).colour, alpha=0.85, zorder=2
         )

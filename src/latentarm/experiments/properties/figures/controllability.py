@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 ROW_MM: Final = 52.0
 ACROSS: Final = 2
+LEAST_MM: Final = 0.001
+"""A distance below this is rounding: with as many latent axes as the plane has, any model comes so near."""
 
 
 def measure_of(task: str) -> str:
@@ -37,8 +39,8 @@ def controllability_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure
     for axes, task in zip(panels, tasks, strict=False):
         distances = in_mm(points(rows, task, measure_of(task)))
         starts = in_mm(points(rows, task, "start_distance_m"))
-        left = log_axis(axes, [*distances.values(), *starts.values()])
-        draw_bars(axes, distances, left)
+        left = log_axis(axes, [*distances.values(), *starts.values()], LEAST_MM)
+        draw_bars(axes, distances, left, LEAST_MM)
         for start in list(starts.values())[:1]:  # the same pairs for all models
             axes.axvline(start.mean, color="black", linestyle=":", linewidth=1.0, zorder=1)
         title(axes, task.capitalize() + (" (dotted: at the start)" if starts else ""))
