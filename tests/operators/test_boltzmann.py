@@ -64,6 +64,30 @@ def test_inputs_come_as_often_as_their_probability_says(one_mode):
     assert (np.abs(seen / draws - options.input_probability) <= 4.5 * spread + 1e-3).all()
 
 
+def test_a_learner_is_at_each_moment_as_rational_as_they_have_become(one_mode):
+    learner = operator(beta=10.0, beta_per_s=40.0)
+    for time_s in (0.0, 0.5, 3.0):
+        now = learner.options(HERE, one_mode, 0, AHEAD, time_s)
+        same = operator(beta=10.0 + 40.0 * time_s).options(HERE, one_mode, 0, AHEAD)
+        np.testing.assert_array_equal(now.input_probability, same.input_probability)
+
+
+def test_a_learner_begins_at_random_and_ends_near_optimal_and_forgets_between_drives(one_mode):
+    target = pose_after(0.25 * np.array([0.0, 1.0, 0.0, 0.0, 0.0]))
+    learner = operator(beta=0.0, beta_per_s=1e5, decision_s=0.05)
+    best = operator(beta=np.inf).act(HERE, one_mode, 0, target, np.random.default_rng(0)).u
+
+    def first_and_last(seed):
+        learner.reset()
+        rng = np.random.default_rng(seed)
+        given = [learner.act(HERE, one_mode, 0, target, rng).u for _ in range(100)]
+        return given[0], given[-1]
+
+    ends = [first_and_last(seed) for seed in range(40)]
+    assert len(np.unique([first for first, _ in ends], axis=0)) > 10
+    np.testing.assert_array_equal([last for _, last in ends], np.tile(best, (40, 1)))
+
+
 def test_without_reason_every_option_is_as_likely(two_modes):
     options = operator(beta=0.0).options(HERE, two_modes, 0, AHEAD)
     each = 1 / (len(options.inputs) + 1)
@@ -165,6 +189,8 @@ def test_a_decoder_that_gives_no_numbers_makes_them_let_go(planar, one_mode):
     [
         ({"beta": -1.0}, "beta"),
         ({"beta": float("nan")}, "beta"),
+        ({"beta_per_s": -1.0}, "beta_per_s"),
+        ({"beta_per_s": float("inf")}, "beta_per_s"),
         ({"horizon_s": 0.0}, "horizon_s"),
         ({"decision_s": float("inf")}, "decision_s"),
         ({"rotation_weight": -0.1}, "rotation_weight"),

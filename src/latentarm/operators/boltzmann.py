@@ -9,6 +9,7 @@ from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.kinematics.rotations import angle_between
 from latentarm.operators.operator import Operator
+from latentarm.operators.rationality import boltzmann
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray, Input, Pose
 
@@ -19,7 +20,9 @@ class BoltzmannConfig:
     """How the simulated person thinks.
 
     Attributes:
-        beta: rationality of equation 24, 1/m²; 0 acts at random, infinity always takes the best.
+        beta: rationality of equation 24, 1/m², at the start of a drive; 0 acts at random, infinity always
+            takes the best.
+        beta_per_s: m of ``beta(t) = beta + m t``, 1/(m² s): somebody who learns within the task.
         horizon_s: the look-ahead dt of equation 24, s: how far ahead an input is imagined.
         rotation_weight: what a radian of wrong orientation counts, m.
         magnitudes: sizes ‖u‖ of the inputs that are considered, beside no input at all.
@@ -31,6 +34,7 @@ class BoltzmannConfig:
     """
 
     beta: float = 2000.0
+    beta_per_s: float = 0.0
     horizon_s: float = 0.5
     rotation_weight: float = 0.2
     magnitudes: tuple[float, ...] = (0.2, 0.6, 1.0)
@@ -42,6 +46,10 @@ class BoltzmannConfig:
     def __post_init__(self) -> None:
         if not self.beta >= 0:
             raise UserError(f"The simulated person's beta must be zero or more, not {self.beta}.")
+        if not 0 <= self.beta_per_s < np.inf:
+            raise UserError(
+                f"The simulated person's beta_per_s must be zero or more, and finite, not {self.beta_per_s}."
+            )
         for name in ("horizon_s", "decision_s"):
             if not 0 < getattr(self, name) < np.inf:
                 raise UserError(
@@ -85,12 +93,13 @@ class BoltzmannOperator(Operator):
 
     Equation 24::
 
-        p(u) ∝ exp(-beta ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
+        p(u) ∝ exp(-beta(t) ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
 
     over a grid of inputs: none, at which the arm stands still whatever the decoder makes of zero, and
     every direction at every magnitude. Distance between poses is
     ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks one step ahead only, as in the paper:
-    they can get stuck where no single input brings the tool closer.
+    they can get stuck where no single input brings the tool closer. ``beta(t)`` counts from `reset`, by
+    calls of `act`.
 
     Where the controller has several modes, asking for the next mode is one more option. It counts as
     the best input of the best other mode, with ``switch_cost`` added to the distance that it leaves,
@@ -110,24 +119,28 @@ class BoltzmannOperator(Operator):
             raise UserError(f"The time between inputs must be positive and finite, not {period_s} s.")
         self._chain = robot.chain
         self._config = config or BoltzmannConfig()
+        self._period_s = period_s
         self._hold_calls = max(round(self._config.decision_s / period_s), 1)
         # The step that asks for the mode already has a zero input.
         self._switch_calls = max(round(self._config.switch_s / period_s), 1)
         self.reset()
 
     def reset(self) -> None:
-        """Forget the held input and any switch under way."""
+        """Forget the held input, any switch under way and what was learned."""
         self._held = np.zeros(0)
         self._held_calls = 0
+        self._calls = 0
 
     def act(
         self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
     ) -> Input:
         """Hold the input of the last decision, or decide anew."""
+        time_s = self._calls * self._period_s
+        self._calls += 1
         if self._held_calls > 0:
             self._held_calls -= 1
             return Input(self._held)
-        options = self.options(context, controller, mode, target)
+        options = self.options(context, controller, mode, target, time_s)
         choice = int(
             rng.choice(
                 len(options.inputs) + 1, p=np.append(options.input_probability, options.switch_probability)
@@ -138,7 +151,9 @@ class BoltzmannOperator(Operator):
         self._held_calls = (self._switch_calls if switches else self._hold_calls) - 1
         return Input(self._held, switch_mode=switches)
 
-    def options(self, context: Context, controller: Controller, mode: int, target: Pose) -> Options:
+    def options(
+        self, context: Context, controller: Controller, mode: int, target: Pose, time_s: float = 0.0
+    ) -> Options:
         """Equation 24 in the present context.
 
         Args:
@@ -146,6 +161,7 @@ class BoltzmannOperator(Operator):
             controller: what the inputs go to.
             mode: the controller's present mode.
             target: the pose ``g*`` that the simulated person wants.
+            time_s: t of ``beta(t)``, since the drive began, s.
 
         Returns:
             Every option and its probability.
@@ -162,7 +178,8 @@ class BoltzmannOperator(Operator):
         cost = ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
         best_other = min((float(cost[m].min()) for m in modes if m != mode), default=np.inf)
         switch_cost = (np.sqrt(best_other) + self._config.switch_cost) ** 2
-        probability = _boltzmann(np.append(cost[mode], switch_cost), self._config.beta)
+        beta = self._config.beta + self._config.beta_per_s * time_s
+        probability = boltzmann(np.append(cost[mode], switch_cost), beta)
         return Options(inputs, probability[:-1], float(probability[-1]))
 
     def _grid(self, input_dim: int) -> FloatArray:
@@ -174,19 +191,3 @@ class BoltzmannOperator(Operator):
             directions = np.concatenate([np.eye(input_dim), -np.eye(input_dim)])
         sized = [size * directions for size in self._config.magnitudes]
         return np.concatenate([np.zeros((1, input_dim)), *sized])
-
-
-def _boltzmann(cost: FloatArray, beta: float) -> FloatArray:
-    """Probabilities ∝ exp(-beta cost) over the options whose cost is finite; the first is no input.
-
-    At beta = infinity the cheapest option gets all, ties share.
-    """
-    possible = np.isfinite(cost)
-    if not possible.any():
-        return np.where(np.arange(len(cost)) == 0, 1.0, 0.0)
-    above = np.where(possible, cost, np.inf) - cost[possible].min()
-    if np.isinf(beta):
-        weight = (above == 0.0).astype(float)
-    else:
-        weight = np.where(possible, np.exp(-beta * np.where(possible, above, 0.0)), 0.0)
-    return weight / weight.sum()
