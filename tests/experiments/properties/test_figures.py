@@ -7,7 +7,6 @@ from matplotlib.colors import to_rgb
 
 from latentarm.errors import UserError
 from latentarm.experiments.properties.cell import Cell, CellResult
-from latentarm.experiments.properties.figures.arms import arm_line
 from latentarm.experiments.properties.figures.beside_paper import beside_paper_figure
 from latentarm.experiments.properties.figures.controllability import controllability_figure
 from latentarm.experiments.properties.figures.draw import TASK_FIGURES, draw_figures
@@ -15,6 +14,7 @@ from latentarm.experiments.properties.figures.noise import condition, noise_figu
 from latentarm.experiments.properties.figures.panels import in_mm, points
 from latentarm.experiments.properties.figures.shown import as_trained, spread_states, turned
 from latentarm.experiments.properties.preset import PRESETS
+from latentarm.experiments.studies.planar_arms import arm_line
 from latentarm.metrics.effects import held_paths
 from latentarm.robots.planar import planar
 from latentarm.style import LOOKS, MM_PER_INCH, TWO_COLUMNS_MM, shade

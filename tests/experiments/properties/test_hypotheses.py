@@ -14,7 +14,8 @@ from latentarm.experiments.properties.hypotheses import (
     conditioned,
 )
 from latentarm.experiments.properties.preset import PRESETS
-from latentarm.experiments.properties.verdicts import format_p, verdicts
+from latentarm.experiments.properties.verdicts import verdicts
+from latentarm.experiments.studies.statistics import format_p
 from latentarm.models.catalogue import MODELS
 
 ERROR = "error_percent_of_pca"

@@ -9,7 +9,8 @@ from latentarm.experiments.grid import CellError
 from latentarm.experiments.properties import run as study
 from latentarm.experiments.properties.cell import measure_cell
 from latentarm.experiments.properties.preset import PRESETS, Preset
-from latentarm.experiments.properties.run import CONFIG, MADE, PropertiesConfig, run_properties
+from latentarm.experiments.properties.run import MADE, PropertiesConfig, run_properties
+from latentarm.experiments.studies.folder import CONFIG
 from latentarm.metrics.results import read_results
 from latentarm.models.catalogue import MODELS
 

@@ -20,6 +20,7 @@ from latentarm.experiments.properties.measures import (
     start_goal_pairs,
 )
 from latentarm.experiments.properties.preset import Preset
+from latentarm.experiments.studies.streams import integer, sequence
 from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
@@ -152,15 +153,11 @@ def _validation(training: Demonstrations) -> int:
     return max(1, round(VALIDATION_SHARE * len(training.episodes)))
 
 
-def _sequence(cell: Cell, stream: Stream) -> np.random.SeedSequence:
-    """The same for every model and noise, and whatever other tasks there are."""
-    return np.random.SeedSequence([cell.seed, int.from_bytes(cell.task.encode()), stream])
-
-
 def _generator(cell: Cell, stream: Stream) -> np.random.Generator:
-    return np.random.default_rng(_sequence(cell, stream))
+    """The same for every model and noise."""
+    return np.random.default_rng(sequence(cell.seed, cell.task, stream))
 
 
 def _integer(cell: Cell, stream: Stream) -> int:
-    """A seed for those who take whole numbers; there is room above it for those of many models."""
-    return int(_sequence(cell, stream).generate_state(1)[0]) >> 2
+    """A seed for those who take whole numbers; the same for every model and noise."""
+    return integer(sequence(cell.seed, cell.task, stream))

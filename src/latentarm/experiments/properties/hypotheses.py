@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, cast
 import numpy as np
 
 from latentarm.experiments.properties.paper import MODELS_OF_THE_PAPER
+from latentarm.experiments.studies.statistics import LEVEL, holm, spreads
 from latentarm.models.layout import LAYOUTS
 from latentarm.types import FloatArray
 
@@ -30,15 +31,9 @@ if TYPE_CHECKING:
 
 Direction = Literal["less", "greater"]
 
-LEVEL: Final = 0.05
-"""A test holds where p, after Holm's correction, is below this."""
-
 LINEAR: Final = 0.9
 """R^2 above which effects count as consistent and scalable. The paper calls 0.94 ± 0.04 "roughly linear", the
 lowest that it prints; this is one SD below, where a line still explains nine tenths of the variance."""
-
-NO_SPREAD: Final = 1e-9
-"""SD, in the largest figure, below which the figures of several seeds are the same but for rounding."""
 
 CONTEXT_FREE: Final = frozenset({"linear", "latent"})
 """Forms of decoder (see `latentarm.models.layout`) that do not see the context."""
@@ -211,12 +206,12 @@ def _with_statistics(comparison: Comparison, values: FloatArray, reference: Floa
     import pingouin  # takes a second, and only a finished study needs it
 
     direction = comparison.direction
-    if not _spreads(values) and not _spreads(reference):
+    if not spreads(values) and not spreads(reference):
         return replace(comparison, test="none: no spread on either side")
     # The side with spread is the sample; where that is the reference, the question is turned round.
-    turned = not _spreads(values)
+    turned = not spreads(values)
     sample, other = (reference, values) if turned else (values, reference)
-    welch = _spreads(other)
+    welch = spreads(other)
     tested_against = other if welch else float(other.mean())
     asked = {"less": "greater", "greater": "less"}[direction] if turned else direction
     ttest = cast(Callable[..., Any], pingouin.ttest)
@@ -235,21 +230,7 @@ def _with_statistics(comparison: Comparison, values: FloatArray, reference: Floa
     )
 
 
-def _spreads(values: FloatArray) -> bool:
-    """Whether figures differ by more than rounding."""
-    return len(values) > 1 and float(values.std(ddof=1)) > NO_SPREAD * float(np.abs(values).max())
-
-
 def _corrected(family: Sequence[Comparison]) -> list[Comparison]:
     """The comparisons of one family with Holm's correction over those that could be tested."""
-    import pingouin
-
-    tested = [comparison.p for comparison in family if comparison.p is not None]
-    if not tested:
-        return list(family)
-    multicomp = cast(Callable[..., tuple[Any, FloatArray]], pingouin.multicomp)
-    corrected = iter(multicomp(np.array(tested), alpha=LEVEL, method="holm")[1])
-    return [
-        comparison if comparison.p is None else replace(comparison, p_holm=float(next(corrected)))
-        for comparison in family
-    ]
+    corrected = holm([comparison.p for comparison in family])
+    return [replace(comparison, p_holm=p) for comparison, p in zip(family, corrected, strict=True)]

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from latentarm.experiments.properties.hypotheses import CLAIMS, LEVEL, LINEAR, Comparison
+from latentarm.experiments.properties.hypotheses import CLAIMS, LINEAR, Comparison
 from latentarm.experiments.properties.preset import Preset
 from latentarm.experiments.properties.tables import (
     OURS,
@@ -15,6 +15,8 @@ from latentarm.experiments.properties.tables import (
     paper_table,
 )
 from latentarm.experiments.properties.verdicts import Verdict, verdicts
+from latentarm.experiments.studies.pages import shown
+from latentarm.experiments.studies.statistics import LEVEL
 from latentarm.files import write_text
 from latentarm.style import look_of
 from latentarm.tasks.planar.motion import SAMPLES, STEP_S
@@ -65,14 +67,14 @@ def write_page(
         "# Do learned latent actions capture the user-friendly properties?\n",
         _introduction(preset, tasks, seed),
         _in_short(rows, tests, tasks),
-        *_figures([name for name in figures if not name.startswith(tuple(tasks))]),
+        *shown([name for name in figures if not name.startswith(tuple(tasks))]),
     ]
     for task in tasks:
         parts += [
             f"## {task.capitalize()}\n",
             f"{TASKS[task]}\n",
             paper_table(rows, task),
-            *_figures([name for name in figures if name.startswith(task)]),
+            *shown([name for name in figures if name.startswith(task)]),
         ]
     parts += [_reading(), *_noise(results, rows, tasks), _hypotheses(tests)]
     write_text(out / "results.md", "\n".join(parts))
@@ -121,10 +123,6 @@ def _verdict_lines(verdict: Verdict) -> str:
     of = "the paper's models" if verdict.in_paper else "conditioned models that the paper does not have"
     lines = [f"**{verdict.hypothesis}**, {HYPOTHESES[verdict.hypothesis]}; {of}:\n"]
     return "\n".join([*lines, *(f"- {task}: {said}" for task, said in verdict.by_task.items())]) + "\n"
-
-
-def _figures(names: Sequence[str]) -> list[str]:
-    return [f"![{Path(name).stem.replace('_', ' ')}, simulated]({name})\n" for name in names]
 
 
 def _reading() -> str:

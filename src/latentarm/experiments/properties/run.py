@@ -1,15 +1,12 @@
 """`latentarm reproduce properties`: every model on every task (section 8.1), as a page with figures."""
 
-import json
 import math
-import platform
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from importlib.metadata import version
 from itertools import product
 from pathlib import Path
 from time import perf_counter
-from typing import Final, cast
+from typing import Final
 
 from rich.console import Console
 
@@ -23,8 +20,7 @@ from latentarm.experiments.properties.hypotheses import compare_models
 from latentarm.experiments.properties.page import write_page
 from latentarm.experiments.properties.paper import with_paper
 from latentarm.experiments.properties.preset import Preset
-from latentarm.experiments.runs import git_commit
-from latentarm.files import write_text
+from latentarm.experiments.studies.folder import Study, write_json
 from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.models.catalogue import MODELS
@@ -32,9 +28,6 @@ from latentarm.tasks.planar.catalogue import MOTIONS
 from latentarm.types import Row
 
 STUDY: Final = "properties"
-
-CONFIG: Final = "config.json"
-"""What was asked for; it is written first and tells this study's folders from others."""
 
 MADE: Final = (
     "results.json",
@@ -44,9 +37,7 @@ MADE: Final = (
     "timings.json",
     *(f"{name}.png" for name in FIGURES),
 )
-"""Every other file of the folder."""
-
-PACKAGES: Final = ("latentarm", "numpy", "pingouin", "scikit-learn", "scipy", "torch")
+"""Every file of the folder, beside what was asked for."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +92,7 @@ def run_properties(config: PropertiesConfig) -> list[Row]:
         UserError: the folder holds something else or cannot be written, the backend is not to be had, or a
             cell cannot be measured as asked; then it says which.
     """
-    _claim(config)
+    Study(STUDY, MADE).claim(config.out, _about(config))
     console = Console(stderr=True, quiet=config.quiet)
     cells = _cells(config)
     console.print(
@@ -159,8 +150,8 @@ def _write(
     tests = compare_models(results)
     draw_figures(results, rows, out)
     write_page(out, results, rows, tests, config.preset, config.tasks, config.seed)
-    _write_json(out / "hypotheses.json", [test.as_json() for test in tests])
-    _write_json(
+    write_json(out / "hypotheses.json", [test.as_json() for test in tests])
+    write_json(
         out / "seeds.json",
         [
             {
@@ -172,7 +163,7 @@ def _write(
             for measure, values in result.figures.items()
         ],
     )
-    _write_json(
+    write_json(
         out / "timings.json",
         {
             "backend": config.backend,
@@ -197,34 +188,3 @@ def _about(config: PropertiesConfig) -> dict[str, object]:
         "seed": config.seed,
         "arms": "simulated",
     }
-
-
-def _claim(config: PropertiesConfig) -> None:
-    """Make room for a new run: an earlier one is removed, anything else is left alone.
-
-    Raises:
-        UserError: the folder holds something that this study did not write, or cannot be written.
-    """
-    out = config.out
-    if out.exists() and not (out.is_dir() and (_is_earlier(out) or not any(out.iterdir()))):
-        raise UserError(
-            f"{out} is there already and is no earlier run of this study: choose another folder with --out."
-        )
-    if out.exists():
-        for name in MADE:
-            (out / name).unlink(missing_ok=True)
-    versions = {"python": platform.python_version(), **{package: version(package) for package in PACKAGES}}
-    _write_json(out / CONFIG, {**_about(config), "versions": versions, "git_commit": git_commit()})
-
-
-def _is_earlier(out: Path) -> bool:
-    """Whether a folder says of itself that it is of this study."""
-    try:
-        config: object = json.loads((out / CONFIG).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return False
-    return isinstance(config, dict) and cast(dict[str, object], config).get("study") == STUDY
-
-
-def _write_json(path: Path, document: object) -> None:
-    write_text(path, json.dumps(document, indent=2, allow_nan=False) + "\n")

@@ -6,7 +6,8 @@ from typing import Final
 from latentarm.experiments.properties.hypotheses import Comparison
 from latentarm.experiments.properties.measures import RESOLUTION_M
 from latentarm.experiments.properties.paper import LENGTHS, MODELS_OF_THE_PAPER
-from latentarm.experiments.properties.verdicts import format_p
+from latentarm.experiments.studies.pages import markdown_table
+from latentarm.experiments.studies.statistics import format_p
 from latentarm.metrics.table import ABSENT, format_figure, measure_name
 from latentarm.style import look_of
 from latentarm.types import Row
@@ -58,7 +59,7 @@ def paper_table(rows: Iterable[Row], task: str) -> str:
     for measure in measures:
         line = [_name(cells, measure), *(_beside_paper(cells.get((measure, model))) for model in models)]
         lines.append([*line, _as_good(cells, measure)] if OURS in models else line)
-    return _markdown(head, lines)
+    return markdown_table(head, lines)
 
 
 def noise_table(rows: Iterable[Row], task: str) -> str:
@@ -73,13 +74,13 @@ def noise_table(rows: Iterable[Row], task: str) -> str:
             if cells:
                 figures = [_figure(cells.get((measure, model))) for model in models]
                 lines.append([_name(cells, measure), condition, *figures])
-    return _markdown(["mean ± SD", "on states", *(look_of(model).label for model in models)], lines)
+    return markdown_table(["mean ± SD", "on states", *(look_of(model).label for model in models)], lines)
 
 
 def comparison_table(comparisons: Sequence[Comparison]) -> str:
     """Every test of the hypotheses."""
     head = ["", "task", "measure", "model", "against", "test", "t (dof)", "p, Holm", "Hedges' g", "holds"]
-    return _markdown(head, [_test_line(one) for one in comparisons])
+    return markdown_table(head, [_test_line(one) for one in comparisons])
 
 
 def as_good_as_paper(rows: Iterable[Row], task: str) -> tuple[int, int]:
@@ -165,9 +166,3 @@ def _test_line(one: Comparison) -> list[str]:
         ABSENT if one.hedges_g is None else f"{one.hedges_g:.3g}",
         "yes" if one.holds else "no",
     ]
-
-
-def _markdown(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
-    """A GitHub table, ending in a line break; all columns but the first to the right."""
-    rule = ["---", *("---:" for _ in head[1:])]
-    return "".join("| " + " | ".join(line) + " |\n" for line in (head, rule, *lines))

@@ -1,10 +1,11 @@
 """What the tests of the hypotheses come to: for each family of tests, one short line per task."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 from latentarm.experiments.properties.hypotheses import Comparison, Direction
+from latentarm.experiments.studies.pages import listed
 from latentarm.style import look_of
 
 LONGEST: Final = 140
@@ -39,13 +40,6 @@ def verdicts(comparisons: Sequence[Comparison]) -> list[Verdict]:
     ]
 
 
-def format_p(p: float | None) -> str:
-    """A p-value to three places, or ``< 0.001``."""
-    if p is None:
-        return "not tested"
-    return "< 0.001" if p < 0.001 else f"{p:.3f}"
-
-
 def _verdict(family: Sequence[Comparison]) -> Verdict:
     tasks = dict.fromkeys(one.task for one in family)
     return Verdict(
@@ -68,7 +62,7 @@ def _said(tests: Sequence[Comparison]) -> str:
     said = f"not supported: {'; '.join(filter(None, reasons))}"
     if len(said) <= LONGEST:
         return said
-    measures = _listed(one.measure for one in failing)
+    measures = listed(one.measure for one in failing)
     return f"not supported: {len(failing)} of {len(tests)} tests do not hold, in {measures}"
 
 
@@ -76,7 +70,7 @@ def _not_beyond(failing: Sequence[Comparison]) -> str:
     """Which models are not on the hypothesis' side of which others."""
     parts: list[str] = []
     for alike in _alike(failing):
-        models = _listed(look_of(one.model).label for one in alike)
+        models = listed(look_of(one.model).label for one in alike)
         verb = "is" if len({one.model for one in alike}) == 1 else "are"
         said_before = "" if parts else f" {verb} not significantly"
         parts.append(f"{models}{said_before} {SIDES[alike[0].direction]} {_others(alike)}")
@@ -86,7 +80,7 @@ def _not_beyond(failing: Sequence[Comparison]) -> str:
 def _untested(failing: Sequence[Comparison]) -> str:
     """Which models could not be tested against which others."""
     return "; ".join(
-        f"{_listed(look_of(one.model).label for one in alike)} could not be tested against {_others(alike)}"
+        f"{listed(look_of(one.model).label for one in alike)} could not be tested against {_others(alike)}"
         for alike in _alike(failing)
     )
 
@@ -104,11 +98,5 @@ def _alike(failing: Sequence[Comparison]) -> list[list[Comparison]]:
 
 def _others(alike: Sequence[Comparison]) -> str:
     """``AE and VAE in controllability_m``, or the threshold in their place."""
-    names = _listed(look_of(one.against).label if one.against else f"{one.mean_against:g}" for one in alike)
+    names = listed(look_of(one.against).label if one.against else f"{one.mean_against:g}" for one in alike)
     return f"{names} in {alike[0].measure}"
-
-
-def _listed(names: Iterable[str]) -> str:
-    """``A, B and C``, each once."""
-    *most, last = dict.fromkeys(names)
-    return f"{', '.join(most)} and {last}" if most else last

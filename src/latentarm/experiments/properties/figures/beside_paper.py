@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from latentarm.experiments.properties.figures.bars import draw_paper, draw_spread, log_axis
-from latentarm.experiments.properties.figures.panels import Point, points, title
+from latentarm.experiments.properties.figures.panels import Point, points
 from latentarm.experiments.properties.tables import OURS
+from latentarm.experiments.studies.panels import title
 from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
 from latentarm.types import Row
 

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.experiments.properties.figures.arms import draw_guides
 from latentarm.experiments.properties.figures.bars import beside, draw_bars
+from latentarm.experiments.properties.figures.guides import draw_guides
 from latentarm.experiments.properties.figures.losses import draw_losses
-from latentarm.experiments.properties.figures.panels import plane, points, row_of_panels, stacked_parts, title
+from latentarm.experiments.properties.figures.panels import points
 from latentarm.experiments.properties.figures.shown import (
     CONTRASTED,
     Decoders,
@@ -16,6 +16,7 @@ from latentarm.experiments.properties.figures.shown import (
     as_trained,
     passed_states,
 )
+from latentarm.experiments.studies.panels import plane, row_of_panels, stacked_parts, title
 from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure
 from latentarm.tasks.planar.circle import RADII_M, Circle
 from latentarm.tasks.planar.resolved_rate import plane_point

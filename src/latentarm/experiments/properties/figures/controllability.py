@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from latentarm.experiments.properties.figures.bars import draw_bars, log_axis
-from latentarm.experiments.properties.figures.panels import in_mm, points, title
+from latentarm.experiments.properties.figures.panels import in_mm, points
+from latentarm.experiments.studies.panels import title
 from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure
 from latentarm.types import Row
 

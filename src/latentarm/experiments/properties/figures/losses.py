@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from latentarm.experiments.properties.figures.bars import beside, draw_bars, log_axis
-from latentarm.experiments.properties.figures.panels import points, title
+from latentarm.experiments.properties.figures.panels import points
+from latentarm.experiments.studies.panels import title
 from latentarm.types import Row
 
 if TYPE_CHECKING:

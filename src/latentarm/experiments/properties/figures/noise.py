@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from latentarm.experiments.properties.figures.panels import points, title
+from latentarm.experiments.properties.figures.panels import points
+from latentarm.experiments.studies.panels import title
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
 from latentarm.types import Row
 

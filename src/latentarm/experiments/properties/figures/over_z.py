@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from latentarm.experiments.properties.figures.panels import note, points
+from latentarm.experiments.properties.figures.panels import points
+from latentarm.experiments.studies.panels import note
 from latentarm.metrics.effects import axis_grid
 from latentarm.metrics.table import format_figure
 from latentarm.style import SMALL_FONT_SIZE, look_of, tidy

@@ -5,17 +5,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.experiments.properties.figures.arms import draw_arm
 from latentarm.experiments.properties.figures.bars import draw_bars, log_axis
 from latentarm.experiments.properties.figures.losses import draw_losses
-from latentarm.experiments.properties.figures.panels import (
-    in_mm,
-    plane,
-    points,
-    row_of_panels,
-    stacked_parts,
-    title,
-)
+from latentarm.experiments.properties.figures.panels import in_mm, points
 from latentarm.experiments.properties.figures.shown import (
     CONTRASTED,
     Decoders,
@@ -23,6 +15,8 @@ from latentarm.experiments.properties.figures.shown import (
     passed_states,
     turned,
 )
+from latentarm.experiments.studies.panels import plane, row_of_panels, stacked_parts, title
+from latentarm.experiments.studies.planar_arms import draw_arm
 from latentarm.metrics.effects import axis_grid
 from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, shade
 from latentarm.tasks.planar.reach import DISTANCE_M, DURATION_S, ReachRegion

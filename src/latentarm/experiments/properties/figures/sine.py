@@ -5,10 +5,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.experiments.properties.figures.arms import draw_arm, draw_guides, draw_pose
+from latentarm.experiments.properties.figures.guides import draw_guides
 from latentarm.experiments.properties.figures.losses import draw_losses
 from latentarm.experiments.properties.figures.over_z import GRID, draw_over_z
-from latentarm.experiments.properties.figures.panels import plane, row_of_panels, stacked_parts, title
 from latentarm.experiments.properties.figures.shown import (
     CONDITIONED,
     CONTRASTED,
@@ -18,6 +17,8 @@ from latentarm.experiments.properties.figures.shown import (
     spread_states,
     turned,
 )
+from latentarm.experiments.studies.panels import plane, row_of_panels, stacked_parts, title
+from latentarm.experiments.studies.planar_arms import draw_arm, draw_pose
 from latentarm.metrics.effects import axis_grid
 from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, shade
 from latentarm.tasks.planar.motion import STEP_S

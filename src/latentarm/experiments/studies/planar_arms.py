@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from latentarm.robots.robot import Robot
-from latentarm.tasks.planar.motion import PlanarMotion
 from latentarm.types import FloatArray
 
 if TYPE_CHECKING:
@@ -13,7 +12,6 @@ if TYPE_CHECKING:
 
 ARM_COLOUR: Final = "#9aa3ad"
 JOINT_COLOUR: Final = "#3c434b"
-GUIDE_COLOUR: Final = "#bbbbbb"
 
 
 def arm_line(robot: Robot, state: FloatArray, tool: int = 0) -> FloatArray:
@@ -52,9 +50,3 @@ def draw_pose(axes: "Axes", robot: Robot, state: FloatArray, colour: str) -> Non
         line = arm_line(robot, state, tool)
         axes.plot(*line.T, color=colour, linewidth=0.9, solid_capstyle="round", zorder=4)
         axes.plot(*line[-1], "o", color=colour, markersize=2.2, zorder=5)
-
-
-def draw_guides(axes: "Axes", motion: PlanarMotion) -> None:
-    """Draw the lines that show a task, in grey behind everything."""
-    for guide in motion.guides:
-        axes.plot(*guide.T, color=GUIDE_COLOUR, linewidth=1.6, zorder=2)

@@ -1,0 +1,1 @@
+"""What the studies of `latentarm reproduce` have in common."""

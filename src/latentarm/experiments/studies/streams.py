@@ -1,0 +1,19 @@
+"""Streams of randomness: each use has one of its own, so that none hangs on another's draws."""
+
+import numpy as np
+
+
+def sequence(seed: int, task: str, *use: int) -> np.random.SeedSequence:
+    """Where one use of randomness begins.
+
+    Args:
+        seed: of the whole study.
+        task: name of the task; its streams are the same whatever other tasks there are.
+        use: what the randomness is for.
+    """
+    return np.random.SeedSequence([seed, int.from_bytes(task.encode()), *use])
+
+
+def integer(source: np.random.SeedSequence) -> int:
+    """A seed for those who take whole numbers; there is room above it for those of many models."""
+    return int(source.generate_state(1)[0]) >> 2
