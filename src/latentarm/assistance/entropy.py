@@ -1,64 +1,154 @@
-"""Latent actions that leave every goal open: the entropy of equations 15 and 16, for training."""
+"""Latent actions that leave every goal open: the entropy over goals of equations 15 and 16, for training."""
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import final
+from dataclasses import asdict, dataclass
+from typing import Final, Literal, final
 
 import numpy as np
 import torch
 from torch import Tensor
 
-from latentarm.models.term import Decode, LossTerm, Units
+from latentarm.errors import UserError
+from latentarm.models.term import LossTerm, Situation
 from latentarm.types import FloatArray
+
+CONTEXTS: Final = 4096
+"""Contexts that a training draws from."""
+
+NEAR_RAD: Final = 0.1
+"""Nearer to a goal than this, progress towards it counts in proportion to the distance that is left: at the
+goal there is no direction to it."""
+
+Where = Literal["demonstrated", "any_belief", "anywhere"]
+
+
+def goal_probabilities(progress: Tensor, sharpness: float = 4.0, least_progress: float = 0.5) -> Tensor:
+    """``p_c(g)``: how much of what a person can do conveys each goal (equation 15).
+
+    The paper leaves the score open. Here it is::
+
+        eta(g, c, z) = exp(kappa rho_g(c, z)),    p_c(g) = Σ_z eta(g, c, z) / (Σ_g' Σ_z eta(g', c, z) + eta_0)
+
+    with rho the progress towards g, ``eta_0 = K exp(kappa rho_0)`` for K inputs z, and kappa so large that
+    the best input counts most. ``eta_0`` stands for conveying no goal: a goal counts as open where some
+    input makes more progress towards it than rho_0. Without it (rho_0 = -inf; equation 15 to the letter) a
+    decoder that hardly moves towards any goal has the highest entropy of all.
+
+    Args:
+        progress: (..., K, G), speed towards each goal for K inputs, in units of the demonstrated speed.
+        sharpness: kappa.
+        least_progress: rho_0, of the demonstrated speed.
+
+    Returns:
+        (..., G), at least 0; with what conveys no goal they sum to one.
+    """
+    return _log_probabilities(progress, sharpness, least_progress).exp()
+
+
+def entropy_over_goals(probabilities: Tensor) -> Tensor:
+    """Shannon entropy ``-Σ p log p`` of (..., G), in nats: (...)."""
+    return -torch.special.xlogy(probabilities, probabilities).sum(-1)
+
+
+def goal_progress(state: Tensor, actions: Tensor, goals: Tensor, speed: float) -> Tensor:
+    """Speed towards each goal, in units of the demonstrated speed.
+
+    Args:
+        state: (..., n), rad.
+        actions: (..., K, n), rad/s.
+        goals: (G, n), rad.
+        speed: the demonstrated speed, rad/s.
+
+    Returns:
+        (..., K, G).
+    """
+    away = goals - state[..., None, :]
+    towards = away / torch.linalg.vector_norm(away, dim=-1, keepdim=True).clamp_min(NEAR_RAD)
+    return actions @ towards.mT / speed
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class GoalEntropy(LossTerm):
+    """``lambda_2 Σ_g p_c(g) log p_c(g)`` (equation 16): in every context, some input for each goal.
+
+    Contexts are those in which a person may want to turn back, not only the demonstrated ones:
+    between any two demonstrated states, with any demonstrated belief. The term needs no actions there.
+
+    Attributes:
+        goals: (G, n), the goals' configurations, rad.
+        weight: lambda_2.
+        sharpness: kappa of `goal_probabilities`.
+        least_progress: rho_0 of `goal_probabilities`, of the demonstrated speed.
+        per_axis: evenly spaced inputs in [-1, 1] on each axis, over which z is summed.
+        where: contexts: ``demonstrated`` ones, demonstrated states with ``any_belief``, or ``anywhere``
+            between demonstrated states as well.
+
+    Raises:
+        UserError: a parameter is out of its range.
+    """
+
     goals: FloatArray
-    weight: float = 1.0
+    weight: float = 2.0
     sharpness: float = 4.0
-    least: float = 0.5
-    samples: int = 7
-    near_rad: float = 0.1
-    spread: str = "mixed"
+    least_progress: float = 0.5
+    per_axis: int = 7
+    where: Where = "anywhere"
+
+    def __post_init__(self) -> None:
+        if self.goals.ndim != 2 or len(self.goals) < 2 or not np.isfinite(self.goals).all():
+            raise UserError("An entropy over goals needs two goals or more, each a finite configuration.")
+        if not (math.isfinite(self.weight) and self.weight >= 0):
+            raise UserError(f"The weight of the entropy must be zero or more, not {self.weight}.")
+        if not (math.isfinite(self.sharpness) and self.sharpness > 0):
+            raise UserError(f"The sharpness of the entropy must be positive, not {self.sharpness}.")
+        if not self.least_progress < math.inf:
+            raise UserError(f"The least progress must be a number or -inf, not {self.least_progress}.")
+        if self.per_axis < 2:
+            raise UserError(f"The entropy needs at least 2 inputs on each axis, not {self.per_axis}.")
 
     @property
     def settings(self) -> Mapping[str, object]:
-        return {"weight": self.weight}
+        """Name and parameters; ``-inf``, which JSON does not know, as text."""
+        return {
+            **asdict(self),
+            "term": "goal_entropy",
+            "goals": self.goals.tolist(),
+            "least_progress": str(self.least_progress),
+        }
 
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
-        rows = rng.integers(0, len(demonstrated), (3, 4000))
-        share = rng.uniform(0, 1, (4000, 1))
-        first, second, third = demonstrated[rows]
-        if self.spread == "demonstrated":
-            return first
-        if self.spread == "shuffled":
-            return np.concatenate([first[:, :joints], third[:, joints:]], 1)
-        return np.concatenate([share * first[:, :joints] + (1 - share) * second[:, :joints], third[:, joints:]], 1)
+        """Contexts (CONTEXTS, c) as ``where`` has it; see `LossTerm.contexts`."""
+        one, other, believing = demonstrated[rng.integers(0, len(demonstrated), (3, CONTEXTS))]
+        share = rng.uniform(size=(CONTEXTS, 1))
+        state, belief = one[:, :joints], one[:, joints:]
+        if self.where != "demonstrated":
+            belief = believing[:, joints:]
+        if self.where == "anywhere":
+            state = share * state + (1 - share) * other[:, :joints]
+        return np.concatenate([state, belief], axis=1)
 
-    def __call__(self, decode: Decode, context: Tensor, centre: Tensor, scale: Tensor, units: Units) -> Tensor:
-        n = units.joints
-        seeds, rows, _ = context.shape
-        u = torch.linspace(-1, 1, self.samples)
-        latent_dim = centre.shape[-1]
-        grid = torch.cartesian_prod(*[u] * latent_dim).reshape(-1, latent_dim)
-        z = centre + scale * grid  # (S, K, d)
-        count = len(grid)
-        latent = z[:, :, None].expand(seeds, count, rows, latent_dim).reshape(seeds, -1, latent_dim)
-        repeated = context[:, None].expand(seeds, count, rows, context.shape[-1]).reshape(seeds, count * rows, -1)
-        action = decode(latent, repeated).unflatten(1, (count, rows)) * torch.as_tensor(units.action_scale, dtype=context.dtype)
-        state = context[..., :n] * torch.as_tensor(units.context_scale[:n], dtype=context.dtype) + torch.as_tensor(
-            units.context_centre[:n], dtype=context.dtype
+    def __call__(self, situation: Situation) -> Tensor:
+        """``lambda_2`` times the negative entropy, mean over contexts: (S,)."""
+        state = situation.state
+        goals = torch.as_tensor(self.goals, dtype=state.dtype, device=state.device)
+        progress = goal_progress(
+            state, situation.action_of(self._inputs(situation.axes)), goals, situation.speed
         )
-        away = torch.as_tensor(self.goals, dtype=context.dtype) - state[:, :, None]  # S,B,G,n
-        direction = away / torch.linalg.vector_norm(away, dim=-1, keepdim=True).clamp_min(self.near_rad)
-        progress = torch.einsum("skbn,sbgn->skbg", action, direction) / units.speed
-        score = torch.logsumexp(self.sharpness * progress, dim=1) - np.log(count)  # S,B,G
-        if np.isfinite(self.least):
-            none = torch.full_like(score[..., :1], self.sharpness * self.least)
-            log_p = torch.log_softmax(torch.cat([score, none], -1), -1)[..., :-1]
-        else:
-            log_p = torch.log_softmax(score, -1)
-        negative_entropy = (log_p.exp() * log_p).sum(-1).mean(-1)
-        return self.weight * negative_entropy
+        log = _log_probabilities(progress, self.sharpness, self.least_progress)
+        return self.weight * (log.exp() * log).sum(-1).mean(-1)
+
+    def _inputs(self, axes: int) -> Tensor:
+        """Every input that is summed over, (K, d)."""
+        values = torch.linspace(-1.0, 1.0, self.per_axis)
+        return torch.cartesian_prod(*[values] * axes).reshape(-1, axes)
+
+
+def _log_probabilities(progress: Tensor, sharpness: float, least_progress: float) -> Tensor:
+    """Logarithms of `goal_probabilities`."""
+    score = torch.logsumexp(sharpness * progress, dim=-2)
+    if not math.isfinite(least_progress):
+        return torch.log_softmax(score, dim=-1)
+    none = torch.full_like(score[..., :1], math.log(progress.shape[-2]) + sharpness * least_progress)
+    return torch.log_softmax(torch.cat([score, none], dim=-1), dim=-1)[..., :-1]

@@ -11,6 +11,10 @@ from torch import Tensor
 from latentarm.types import FloatArray
 
 ELSEWHERE: Final = 32
+"""Contexts without demonstrated actions that a step sees, at most, for terms that ask for them."""
+
+ELSEWHERE_JUDGED: Final = 256
+"""The same where a seed is judged: the first so many, always."""
 
 FEWEST_STEPS: Final = 16
 """Steps of an epoch, at least: a small dataset is cut into smaller batches."""
@@ -88,7 +92,7 @@ class Batches:
             context=tensor(data.held_out_context).expand(many, -1, -1).contiguous(),
             action=tensor(data.held_out_action).expand(many, -1, -1).contiguous(),
             noise=torch.zeros(many, held_out, noise_dim, device=device),
-            elsewhere=self._elsewhere.expand(many, -1, -1),
+            elsewhere=self._elsewhere[:ELSEWHERE_JUDGED].expand(many, -1, -1).contiguous(),
         )
 
     def epoch(self, epoch: int) -> Iterator[Batch]:
@@ -109,11 +113,12 @@ class Batches:
                     len(self._elsewhere), (steps, self._rows), generator=generator
                 )
         order, noise = order.to(self._device).view(steps, many * size), noise.to(self._device)
+        width = self._elsewhere.shape[-1]
         places = places.to(self._device).view(steps, many * self._rows)
         for chosen, drawn, place in zip(order, noise, places, strict=True):
             yield Batch(
                 context=self._context.index_select(0, chosen).view(many, size, -1),
                 action=self._action.index_select(0, chosen).view(many, size, -1),
                 noise=drawn,
-                elsewhere=self._elsewhere.index_select(0, place).view(many, self._rows, self._elsewhere.shape[-1]),
+                elsewhere=self._elsewhere.index_select(0, place).view(many, self._rows, width),
             )

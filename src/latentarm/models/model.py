@@ -28,7 +28,7 @@ from latentarm.models.scaling import (
     latent_scale,
     unit_scale,
 )
-from latentarm.models.term import LossTerm, MeasuredTerm, Units
+from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.trained import TrainedModel, TrainingSummary
 from latentarm.models.training import TrainingResult
@@ -105,7 +105,7 @@ class LatentActionModel(ABC):
         self,
         data: TrainingData,
         dimensions: Dimensions,
-        term: MeasuredTerm | None,
+        term: ScaledTerm | None,
         checkpoint: Path | None,
         progress: bool,
     ) -> TrainingResult:
@@ -137,6 +137,8 @@ class LatentActionModel(ABC):
                 says when to stop. Drawn by ``data_seed`` where None.
             chain: the arm's kinematics, for models that look at the tools; where None, those of the
                 robot that the demonstrations name.
+            term: what is to be minimised beside the model's own loss, where inputs matter that nobody
+                demonstrated.
             checkpoint: file to write the training's state to and, if it exists, to go on from. It
                 stays when the training is done; delete it once the model is saved.
             progress: show a bar.
@@ -306,29 +308,25 @@ class LatentActionModel(ABC):
                 f"{dimensions.action}: choose at most {dimensions.action}."
             )
         contexts, actions = _normalisers(arm, context, action)
+        elsewhere = context[:0]
+        if term is not None:
+            rng = np.random.default_rng([self.data_seed, 2])
+            elsewhere = term.contexts(context, dimensions.action, rng)
         data = TrainingData(
             context=contexts.apply(context),
             action=actions.apply(action),
             held_out_context=contexts.apply(pairs.context[outside]),
             held_out_action=actions.apply(pairs.action[outside]),
-            elsewhere=contexts.apply(
-                term.contexts(context, dimensions.action, np.random.default_rng([self.data_seed, 2]))
-                if term
-                else context[:0]
-            ),
+            elsewhere=contexts.apply(elsewhere),
         )
-        of_context = contexts.contexts if isinstance(contexts, ToolContexts) else contexts
-        measured = term and MeasuredTerm(
+        scaled = term and ScaledTerm(
             term,
-            Units(
-                context_centre=of_context.centre,
-                context_scale=of_context.scale,
-                action_scale=actions.scale,
-                speed=float(np.sqrt(np.square(action).sum(axis=1).mean())),
-                joints=dimensions.action,
-            ),
+            contexts=contexts.contexts if isinstance(contexts, ToolContexts) else contexts,
+            actions=actions,
+            joints=dimensions.action,
+            speed=float(np.sqrt(np.square(action).sum(axis=1).mean())),
         )
-        learned = self._learn(data, dimensions, measured, checkpoint, progress)
+        learned = self._learn(data, dimensions, scaled, checkpoint, progress)
         weights = learned.weights
         latents = self._encode_rows(weights, data.context, data.action)
         centre = np.zeros_like(latents[:, 0]) if self.rests_at_zero else latents.mean(axis=1)

@@ -17,7 +17,7 @@ from latentarm.models.layout import LAYOUTS, Dimensions, weight_shapes
 from latentarm.models.model import LatentActionModel, Weights
 from latentarm.models.networks import Networks, mlp, networks_from_arrays
 from latentarm.models.scaling import SPAN_QUANTILE
-from latentarm.models.term import MeasuredTerm
+from latentarm.models.term import ScaledTerm, Span
 from latentarm.models.training import TrainingConfig, TrainingResult, train
 from latentarm.types import FloatArray
 
@@ -53,34 +53,17 @@ class NeuralModel(LatentActionModel, ABC):
         self,
         data: TrainingData,
         dimensions: Dimensions,
-        term: MeasuredTerm | None,
+        term: ScaledTerm | None,
         checkpoint: Path | None,
         progress: bool,
     ) -> TrainingResult:
         layout = LAYOUTS[self.kind]
         apart = ("device", "checkpoint_interval_s")
         identity = {name: value for name, value in self.parameters().items() if name not in apart}
-
-
-        def objective(networks: Networks, batch: Batch) -> Tensor:
-            loss = self._loss(networks, batch)
-            if term is None:
-                return loss
-            with torch.no_grad():
-                latent = self._latent(networks, batch.context, batch.action)
-                if layout.encoder == "nearest":
-                    centre, scale = torch.zeros_like(latent[:, :1]), torch.ones_like(latent[:, :1])
-                else:
-                    centre = latent.mean(dim=1, keepdim=True)
-                    if self.rests_at_zero:
-                        centre = torch.zeros_like(centre)
-                    scale = (latent - centre).abs().quantile(SPAN_QUANTILE, dim=1, keepdim=True)
-            return loss + term.term(
-                lambda z, c: self._action(networks, z, c), batch.elsewhere, centre, scale, term.units
-            )
-
+        if term is not None:
+            identity["term"] = dict(term.term.settings)
         return train(
-            objective,
+            self._objective(term),
             weight_shapes(layout, dimensions),
             dimensions.latent if layout.encoder == "gaussian" else 0,
             data,
@@ -98,6 +81,28 @@ class NeuralModel(LatentActionModel, ABC):
             identity=json.dumps({"kind": self.kind, **identity}, sort_keys=True),
             progress=progress,
         )
+
+    def _objective(self, term: ScaledTerm | None) -> Callable[[Networks, Batch], Tensor]:
+        """The model's own loss, and the term's where there is one."""
+        if term is None:
+            return self._loss
+
+        def objective(networks: Networks, batch: Batch) -> Tensor:
+            with torch.no_grad():
+                span = self._span(self._latent(networks, batch.context, batch.action))
+            beside = term.loss(lambda z, c: self._action(networks, z, c), batch.elsewhere, span)
+            return self._loss(networks, batch) + beside
+
+        return objective
+
+    def _span(self, latent: Tensor) -> Span:
+        """What `LatentActionModel.fit` will scale inputs to, as far as a batch (S, B, d) tells."""
+        centre = latent.mean(dim=1, keepdim=True)
+        if self.rests_at_zero:
+            centre = torch.zeros_like(centre)
+        if LAYOUTS[self.kind].encoder == "nearest":
+            return Span(centre, torch.ones_like(centre))
+        return Span(centre, (latent - centre).abs().quantile(SPAN_QUANTILE, dim=1, keepdim=True))
 
     @final
     def _encode(self, weights: Weights, context: FloatArray, action: FloatArray) -> FloatArray:

@@ -11,6 +11,7 @@ from latentarm.errors import UserError
 from latentarm.models.batches import TrainingData
 from latentarm.models.layout import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
+from latentarm.models.term import ScaledTerm
 from latentarm.models.training import TrainingResult
 from latentarm.types import FloatArray
 
@@ -28,8 +29,15 @@ class PCA(LatentActionModel):
     rests_at_zero: ClassVar[bool] = False
 
     def _learn(
-        self, data: TrainingData, dimensions: Dimensions, term: object, checkpoint: Path | None, progress: bool
+        self,
+        data: TrainingData,
+        dimensions: Dimensions,
+        term: ScaledTerm | None,
+        checkpoint: Path | None,
+        progress: bool,
     ) -> TrainingResult:
+        if term is not None:
+            raise UserError("PCA has a closed form, to which no term can be added: choose another model.")
         if len(data.action) < dimensions.latent:
             raise UserError(
                 f"{len(data.action)} context-action pairs do not span {dimensions.latent} latent dimensions:"

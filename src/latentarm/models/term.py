@@ -1,62 +1,115 @@
-"""What training may minimise beside a model's own loss: terms about what the decoder can do."""
+"""Terms of the loss that speak of everything a person could do, not of demonstrated pairs alone."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import final
 
 import numpy as np
+import torch
 from torch import Tensor
 
+from latentarm.models.normaliser import Normaliser
 from latentarm.types import FloatArray
 
-Decode = Callable[[Tensor, Tensor], Tensor]
-"""Latents (S, B, d) and contexts (S, B, c') as the networks see them to normalised actions (S, B, m)."""
 
-
-class Units(NamedTuple):
-    """What the numbers that networks see are worth.
+@final
+@dataclass(frozen=True, eq=False)
+class Situation:
+    """E contexts during training and what the S decoders would make of any input there.
 
     Attributes:
-        context_centre: (c,), what the first c entries of a context are counted from, rad (beliefs: 1).
-        context_scale: (c,), what one of them is worth, rad (beliefs: 1).
-        action_scale: (m,) or (1,), what an action is worth, rad/s.
+        state: (S, E, n), rad.
+        action_of: inputs (K, d), in [-1, 1], to the actions (S, E, K, m) that they would cause, rad/s.
         speed: root mean square of the demonstrated ‖a‖, rad/s.
-        joints: n; the first n entries of a context are the state.
+        axes: d, of the input.
     """
 
-    context_centre: FloatArray
-    context_scale: FloatArray
-    action_scale: FloatArray
+    state: Tensor
+    action_of: Callable[[Tensor], Tensor]
     speed: float
-    joints: int
+    axes: int
 
 
 class LossTerm(ABC):
-    """Something to be minimised beside ``‖a - phi(z, c)‖^2``, over the whole range of the input."""
+    """Something to be minimised beside ``‖a - phi(z, c)‖^2``. It needs contexts, but no actions there."""
 
     @property
     @abstractmethod
     def settings(self) -> Mapping[str, object]:
-        """What the term depends on, by name, for files."""
+        """All that the term depends on, as JSON has it: a checkpoint of other settings is refused."""
 
     @abstractmethod
-    def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray: ...
-
-    @abstractmethod
-    def __call__(self, decode: Decode, context: Tensor, centre: Tensor, scale: Tensor, units: Units) -> Tensor:
-        """The term of S seeds, (S,).
+    def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
+        """Contexts that training draws from for this term.
 
         Args:
-            decode: the decoder in training.
-            context: (S, B, c'), contexts of a batch as the networks see them.
-            centre: (S, 1, d), the latent action that the person's zero input will stand for.
-            scale: (S, 1, d), what inputs of one will add to it.
-            units: what the numbers are worth.
+            demonstrated: (N, c), contexts of the training pairs.
+            joints: n; the first n entries of a context are the state, rad.
+            rng: source of all variation.
+
+        Returns:
+            (M, c), at least one.
         """
 
+    @abstractmethod
+    def __call__(self, situation: Situation) -> Tensor:
+        """What is to be minimised, (S,)."""
 
-class MeasuredTerm(NamedTuple):
-    """A term and what the numbers of one training are worth to it."""
+
+@final
+@dataclass(frozen=True, eq=False)
+class ScaledTerm:
+    """A term, and what the numbers that networks see and give are worth in one training.
+
+    Attributes:
+        term: the term.
+        contexts: normalises the first c entries of what a network sees.
+        actions: normalises actions.
+        joints: n.
+        speed: root mean square of the demonstrated ‖a‖, rad/s.
+    """
 
     term: LossTerm
-    units: Units
+    contexts: Normaliser
+    actions: Normaliser
+    joints: int
+    speed: float
+
+    def loss(self, decode: Callable[[Tensor, Tensor], Tensor], context: Tensor, span: "Span") -> Tensor:
+        """The term, (S,).
+
+        Args:
+            decode: latents (S, B, d) in contexts (S, B, c') to normalised actions (S, B, m).
+            context: (S, E, c'), as the networks see them.
+            span: the latent actions that inputs will stand for.
+        """
+
+        def constant(values: FloatArray) -> Tensor:
+            return torch.as_tensor(values, dtype=context.dtype, device=context.device)
+
+        def action_of(inputs: Tensor) -> Tensor:
+            latent = span.centre + span.scale * inputs.to(context)
+            (seeds, contexts, width), count = context.shape, len(inputs)
+            every = latent[:, None].expand(seeds, contexts, count, -1).reshape(seeds, contexts * count, -1)
+            where = context[:, :, None].expand(-1, -1, count, -1).reshape(seeds, contexts * count, width)
+            return decode(every, where).unflatten(1, (contexts, count)) * constant(self.actions.scale)
+
+        joints = slice(self.joints)
+        state = context[..., joints] * constant(self.contexts.scale[joints])
+        state = state + constant(self.contexts.centre[joints])
+        return self.term(Situation(state, action_of, self.speed, span.centre.shape[-1]))
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Span:
+    """Which latent actions inputs stand for: z = centre + scale u.
+
+    Attributes:
+        centre: (S, 1, d).
+        scale: (S, 1, d).
+    """
+
+    centre: Tensor
+    scale: Tensor

@@ -1,8 +1,20 @@
-"""Two cups before an arm, each to be reached and then grasped from the side or from the top (section 8.2)."""
+"""Two cups before an arm, each to be reached and then grasped from the side or from the top (section 8.2).
+
+One input is to say all of it: first which cup, then which grasp. The paper leaves the place open; what is
+chosen here, once and for every model:
+
+- the cups stand to the left and to the right of the arm's start, equally far, 1 rad apart about the base;
+- a goal is the configuration just before a cup, from where both grasps begin;
+- the two grasps part from there to opposite sides, as a hand does that comes in from the side or over the
+  top, and end 0.4 to 0.9 rad from the goal in joint space, less than the goals are apart;
+- the simulated person moves at one speed. With real hands most of what differs between two actions is how
+  fast they are, and a one-dimensional latent action would be spent on that.
+"""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from functools import cached_property
-from typing import final
+from typing import Final, NamedTuple, final
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -16,51 +28,108 @@ from latentarm.tasks.task import Task
 from latentarm.tasks.tolerance import within
 from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Pose
 
-BEFORE = (0.06, 0.0, 0.0)
-GRASPS = {"side": (0.0, 0.03, 0.35), "top": (0.0, -0.03, -0.35)}
-START_SPREAD_RAD = 0.05
-_VIA = 3
-SPEED_RAD_S = 0.3
-BEARING = 0.5
-RADIUS = 0.6
-HEIGHT = 0.25
-import os
-LEFT = float(os.environ.get('LEFT', 0))
+CUPS: Final = ("left cup", "right cup")
+
+BEARING_RAD: Final = 0.5
+"""Direction from the base to the left cup; the right cup is at its negative."""
+
+DISTANCE_M: Final = 0.6
+"""Of the cups from the base's axis."""
+
+SPEED_RAD_S: Final = 0.3
+"""Of the simulated person's ‖a‖."""
+
+START_SPREAD_RAD: Final = 0.05
+"""SD of where a joint starts."""
+
+_VIA: Final = 3
+"""Configurations along a grasp, so that the tool follows a line."""
+
+
+class Place(NamedTuple):
+    """Where the tool is, seen from a cup.
+
+    Attributes:
+        back: nearer to the base than the cup, m.
+        left: to the left of the cup, m.
+        up: above the cup, m; a planar arm has no use for it.
+        turn: from the orientation in which the cup is approached, rad: about the vertical for a planar
+            arm, otherwise towards the horizontal.
+    """
+
+    back: float
+    left: float
+    up: float
+    turn: float
 
 
 class TwoCups(Task, ABC):
+    """Two cups and an arm that is to grasp one of them; the person who demonstrates is simulated."""
+
+    before: Place = Place(back=0.06, left=0.0, up=0.0, turn=0.0)
+    """Where a reach ends and a grasp begins."""
+
+    @property
+    @abstractmethod
+    def start(self) -> FloatArray:
+        """(n,), rad: before both cups and equally far from them."""
+
+    @property
+    @abstractmethod
+    def grasps(self) -> dict[str, Place]:
+        """Where each manner of grasping ends."""
+
+    @abstractmethod
+    def pose(self, bearing_rad: float, place: Place) -> Pose:
+        """The tool's pose at a place, seen from a cup at a bearing."""
+
     @property
     def manners(self) -> tuple[str, ...]:
-        return ("side", "top")
+        """From the side or from the top."""
+        return tuple(self.grasps)
 
     @property
     def obstacles(self) -> tuple[()]:
+        """None: the cups are to be touched."""
         return ()
 
     @property
     def goals(self) -> tuple[Goal, ...]:
+        """Just before each cup."""
         return self._goals
 
-    @property
-    @abstractmethod
-    def start(self) -> FloatArray: ...
-
-    @abstractmethod
-    def at(self, cup: int, back: float, up: float, pitch: float) -> Pose: ...
-
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
+        """About `start`, (n,), rad."""
         return self.start + rng.normal(0.0, START_SPREAD_RAD, self.robot.dof)
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
-        return self.goals[goal].pose, self.robot.chain.forward(self._grasps[goal, manner][-1])
+        """Just before the cup, then where the grasp ends.
+
+        Raises:
+            UserError: there is no such goal or manner.
+        """
+        if not 0 <= goal < len(CUPS) or manner not in self.manners:
+            raise UserError(
+                f"There are cups 0 and 1, to be grasped from the {' or the '.join(self.manners)}, "
+                f"not {goal} from the {manner!r}."
+            )
+        return self.goals[goal].pose, self.robot.chain.forward(self._strokes[goal, manner][-1])
 
     def reached(self, pose: Pose, waypoint: Pose) -> bool:
+        """Within 0.03 m and 20 degrees."""
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
+        """Reach and grasp, cups and manners in turn, with the actions that were taken.
+
+        Raises:
+            UserError: fewer than one episode is asked for.
+        """
+        if episodes < 1:
+            raise UserError(f"Ask for at least one demonstration, not {episodes}.")
         hand = Hand()
         return Demonstrations(
-            episodes=tuple(self._episode(i, hand, rng) for i in range(episodes)),
+            episodes=tuple(self._episode(index, hand, rng) for index in range(episodes)),
             rate_hz=hand.rate_hz,
             joint_names=self.robot.joint_names,
             robot=self.robot.name,
@@ -68,87 +137,149 @@ class TwoCups(Task, ABC):
         )
 
     def _episode(self, index: int, hand: Hand, rng: np.random.Generator) -> Episode:
-        goal, manner = index % 2, self.manners[index // 2 % 2]
-        strokes = (self.goals[goal].configuration[None], self._grasps[goal, manner])
-        state = demonstrate(self.robot.chain, self.sample_start(goal, rng), strokes, hand, rng)
-        way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(state, axis=0), axis=-1))])
-        keep = np.concatenate([[True], np.diff(way) > 1e-9])
-        even = np.arange(0.0, way[-1], SPEED_RAD_S / hand.rate_hz)
-        state = CubicSpline(way[keep], state[keep])(even)
-        action = np.diff(state, axis=0) * hand.rate_hz
-        state = state[:-1]
+        goal = index % len(CUPS)
+        manner = self.manners[index // len(CUPS) % len(self.manners)]
+        strokes = (self.goals[goal].configuration[None], self._strokes[goal, manner])
+        led = demonstrate(self.robot.chain, self.sample_start(goal, rng), strokes, hand, rng)
+        state = _at_one_speed(led, SPEED_RAD_S / hand.rate_hz)
+        velocity = np.diff(state, axis=0) * hand.rate_hz
         return Episode(
             state=state,
-            action=action,
+            # Nothing is done at the last state.
+            action=np.concatenate([velocity, np.zeros_like(velocity[:1])]),
             timestamp=np.arange(len(state)) / hand.rate_hz,
-            task=f"grasp the {self.goals[goal].name} from the {manner}",
+            task=f"grasp the {CUPS[goal]} from the {manner}",
         )
 
     @cached_property
     def _goals(self) -> tuple[Goal, ...]:
-        goals = []
-        for cup, name in enumerate(("left cup", "right cup")):
-            posture = self.start.copy()
-            posture[0] += BEARING * (1 - 2 * cup)
-            q = solve(self.robot, self.at(cup, *BEFORE), posture)
-            goals.append(Goal(name, q, self.robot.chain.forward(q)))
-        return tuple(goals)
+        return tuple(self._goal(cup) for cup in range(len(CUPS)))
+
+    def _goal(self, cup: int) -> Goal:
+        posture = self.start.copy()
+        posture[0] += _bearing(cup)
+        configuration = solve(self.robot, self.pose(_bearing(cup), self.before), posture)
+        return Goal(CUPS[cup], configuration, self.robot.chain.forward(configuration))
 
     @cached_property
-    def _grasps(self) -> dict[tuple[int, str], FloatArray]:
-        grasps = {}
-        for cup in range(2):
-            for manner in self.manners:
-                via, q = [], self.goals[cup].configuration
-                for share in np.linspace(0, 1, _VIA + 1)[1:]:
-                    place = (a + share * (b - a) for a, b in zip(BEFORE, GRASPS[manner]))
-                    q = solve(self.robot, self.at(cup, *place), q)
-                    via.append(q)
-                grasps[cup, manner] = np.stack(via)
-        return grasps
+    def _strokes(self) -> dict[tuple[int, str], FloatArray]:
+        """Configurations along each grasp, by cup and manner, each (_VIA, n), rad."""
+        return {
+            (cup, manner): self._stroke(cup, end)
+            for cup in range(len(CUPS))
+            for manner, end in self.grasps.items()
+        }
+
+    def _stroke(self, cup: int, end: Place) -> FloatArray:
+        via = [self.goals[cup].configuration]
+        for share in np.linspace(0.0, 1.0, _VIA + 1)[1:]:
+            place = Place(*(a + share * (b - a) for a, b in zip(self.before, end, strict=True)))
+            via.append(solve(self.robot, self.pose(_bearing(cup), place), via[-1]))
+        return np.stack(via[1:])
 
 
 @final
 class PlanarTwoCups(TwoCups):
+    """A planar arm of 5 joints, seen from above; its hand comes in turned to one side or to the other.
+
+    A plane has no top: the second grasp is the mirror image of the first.
+    """
+
     @property
     def name(self) -> str:
+        """``planar_two_cups``."""
         return "planar_two_cups"
 
-    @cached_property
-    def robot(self) -> Robot:
-        return load_robot("planar")
+    @property
+    def grasps(self) -> dict[str, Place]:
+        """From the left side and, in the place of the top, from the right."""
+        return {"side": Place(0.0, 0.03, 0.0, 0.35), "top": Place(0.0, -0.03, 0.0, -0.35)}
 
-    @cached_property
+    @property
+    def robot(self) -> Robot:
+        """A planar arm of 5 joints."""
+        return self._robot
+
+    @property
     def start(self) -> FloatArray:
+        """Curled, the tool near the base: (5,), rad."""
         return np.array([1.87, -1.6, -1.6, -0.6, 0.7])
 
-    def at(self, cup, back, across, turn):
-        b = BEARING * (1 - 2 * cup)
-        out, left = np.array([np.cos(b), np.sin(b), 0]), np.array([-np.sin(b), np.cos(b), 0])
-        c, s = np.cos(b + turn), np.sin(b + turn)
-        return Pose((RADIUS - back) * out + across * left, np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]))
+    def pose(self, bearing_rad: float, place: Place) -> Pose:
+        """In the plane, the tool's x axis towards the cup."""
+        out, left = _axes(bearing_rad)
+        position = (DISTANCE_M - place.back) * out + place.left * left
+        pointing, across = _axes(bearing_rad + place.turn)
+        return Pose(position, np.stack([pointing, across, np.array([0.0, 0.0, 1.0])], axis=-1))
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("planar")
 
 
 @final
 class PandaTwoCups(TwoCups):
+    """A Panda whose hand tilts towards the horizontal for the side and upright for the top."""
+
+    HEIGHT_M: Final = 0.25
+    """Of the cups above the base."""
+
+    PITCH_RAD: Final = -1.2
+    """Of the hand's pointing direction above the horizontal, where a cup is approached."""
+
     @property
     def name(self) -> str:
+        """``panda_two_cups``."""
         return "panda_two_cups"
 
-    @cached_property
-    def robot(self) -> Robot:
-        return load_robot("panda")
+    @property
+    def grasps(self) -> dict[str, Place]:
+        """Lower and from the left side; higher, pointing down, and from the right."""
+        return {"side": Place(0.0, 0.06, -0.03, 0.35), "top": Place(0.0, -0.06, 0.03, -0.35)}
 
-    @cached_property
+    @property
+    def robot(self) -> Robot:
+        """A Panda."""
+        return self._robot
+
+    @property
     def start(self) -> FloatArray:
+        """Above and before the cups: (7,), rad."""
         return np.array([0.0, -0.6, 0.0, -2.4, 0.0, 2.2, np.pi / 4])
 
-    def at(self, cup, back, across, turn):
-        b = BEARING * (1 - 2 * cup)
-        out = np.array([np.cos(b), np.sin(b), 0.0])
-        pitch = -1.2 + turn
-        points = np.cos(pitch) * out + np.array([0, 0, np.sin(pitch)])
-        side = np.array([out[1], -out[0], 0.0])
-        rotation = np.stack([np.cross(side, points), side, points], axis=-1)
-        left = np.array([-out[1], out[0], 0.0])
-        return Pose((RADIUS - back) * out + LEFT * across * left + np.array([0, 0, HEIGHT - across]), rotation)
+    def pose(self, bearing_rad: float, place: Place) -> Pose:
+        """The tool's z axis points outwards and down."""
+        out, left = _axes(bearing_rad)
+        up = np.array([0.0, 0.0, 1.0])
+        position = (DISTANCE_M - place.back) * out + place.left * left + (self.HEIGHT_M + place.up) * up
+        pitch = self.PITCH_RAD + place.turn
+        pointing = np.cos(pitch) * out + np.sin(pitch) * up
+        # The axis across that makes the three a right-handed frame.
+        across = np.cos(pitch) * up - np.sin(pitch) * out
+        return Pose(position, np.stack([across, -left, pointing], axis=-1))
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("panda")
+
+
+TWO_CUPS: Final[dict[str, Callable[[], TwoCups]]] = {"planar": PlanarTwoCups, "panda": PandaTwoCups}
+"""The task by the arm's name."""
+
+
+def _bearing(cup: int) -> float:
+    return BEARING_RAD if cup == 0 else -BEARING_RAD
+
+
+def _axes(bearing_rad: float) -> tuple[FloatArray, FloatArray]:
+    """Outwards and to the left at a bearing, each (3,)."""
+    cos, sin = np.cos(bearing_rad), np.sin(bearing_rad)
+    return np.array([cos, sin, 0.0]), np.array([-sin, cos, 0.0])
+
+
+def _at_one_speed(state: FloatArray, step_rad: float) -> FloatArray:
+    """The same way (T, n) in steps of one length in joint space, rests left out."""
+    step = np.linalg.norm(np.diff(state, axis=0), axis=-1)
+    moving = np.concatenate([[True], step > 1e-9])
+    way = np.concatenate([[0.0], np.cumsum(step)])
+    return CubicSpline(way[moving], state[moving])(np.arange(0.0, way[-1], step_rad))
