@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from latentarm.assistance.annotation import annotate
+from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, Goal, Pose
 
@@ -68,7 +69,10 @@ def test_a_step_worked_by_hand():
         ]
         likelihood.append((weight[0] / sum(weight)) ** (1 / rate_hz / horizon_s))
     expected = np.array(likelihood) / sum(likelihood)
-    annotated = annotate(demonstrations(states, goals, rate_hz), beta, horizon_s)
+    annotated = annotate(
+        demonstrations(states, goals, rate_hz),
+        lambda goals, period_s: BoltzmannBelief(goals, beta, horizon_s, period_s),
+    )
     np.testing.assert_allclose(annotated.episodes[0].extras["belief"], [[0.5, 0.5], expected], rtol=1e-12)
 
 

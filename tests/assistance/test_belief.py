@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.assistance.belief import BoltzmannBelief
+from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.errors import UserError
 
 DOF, COUNT = 7, 3

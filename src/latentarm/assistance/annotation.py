@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from latentarm.assistance.belief import BoltzmannBelief
+from latentarm.assistance.belief import Belief, Rule
+from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
 
@@ -13,41 +14,35 @@ _STANDSTILL = 0.02
 """Joint speed ‖a‖, rad/s, below which a demonstration stands still and says nothing."""
 
 
-def annotate(
-    demonstrations: Demonstrations,
-    beta: float = 20.0,
-    horizon_s: float = 0.5,
-    floor: float = 0.01,
-) -> Demonstrations:
+def annotate(demonstrations: Demonstrations, rule: Rule = BoltzmannBelief) -> Demonstrations:
     """Add the belief over the demonstrations' own goals to every episode as ``extras["belief"]``.
 
-    The update is equation 9 as `BoltzmannBelief` has it when a person drives, with the same
-    parameters; only the choice ``U`` differs, because a demonstration has no inputs: beside the
-    demonstrated action it holds moves at the same speed straight towards each goal, which stop at
-    the goal. The belief at a sample rests on the samples before it.
+    The update is equation 9 as the rule has it when a person drives; only the choice ``U`` differs,
+    because a demonstration has no inputs: beside the demonstrated action it holds moves at the same
+    speed straight towards each goal, which stop at the goal. The belief at a sample rests on the samples
+    before it.
 
     Args:
         demonstrations: with at least one goal; no episode is changed in place.
-        beta: rationality, 1/rad².
-        horizon_s: look-ahead, s.
-        floor: smallest probability of any goal.
+        rule: makes the belief, as ``rule(goals, period_s=...)``: a class of beliefs, or a function that
+            chooses its parameters.
 
     Returns:
         The same demonstrations with beliefs (T, G).
 
     Raises:
-        UserError: the demonstrations name no goals, or a parameter is out of its range.
+        UserError: the demonstrations name no goals.
     """
     if not demonstrations.goals:
         raise UserError("The demonstrations name no goals, so there is no belief to compute along them.")
     goals = np.stack([goal.configuration for goal in demonstrations.goals])
-    belief = BoltzmannBelief(goals, beta, horizon_s, period_s=1 / demonstrations.rate_hz, floor=floor)
+    belief = rule(goals, period_s=1 / demonstrations.rate_hz)
     return replace(
         demonstrations, episodes=tuple(_annotated(episode, belief) for episode in demonstrations.episodes)
     )
 
 
-def _annotated(episode: Episode, belief: BoltzmannBelief) -> Episode:
+def _annotated(episode: Episode, belief: Belief) -> Episode:
     beliefs = [belief.initial()]
     velocity = np.diff(episode.state, axis=0) / np.diff(episode.timestamp)[:, None]
     for state, action in zip(episode.state, velocity, strict=False):

@@ -1,0 +1,53 @@
+"""The belief that a person is Boltzmann-rational in joint space: the likelihood of section 8.2."""
+
+from collections.abc import Sequence
+from typing import final
+
+from latentarm.assistance.belief import Belief, log_choice, not_negative
+from latentarm.types import FloatArray
+
+
+@final
+class BoltzmannBelief(Belief):
+    """A person who chooses what brings the arm closest to the goal after the look-ahead tau, or nearly.
+
+    ::
+
+        P(u | s, g) = exp(-beta D(g, s + a_h(u) tau)) / Σ_{u' in U} exp(-beta D(g, s + a_h(u') tau))
+        D(g, s)     = ‖g - s‖²
+
+    ``U`` is `alternatives`. A zero input is no evidence. The distance is squared, as in the person's
+    reward in section 8.2, for a reason: what tells two goals apart is then only the motion along the line
+    between them, so that someone who has arrived and stabs or scoops, which leads away from every
+    goal alike, does not seem to have changed their mind.
+
+    Args:
+        goals: (G, n), the goals' configurations, rad.
+        beta: rationality, 1/rad²; 0 learns nothing.
+        horizon_s: the look-ahead tau, s.
+        period_s: time between updates, s.
+        prior: (G,), the belief before any input; uniform where None.
+        floor: smallest probability of any goal, in [0, 1/G).
+
+    Raises:
+        UserError: a parameter is not finite or out of its range.
+    """
+
+    def __init__(
+        self,
+        goals: FloatArray | Sequence[FloatArray],
+        beta: float = 20.0,
+        horizon_s: float = 0.5,
+        period_s: float = 0.05,
+        prior: FloatArray | None = None,
+        floor: float = 0.01,
+    ) -> None:
+        super().__init__(goals, horizon_s, period_s, prior, floor)
+        self.beta = not_negative("beta", beta)
+
+    def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:
+        """``log P(u | s, g)`` of one decision; see `Belief.log_likelihood`."""
+        reached = state[..., None, :] + self.horizon_s * actions
+        away = self.goals - reached[..., None, :]
+        distance = (away * away).sum(axis=-1)
+        return log_choice(self.beta * (distance[..., :1, :] - distance))
