@@ -138,7 +138,7 @@ def test_the_loss_is_the_distance_to_what_was_decoded_plus_the_price_of_bending(
     observed = torch.from_numpy(trained.contexts.apply(context)).expand(2, -1, -1)
     wanted = torch.from_numpy(trained.actions.apply(action)).expand(2, -1, -1)
     networks = group_layers({name: torch.from_numpy(value) for name, value in trained.tensors.items()})
-    loss = model._loss(networks, Batch(observed, wanted, torch.zeros(2, 20, 0)))
+    loss = model._loss(networks, Batch(observed, wanted, torch.zeros(2, 20, 0), observed[:, :0]))
     rebuilt = trained.actions.apply(model.decode(model.encode(context, action), context))
     error = np.square(rebuilt - wanted.numpy()).sum(axis=(1, 2)) / 20
     geometry = _geometry(networks, observed, 2)
@@ -158,7 +158,9 @@ def test_the_gradient_is_that_of_the_whole_loss_though_none_flows_through_the_se
     name = "decoder.1.bias"
 
     def loss(values):
-        return model._loss(group_layers({**tensors, name: values}), Batch(observed, wanted, wanted[..., :0]))
+        return model._loss(
+            group_layers({**tensors, name: values}), Batch(observed, wanted, wanted[..., :0], observed[:, :0])
+        )
 
     leaf = tensors[name].clone().requires_grad_()
     (gradient,) = torch.autograd.grad(loss(leaf).sum(), [leaf])

@@ -5,12 +5,17 @@ from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.reach import Reach
 from latentarm.tasks.replay import Replay
+from latentarm.tasks.two_cups import PandaTwoCups, PlanarTwoCups
 
 
-@pytest.fixture(params=["table_top", "reach", "replay"])
+@pytest.fixture(params=["table_top", "reach", "replay", "planar_two_cups", "panda_two_cups"])
 def task(request):
     if request.param == "reach":
         return Reach(load_robot("planar"))
+    if request.param == "planar_two_cups":
+        return PlanarTwoCups()
+    if request.param == "panda_two_cups":
+        return PandaTwoCups()
     table_top = request.getfixturevalue("table_top")
     if request.param == "table_top":
         return table_top

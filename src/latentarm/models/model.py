@@ -308,16 +308,17 @@ class LatentActionModel(ABC):
                 f"{dimensions.action}: choose at most {dimensions.action}."
             )
         contexts, actions = _normalisers(arm, context, action)
-        elsewhere = context[:0]
+        shown = contexts.apply(context)
+        elsewhere = shown[:0]
         if term is not None:
             rng = np.random.default_rng([self.data_seed, 2])
-            elsewhere = term.contexts(context, dimensions.action, rng)
+            elsewhere = contexts.apply(term.contexts(context, dimensions.action, rng))
         data = TrainingData(
-            context=contexts.apply(context),
+            context=shown,
             action=actions.apply(action),
             held_out_context=contexts.apply(pairs.context[outside]),
             held_out_action=actions.apply(pairs.action[outside]),
-            elsewhere=contexts.apply(elsewhere),
+            elsewhere=elsewhere,
         )
         scaled = term and ScaledTerm(
             term,

@@ -203,7 +203,7 @@ class PlanarTwoCups(TwoCups):
     @property
     def start(self) -> FloatArray:
         """Curled, the tool near the base: (5,), rad."""
-        return np.array([1.87, -1.6, -1.6, -0.6, 0.7])
+        return np.array([2.1, -1.6, -1.6, -0.6, 0.7])
 
     def pose(self, bearing_rad: float, place: Place) -> Pose:
         """In the plane, the tool's x axis towards the cup."""
@@ -224,7 +224,7 @@ class PandaTwoCups(TwoCups):
     HEIGHT_M: Final = 0.25
     """Of the cups above the base."""
 
-    PITCH_RAD: Final = -1.2
+    PITCH_RAD: Final = -1.3
     """Of the hand's pointing direction above the horizontal, where a cup is approached."""
 
     @property
@@ -235,7 +235,7 @@ class PandaTwoCups(TwoCups):
     @property
     def grasps(self) -> dict[str, Place]:
         """Lower and from the left side; higher, pointing down, and from the right."""
-        return {"side": Place(0.0, 0.06, -0.03, 0.35), "top": Place(0.0, -0.06, 0.03, -0.35)}
+        return {"side": Place(0.0, 0.06, -0.03, 0.25), "top": Place(0.0, -0.06, 0.03, -0.25)}
 
     @property
     def robot(self) -> Robot:
