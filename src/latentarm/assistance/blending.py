@@ -10,35 +10,39 @@ from latentarm.errors import UserError
 from latentarm.types import FloatArray
 
 
-def blend(action_human: FloatArray, action_assist: FloatArray, alpha: float) -> FloatArray:
+def blend(action_human: FloatArray, action_assist: FloatArray, alpha: float | FloatArray) -> FloatArray:
     """``a = (1 - alpha) a_h + alpha a_r`` (equation 2; with equation 3 it is equation 10).
 
     Args:
         action_human: (..., m), ``a_h``, rad/s.
         action_assist: (..., m), ``a_r``, rad/s.
-        alpha: 0 leaves all to the person, 1 all to the robot.
+        alpha: (...,), 0 leaves all to the person, 1 all to the robot.
 
     Returns:
         (..., m), rad/s.
     """
-    return (1.0 - alpha) * action_human + alpha * action_assist
+    share = np.asarray(alpha)[..., None]
+    return (1.0 - share) * action_human + share * action_assist
 
 
 class Arbitration(ABC):
     """Decides how much the robot helps."""
 
+    @property
     @abstractmethod
-    def alpha(self, u: FloatArray, belief: FloatArray) -> float:
-        """The arbitration of equation 2 for one step.
+    def acts_at_rest(self) -> bool:
+        """Whether the robot helps a person who gives no input. Where it does not, ``alpha`` is zero there."""
 
-        Every arbitration goes to zero with the input: an arm whose person lets go stands still.
+    @abstractmethod
+    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
+        """The arbitration of equation 2.
 
         Args:
-            u: (d,), the person's input.
-            belief: (G,), probability over goals.
+            u: (..., d), the person's input.
+            belief: (..., G), probability over goals.
 
         Returns:
-            alpha in [0, 1].
+            (...,), alpha in [0, 1]; zero for an input that is not finite.
         """
 
 
@@ -50,18 +54,119 @@ class FixedAlpha(Arbitration):
     Attributes:
         value: alpha in [0, 1] at inputs of ``full_at`` and more.
         full_at: ‖u‖ from which help is full; below, alpha shrinks in proportion, to zero at zero.
+
+    Raises:
+        UserError: a parameter is out of its range.
     """
 
     value: float = 0.15
     full_at: float = 0.3
 
     def __post_init__(self) -> None:
-        if not 0 <= self.value <= 1:
-            raise UserError(f"The arbitration alpha must be in [0, 1], not {self.value}.")
-        if not 0 < self.full_at <= 1:
-            raise UserError(f"The input at which help is full must be in (0, 1], not {self.full_at}.")
+        _check_share("arbitration alpha", self.value)
+        _check_full_at(self.full_at)
 
-    def alpha(self, u: FloatArray, belief: FloatArray) -> float:
-        """Constant, times ‖u‖ / full_at where that is below one; zero for an input that is not finite."""
-        size = float(np.sqrt(u @ u))
-        return self.value * min(size / self.full_at, 1.0) if np.isfinite(size) else 0.0
+    @property
+    def acts_at_rest(self) -> bool:
+        """No: an arm whose person lets go stands still."""
+        return False
+
+    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
+        """Constant, times ‖u‖ / full_at where that is below one; see `Arbitration.alpha`."""
+        return self.value * _fade(u, self.full_at)
+
+
+@final
+@dataclass(frozen=True)
+class ConfidenceAlpha(Arbitration):
+    """Help in proportion to how sure the robot is, as in Dragan and Srinivasa (2013), faded out like `FixedAlpha`.
+
+    Confidence is ``(max b - 1/G) / (1 - 1/G)``: 0 where all goals are as likely, 1 where one is certain;
+    1 where there is one goal only. The belief's floor f keeps it at ``1 - f G`` or below.
+
+    Attributes:
+        most: alpha in [0, 1] where the robot is sure and the input is ``full_at`` or more.
+        unsure_below: confidence in [0, 1) up to which there is no help.
+        sure_above: confidence in (unsure_below, 1] from which help is at its most; linear between.
+        full_at: ‖u‖ from which help is full; below, alpha shrinks in proportion, to zero at zero.
+
+    Raises:
+        UserError: a parameter is out of its range.
+    """
+
+    most: float = 0.5
+    unsure_below: float = 0.2
+    sure_above: float = 0.8
+    full_at: float = 0.3
+
+    def __post_init__(self) -> None:
+        _check_share("most of the arbitration alpha", self.most)
+        if not 0 <= self.unsure_below < self.sure_above <= 1:
+            raise UserError(
+                "The arbitration's confidences must be in [0, 1], unsure_below less than sure_above, "
+                f"not {self.unsure_below} and {self.sure_above}."
+            )
+        _check_full_at(self.full_at)
+
+    @property
+    def acts_at_rest(self) -> bool:
+        """No: an arm whose person lets go stands still."""
+        return False
+
+    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
+        """Grows with the confidence, and with ‖u‖ up to ``full_at``; see `Arbitration.alpha`."""
+        sure = (confidence(belief) - self.unsure_below) / (self.sure_above - self.unsure_below)
+        return self.most * np.minimum(np.maximum(sure, 0.0), 1.0) * _fade(u, self.full_at)
+
+
+@final
+@dataclass(frozen=True)
+class Unprompted(Arbitration):
+    """Help whether or not the person gives an input, for people who ask for it: the arm then moves by itself.
+
+    Attributes:
+        inner: says how much, as at full input.
+    """
+
+    inner: Arbitration
+
+    @property
+    def acts_at_rest(self) -> bool:
+        """Yes."""
+        return True
+
+    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
+        """What ``inner`` says of a full input; see `Arbitration.alpha`."""
+        return np.isfinite(u).all(axis=-1) * self.inner.alpha(np.ones_like(u), belief)
+
+
+def confidence(belief: FloatArray) -> FloatArray:
+    """How sure the robot is, ``(max b - 1/G) / (1 - 1/G)``.
+
+    Args:
+        belief: (..., G), probability over goals.
+
+    Returns:
+        (...,), in [0, 1]; 1 where there is one goal only.
+    """
+    count = belief.shape[-1]
+    if count == 1:
+        return np.ones(belief.shape[:-1])
+    return np.clip((count * belief.max(axis=-1) - 1.0) / (count - 1.0), 0.0, 1.0)
+
+
+def _fade(u: FloatArray, full_at: float) -> FloatArray:
+    """‖u‖ / full_at up to one, (...,); zero for an input that is not finite."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = np.sqrt(np.vecdot(u, u))
+        return np.where(np.isfinite(size), np.minimum(size / full_at, 1.0), 0.0)
+
+
+def _check_share(name: str, value: float) -> None:
+    if not 0 <= value <= 1:
+        raise UserError(f"The {name} must be in [0, 1], not {value}.")
+
+
+def _check_full_at(full_at: float) -> None:
+    if not 0 < full_at <= 1:
+        raise UserError(f"The input at which help is full must be in (0, 1], not {full_at}.")

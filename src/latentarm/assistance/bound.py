@@ -1,0 +1,233 @@
+"""How near to the goal shared autonomy brings the arm, whatever the person does (equations 11 to 14).
+
+The arm moves at ``a = (1 - alpha) phi + alpha k Σ_g b(g) (g - s)`` (equation 10) with ``‖phi‖ <= sigma_h``,
+and ``V = ‖e‖² / 2`` with ``e = g* - s`` (equation 11). The sum holds ``b(g*) e``, so V falls wherever
+
+    b(g*) ‖e‖ > delta = (1 - alpha) / (alpha k) sigma_h + others
+
+where ``others`` is what the help towards the other goals may do; the paper has alpha = 1/2 and k = 1/s.
+There are three forms of it, each at most as large as the one before: `furthest` (equation 14), `weighted`
+(equation 13) and `known_help`.
+
+All arguments broadcast over leading axes:
+
+- ``sigma_h``: (...,), bound on ‖phi‖, rad/s, zero or more.
+- ``state``: (..., n), rad.
+- ``belief``: (..., G), probability over goals.
+- ``goals``: (..., G, n), configurations, rad.
+- ``goal``: (...,), index of ``g*``, the goal that the person wants.
+- ``alpha``: (...,), in [0, 1]; 0 is no help, which certifies nothing.
+- ``gain_per_s``: (...,), k, 1/s, positive.
+
+Numbers that are not finite certify nothing; a number out of its range is a `UserError`.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from latentarm.errors import UserError
+from latentarm.types import BoolArray, FloatArray
+
+Others = Callable[[FloatArray, FloatArray, FloatArray, ArrayLike], FloatArray]
+"""``(state, belief, goals, goal)`` to a bound (...,), rad, on what help towards the other goals may do."""
+
+_TINY = 1e-300
+
+
+def lyapunov(state: FloatArray, goal_state: FloatArray) -> FloatArray:
+    """``V = ‖e‖² / 2`` (equation 11).
+
+    Args:
+        state: (..., n), rad.
+        goal_state: (..., n), ``g*``, rad.
+
+    Returns:
+        (...,), rad².
+    """
+    error = goal_state - state
+    return (error * error).sum(axis=-1) / 2.0
+
+
+def lyapunov_rate(state: FloatArray, goal_state: FloatArray, action: FloatArray) -> FloatArray:
+    """``dV/dt = -e·a`` (equation 12).
+
+    Args:
+        state: (..., n), rad.
+        goal_state: (..., n), ``g*``, rad.
+        action: (..., n), what the arm does, rad/s.
+
+    Returns:
+        (...,), rad²/s; negative where the arm comes nearer.
+    """
+    return -((goal_state - state) * action).sum(axis=-1)
+
+
+def furthest(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
+    """``(1 - b(g*)) sigma_r``, all help as towards the furthest other goal (equation 14).
+
+    Returns:
+        (...,), rad, with ``sigma_r = max ‖g - s‖``; 0 where there is no other goal.
+    """
+    other = _is_other(goals, goal)
+    distance = np.linalg.norm(goals - state[..., None, :], axis=-1)
+    return np.where(other, belief, 0.0).sum(axis=-1) * np.where(other, distance, 0.0).max(axis=-1)
+
+
+def weighted(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
+    """``Σ b(g) ‖g - s‖`` over the other goals, each at its own distance (equation 13).
+
+    Returns:
+        (...,), rad.
+    """
+    distance = np.linalg.norm(goals - state[..., None, :], axis=-1)
+    return np.where(_is_other(goals, goal), belief * distance, 0.0).sum(axis=-1)
+
+
+def known_help(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
+    """``-Σ b(g) (g - s)·e / ‖e‖`` over the other goals: the robot knows where it helps to.
+
+    No smaller one would do: a person who steers straight away from the goal at ``sigma_h`` meets it.
+
+    Returns:
+        (...,), rad; negative where help towards the other goals leads to this one too.
+    """
+    other = _is_other(goals, goal)
+    away = goals - state[..., None, :]
+    error = np.where(other[..., None], 0.0, away).sum(axis=-2)
+    elsewhere = np.where(other, belief, 0.0)[..., None, :] @ away
+    length = np.maximum(np.linalg.norm(error, axis=-1), _TINY)
+    return -(elsewhere[..., 0, :] * error).sum(axis=-1) / length
+
+
+def delta(
+    sigma_h: ArrayLike,
+    state: FloatArray,
+    belief: FloatArray,
+    goals: FloatArray,
+    goal: ArrayLike,
+    alpha: ArrayLike,
+    gain_per_s: ArrayLike = 1.0,
+    others: Others = furthest,
+) -> FloatArray:
+    """``(1 - alpha) / (alpha k) sigma_h + others``: what ``b(g*) ‖e‖`` must exceed (equation 14).
+
+    Returns:
+        (...,), rad; inf where alpha is zero.
+    """
+    sigma_h, alpha, gain = _checked(sigma_h, alpha, gain_per_s)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        person = np.where(alpha > 0.0, (1.0 - alpha) / (alpha * gain) * sigma_h, np.inf)
+    return person + others(state, belief, goals, goal)
+
+
+def certified(
+    sigma_h: ArrayLike,
+    state: FloatArray,
+    belief: FloatArray,
+    goals: FloatArray,
+    goal: ArrayLike,
+    alpha: ArrayLike,
+    gain_per_s: ArrayLike = 1.0,
+    others: Others = furthest,
+) -> BoolArray:
+    """Where ``dV/dt < 0`` whatever the person does: the arm comes nearer to ``g*``.
+
+    Returns:
+        (...,), ``b(g*) ‖e‖ > delta``.
+    """
+    wanted = ~_is_other(goals, goal)
+    distance = np.linalg.norm(goals - state[..., None, :], axis=-1)
+    pull = np.where(wanted, belief * distance, 0.0).sum(axis=-1)
+    return pull > delta(sigma_h, state, belief, goals, goal, alpha, gain_per_s, others)
+
+
+def radius(
+    sigma_h: ArrayLike,
+    state: FloatArray,
+    belief: FloatArray,
+    goals: FloatArray,
+    goal: ArrayLike,
+    alpha: ArrayLike,
+    gain_per_s: ArrayLike = 1.0,
+) -> FloatArray:
+    """``delta / b(g*)``: how far from ``g*`` the arm may stay, by equation 14.
+
+    The arm moves with ``sigma_r``: this is the radius of the ball as seen from here.
+
+    Returns:
+        (...,), rad; inf where alpha or ``b(g*)`` is zero.
+    """
+    reach = delta(sigma_h, state, belief, goals, goal, alpha, gain_per_s)
+    sure = np.where(_is_other(goals, goal), 0.0, belief).sum(axis=-1)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        return np.where(sure == 0.0, np.inf, reach / sure)
+
+
+def step_certified(
+    sigma_h: ArrayLike,
+    state: FloatArray,
+    belief: FloatArray,
+    goals: FloatArray,
+    goal: ArrayLike,
+    alpha: ArrayLike,
+    dt_s: ArrayLike,
+    gain_per_s: ArrayLike = 1.0,
+) -> BoolArray:
+    """Where ``V(t + dt) < V(t)`` whatever the person does, for an action that is held for a whole step.
+
+    The furthest from the goal that a step can end is ``‖e - dt alpha k r‖ + dt (1 - alpha) sigma_h`` with
+    the known help ``r = Σ b(g) (g - s)``, so this is exact: it holds for all ``‖phi‖ <= sigma_h``, and
+    where it fails some ``phi`` does not come nearer. By the triangle inequality `certified` with
+    `furthest` or `weighted` implies it wherever ``alpha k b(g*) dt <= 1``: equations 13 and 14 need no
+    correction for the step. For longer steps, and with `known_help`, they may promise too much.
+
+    Args:
+        sigma_h: as everywhere here; likewise all but the step.
+        state: (..., n), rad.
+        belief: (..., G).
+        goals: (..., G, n), rad.
+        goal: (...,).
+        alpha: (...,).
+        dt_s: (...,), how long the action is held, s, positive.
+        gain_per_s: (...,), 1/s.
+
+    Returns:
+        (...,).
+    """
+    sigma_h, alpha, gain = _checked(sigma_h, alpha, gain_per_s)
+    dt = np.asarray(dt_s, dtype=np.float64)
+    if not (dt > 0.0).all():
+        raise UserError("The bound's step dt_s must be positive.")
+    away = goals - state[..., None, :]
+    error = np.where(_is_other(goals, goal)[..., None], 0.0, away).sum(axis=-2)
+    help_there = (belief[..., None, :] @ away)[..., 0, :]
+    left = np.linalg.norm(error - (dt * alpha * gain)[..., None] * help_there, axis=-1)
+    nearer = left + dt * (1.0 - alpha) * sigma_h < np.linalg.norm(error, axis=-1)
+    return nearer & (alpha > 0.0)
+
+
+def _is_other(goals: FloatArray, goal: ArrayLike) -> BoolArray:
+    """``G'``: which goals are not ``g*``, (..., G)."""
+    index = np.asarray(goal)
+    count = goals.shape[-2]
+    if index.dtype.kind not in "iu" or (index < 0).any() or (index >= count).any():
+        raise UserError(f"The bound's goal must be an index below {count}, not {goal}.")
+    return np.arange(count) != index[..., None]
+
+
+def _checked(
+    sigma_h: ArrayLike, alpha: ArrayLike, gain_per_s: ArrayLike
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The three as arrays, refused where out of range."""
+    bound = np.asarray(sigma_h, dtype=np.float64)
+    share = np.asarray(alpha, dtype=np.float64)
+    gain = np.asarray(gain_per_s, dtype=np.float64)
+    if (bound < 0.0).any():
+        raise UserError("The bound's sigma_h must be zero or more.")
+    if not ((share >= 0.0) & (share <= 1.0)).all():
+        raise UserError("The bound's alpha must be in [0, 1].")
+    if not (gain > 0.0).all():
+        raise UserError("The bound's gain_per_s must be positive.")
+    return bound, share, gain
