@@ -186,6 +186,13 @@ def train(
     kl_weight: Annotated[
         float | None, arg(help="lambda of equations 7 and 8, for vae and cvae; below 1.")
     ] = None,
+    goal_entropy: Annotated[
+        float,
+        arg(
+            help="lambda_2 of equation 16: how much it counts that every goal stays open, with the context"
+            " state_belief; 0 leaves it out, 5 lets people change their mind."
+        ),
+    ] = 0.0,
     device: Annotated[Literal["cpu", "cuda", "auto"], arg(help="Where to train.")] = "cpu",
     end_effector: EndEffector = None,
     out: Annotated[
@@ -212,6 +219,7 @@ def train(
         held_out=held_out,
         epochs=epochs,
         kl_weight=kl_weight,
+        goal_entropy=goal_entropy,
         device=device,
         end_effector=end_effector,
         out=out or Path("runs") / f"{demonstrations.resolve().name}-{model}",
@@ -268,6 +276,24 @@ def drive(
     end_effector: EndEffector = None,
     drives: Annotated[int, arg(help="Drives for each goal.")] = 3,
     beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0,
+    belief: Annotated[
+        Literal["boltzmann", "distance", "maximum_entropy"],
+        arg(help="How inputs change the belief over goals, for help and for models trained on (s, b)."),
+    ] = "boltzmann",
+    arbitration: Annotated[
+        Literal["fixed", "confidence"] | None,
+        arg(
+            help="For latent_assist: the same alpha throughout, or more of it the surer the belief;"
+            " fixed by default."
+        ),
+    ] = None,
+    alpha: Annotated[
+        float | None,
+        arg(
+            help="For latent_assist: alpha of equation 2 at full input, from 0 (the person alone) to 1"
+            " (the robot alone), with confidence the most of it; ALPHAS by default."
+        ),
+    ] = None,
     time_limit_s: Annotated[
         float | None, arg(help="A drive that lasts longer has failed: 60 s, 300 s on held-out episodes.")
     ] = None,
@@ -294,6 +320,9 @@ def drive(
             end_effector=end_effector,
             drives=drives,
             beta=beta,
+            belief=belief,
+            arbitration=arbitration,
+            alpha=alpha,
             time_limit_s=time_limit_s,
             seed=seed,
             record=record,
@@ -357,7 +386,7 @@ def bench(
     seed: Seed = 0,
     json: Json = False,
 ) -> int:
-    """Time the online step beside torch, and ten seeds in one fit beside ten fits in turn.
+    """Time the online step, with 3 goals and with 50, beside torch, and ten seeds in one fit beside ten fits in turn.
 
     For example: latentarm bench --json
     """

@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 
 from latentarm.assistance.annotation import annotate
+from latentarm.assistance.entropy import GoalEntropy
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.errors import UserError
@@ -45,6 +46,7 @@ class TrainConfig:
         held_out: share of the episodes that neither train nor stop the model.
         epochs: passes over the training pairs, at most; the model's own number where None.
         kl_weight: lambda of equations 7 and 8, for models that have it; their own where None.
+        goal_entropy: lambda_2 of equation 16; 0 leaves the entropy over goals out of the loss.
         device: where to train.
         end_effector: site, body or link, where the dataset's robot is a model file.
         resume: go on with a training that was cut off.
@@ -63,6 +65,7 @@ class TrainConfig:
     held_out: float = 0.2
     epochs: int | None = None
     kl_weight: float | None = None
+    goal_entropy: float = 0.0
     device: Literal["cpu", "cuda", "auto"] = "cpu"
     end_effector: str | None = None
     resume: bool = False
@@ -98,6 +101,7 @@ def train_run(config: TrainConfig) -> list[Row]:
         model.fit(
             select_episodes(demonstrations, training),
             chain=chain,
+            term=_term(config, demonstrations),
             checkpoint=checkpoint,
             progress=config.progress,
         )
@@ -112,7 +116,8 @@ def train_run(config: TrainConfig) -> list[Row]:
         fingerprint=fingerprint(demonstrations),
     )
     said = [str(warning.message) for warning in caught]
-    model.save(config.out, run={**run_facts(run), "warnings": said, "git_commit": git_commit()})
+    facts = run_facts(run) | {"goal_entropy": config.goal_entropy}
+    model.save(config.out, run={**facts, "warnings": said, "git_commit": git_commit()})
     checkpoint.unlink(missing_ok=True)
     for sentence in said:
         warnings.warn(sentence, stacklevel=2)
@@ -140,6 +145,23 @@ def _model(config: TrainConfig) -> LatentActionModel:
         device=config.device,
     )
     return replace(model, **chosen)
+
+
+def _term(config: TrainConfig, demonstrations: Demonstrations) -> GoalEntropy | None:
+    """The entropy over the demonstrations' goals, where it is asked for.
+
+    Raises:
+        UserError: the weight makes no sense, or there are fewer than two goals.
+    """
+    if config.goal_entropy == 0:
+        return None
+    if len(demonstrations.goals) < 2:
+        raise UserError(
+            f"{config.demonstrations} names {len(demonstrations.goals)} goals, and an entropy over goals "
+            "needs two or more: leave --goal-entropy out."
+        )
+    goals = np.stack([goal.configuration for goal in demonstrations.goals])
+    return GoalEntropy(goals, weight=config.goal_entropy)
 
 
 def prepared(demonstrations: Demonstrations, context: str) -> Demonstrations:
