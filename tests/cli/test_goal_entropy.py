@@ -12,7 +12,8 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.two_cups import PlanarTwoCups
 
 Run = Callable[..., tuple[int, str, str]]
-TRAIN = tuple("train --demonstrations cups --latent-dim 1 --context state_belief --seeds 1".split())
+CUPS = ("--demonstrations", "cups", "--latent-dim", "1", "--context", "state_belief", "--seeds", "1")
+TRAIN = ("train", *CUPS)
 
 
 @pytest.fixture
