@@ -5,8 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.assistance.action import assistive_action
-from latentarm.assistance.blending import FixedAlpha, blend
-from latentarm.errors import UserError
+from latentarm.assistance.blending import blend
 
 GOALS = np.array([[1.0, 0.0, 0.5], [-1.0, 2.0, 0.0]])
 states = hnp.arrays(float, 3, elements=st.floats(-3, 3))
@@ -39,19 +38,8 @@ def test_blending_runs_from_the_person_to_the_robot(human, robot):
     assert blend(human, robot, 0.5) == pytest.approx((human + robot) / 2)
 
 
-def test_help_ends_when_the_person_lets_go():
-    belief = np.array([0.5, 0.5])
-    alpha = [FixedAlpha(0.6, full_at=0.5).alpha(np.array([0.0, u]), belief) for u in (0.0, 0.25, 0.5, 1.0)]
-    assert alpha == pytest.approx([0.0, 0.3, 0.6, 0.6])
-
-
-@given(hnp.arrays(float, 2, elements=st.floats()), st.floats(0, 1))
-def test_alpha_is_a_share_for_any_input(u, value):
-    with np.errstate(all="ignore"):
-        assert 0.0 <= FixedAlpha(value).alpha(u, np.ones(1)) <= value
-
-
-@pytest.mark.parametrize("wrong", [{"value": 1.1}, {"value": float("nan")}, {"full_at": 0.0}])
-def test_an_alpha_that_is_no_share_is_refused(wrong):
-    with pytest.raises(UserError):
-        FixedAlpha(**wrong)
+def test_a_batch_is_blended_as_each_alone(rng):
+    human, robot, alpha = rng.normal(size=(4, 5, 3)), rng.normal(size=(4, 5, 3)), rng.uniform(size=(4, 5))
+    together = blend(human, robot, alpha)
+    for index in np.ndindex(4, 5):
+        assert np.array_equal(together[index], blend(human[index], robot[index], float(alpha[index])))

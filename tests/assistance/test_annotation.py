@@ -81,3 +81,23 @@ def test_creeping_is_no_choice():
     creep = np.arange(400)[:, None] / 20.0 * 0.015 * GOALS[0] / np.linalg.norm(GOALS[0])
     belief = annotate(demonstrations(creep)).episodes[0].extras["belief"]
     assert belief == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("goal", [0, 1])
+def test_any_rule_will_do(rule, goal):
+    belief = annotate(demonstrations(reach(goal)), rule).episodes[0].extras["belief"]
+    assert belief[0] == pytest.approx([0.5, 0.5])
+    assert belief[-1, goal] > 0.9
+    assert belief.sum(axis=1) == pytest.approx(1.0)
+
+
+def test_the_rule_is_told_the_goals_and_the_rate():
+    told = []
+
+    def rule(goals, *, period_s):
+        told.append((goals, period_s))
+        return BoltzmannBelief(goals, period_s=period_s)
+
+    annotate(demonstrations(reach(0), rate_hz=40.0), rule)
+    np.testing.assert_array_equal(told[0][0], GOALS)
+    assert told[0][1] == pytest.approx(1 / 40)

@@ -11,7 +11,7 @@ from latentarm.errors import UserError
 from latentarm.types import FloatArray
 
 ActionOf = Callable[[FloatArray], FloatArray]
-"""Inputs (..., K, d) to the actions ``a_h`` (..., K, n), rad/s, that they would cause in the present states."""
+"""Inputs (..., K, d) to the actions ``a_h`` (..., K, n), rad/s, that they would cause in these states."""
 
 _LEAST = 1e-300
 """Stands in for a probability of zero, which has no logarithm."""
@@ -26,7 +26,7 @@ class Rule(Protocol):
 
 
 class Belief(ABC):
-    """Bayes' rule over goals, ``b'(g) ∝ P(u | s, g) b(g)`` (equation 9), with the person's likelihood left open.
+    """Bayes' rule over goals, ``b'(g) ∝ P(u | s, g) b(g)`` (equation 9); the likelihood is the rule's own.
 
     A person decides once per look-ahead ``tau``: an update every ``period_s`` counts as the share
     ``period_s / tau`` of a decision, so the belief does not depend on the rate of the loop.
@@ -63,8 +63,8 @@ class Belief(ABC):
         self.goals = np.ascontiguousarray(goals, dtype=float)
         if self.goals.ndim != 2 or not self.goals.size or not np.isfinite(self.goals).all():
             raise UserError("A belief needs at least one goal, each a finite configuration in rad.")
-        self.horizon_s = positive("horizon_s", horizon_s)
         self.period_s = positive("period_s", period_s)
+        self.horizon_s = positive("horizon_s", horizon_s)
         # A floor within rounding of 1/G would leave nothing to share out.
         if not 0 <= floor < (1 - 1e-9) / len(self.goals):
             raise UserError(f"The belief's floor must be in [0, 1/{len(self.goals)}), not {floor}.")
@@ -141,7 +141,7 @@ class Belief(ABC):
         sound_actions, sound_score = np.isfinite(actions), np.isfinite(score)
         if np.count_nonzero(sound_actions) == actions.size and np.count_nonzero(sound_score) == score.size:
             return after
-        sound = sound_actions.all(axis=(-2, -1)) & sound_score.all(axis=-1)
+        sound = np.all(sound_actions, axis=(-2, -1)) & np.all(sound_score, axis=-1)
         return np.where(sound[..., None], after, belief)
 
     def _kept_above_floor(self, belief: FloatArray) -> FloatArray:

@@ -79,10 +79,11 @@ class FixedAlpha(Arbitration):
 @final
 @dataclass(frozen=True)
 class ConfidenceAlpha(Arbitration):
-    """Help in proportion to how sure the robot is, as in Dragan and Srinivasa (2013), faded out like `FixedAlpha`.
+    """More help the surer the robot is, faded out as the person lets go of the input.
 
-    Confidence is ``(max b - 1/G) / (1 - 1/G)``: 0 where all goals are as likely, 1 where one is certain;
-    1 where there is one goal only. The belief's floor f keeps it at ``1 - f G`` or below.
+    After Dragan and Srinivasa (2013). Confidence is ``(max b - 1/G) / (1 - 1/G)``: 0 where all goals are
+    as likely, 1 where one is certain; 1 where there is one goal only. A belief's floor f keeps it at
+    ``1 - f G`` or below.
 
     Attributes:
         most: alpha in [0, 1] where the robot is sure and the input is ``full_at`` or more.

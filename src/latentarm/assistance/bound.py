@@ -71,8 +71,7 @@ def furthest(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: Arr
         (...,), rad, with ``sigma_r = max ‖g - s‖``; 0 where there is no other goal.
     """
     other = _is_other(goals, goal)
-    distance = np.linalg.norm(goals - state[..., None, :], axis=-1)
-    return np.where(other, belief, 0.0).sum(axis=-1) * np.where(other, distance, 0.0).max(axis=-1)
+    return np.vecdot(belief, other) * (other * _length(goals - state[..., None, :])).max(axis=-1)
 
 
 def weighted(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
@@ -81,8 +80,7 @@ def weighted(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: Arr
     Returns:
         (...,), rad.
     """
-    distance = np.linalg.norm(goals - state[..., None, :], axis=-1)
-    return np.where(_is_other(goals, goal), belief * distance, 0.0).sum(axis=-1)
+    return np.vecdot(belief * _is_other(goals, goal), _length(goals - state[..., None, :]))
 
 
 def known_help(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
@@ -95,10 +93,8 @@ def known_help(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: A
     """
     other = _is_other(goals, goal)
     away = goals - state[..., None, :]
-    error = np.where(other[..., None], 0.0, away).sum(axis=-2)
-    elsewhere = np.where(other, belief, 0.0)[..., None, :] @ away
-    length = np.maximum(np.linalg.norm(error, axis=-1), _TINY)
-    return -(elsewhere[..., 0, :] * error).sum(axis=-1) / length
+    error, elsewhere = np.vecmat(~other, away), np.vecmat(belief * other, away)
+    return -np.vecdot(elsewhere, error) / np.maximum(_length(error), _TINY)
 
 
 def delta(
@@ -138,8 +134,7 @@ def certified(
         (...,), ``b(g*) ‖e‖ > delta``.
     """
     wanted = ~_is_other(goals, goal)
-    distance = np.linalg.norm(goals - state[..., None, :], axis=-1)
-    pull = np.where(wanted, belief * distance, 0.0).sum(axis=-1)
+    pull = np.vecdot(belief * wanted, _length(goals - state[..., None, :]))
     return pull > delta(sigma_h, state, belief, goals, goal, alpha, gain_per_s, others)
 
 
@@ -160,7 +155,7 @@ def radius(
         (...,), rad; inf where alpha or ``b(g*)`` is zero.
     """
     reach = delta(sigma_h, state, belief, goals, goal, alpha, gain_per_s)
-    sure = np.where(_is_other(goals, goal), 0.0, belief).sum(axis=-1)
+    sure = np.vecdot(belief, ~_is_other(goals, goal))
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         return np.where(sure == 0.0, np.inf, reach / sure)
 
@@ -201,20 +196,23 @@ def step_certified(
     if not (dt > 0.0).all():
         raise UserError("The bound's step dt_s must be positive.")
     away = goals - state[..., None, :]
-    error = np.where(_is_other(goals, goal)[..., None], 0.0, away).sum(axis=-2)
-    help_there = (belief[..., None, :] @ away)[..., 0, :]
-    left = np.linalg.norm(error - (dt * alpha * gain)[..., None] * help_there, axis=-1)
-    nearer = left + dt * (1.0 - alpha) * sigma_h < np.linalg.norm(error, axis=-1)
-    return nearer & (alpha > 0.0)
+    error, help_there = np.vecmat(~_is_other(goals, goal), away), np.vecmat(belief, away)
+    left = _length(error - (dt * alpha * gain)[..., None] * help_there)
+    return (left + dt * (1.0 - alpha) * sigma_h < _length(error)) & (alpha > 0.0)
 
 
 def _is_other(goals: FloatArray, goal: ArrayLike) -> BoolArray:
     """``G'``: which goals are not ``g*``, (..., G)."""
     index = np.asarray(goal)
     count = goals.shape[-2]
-    if index.dtype.kind not in "iu" or (index < 0).any() or (index >= count).any():
-        raise UserError(f"The bound's goal must be an index below {count}, not {goal}.")
+    if index.dtype.kind not in "iu" or np.count_nonzero((index < 0) | (index >= count)):
+        raise UserError(f"The bound's goal must be an index from 0 to {count - 1}, not {goal}.")
     return np.arange(count) != index[..., None]
+
+
+def _length(vector: FloatArray) -> FloatArray:
+    """(..., n) to (...,)."""
+    return np.sqrt(np.vecdot(vector, vector))
 
 
 def _checked(
@@ -224,10 +222,7 @@ def _checked(
     bound = np.asarray(sigma_h, dtype=np.float64)
     share = np.asarray(alpha, dtype=np.float64)
     gain = np.asarray(gain_per_s, dtype=np.float64)
-    if (bound < 0.0).any():
-        raise UserError("The bound's sigma_h must be zero or more.")
-    if not ((share >= 0.0) & (share <= 1.0)).all():
-        raise UserError("The bound's alpha must be in [0, 1].")
-    if not (gain > 0.0).all():
-        raise UserError("The bound's gain_per_s must be positive.")
+    # A sigma_h that is not a number is a decoder's fault, not the caller's: it certifies nothing.
+    if np.count_nonzero(~((share >= 0.0) & (share <= 1.0) & (gain > 0.0)) | (bound < 0.0)):
+        raise UserError("The bound needs sigma_h of zero or more, alpha in [0, 1] and a positive gain_per_s.")
     return bound, share, gain

@@ -1,4 +1,7 @@
-"""The belief by distance gone: Dragan and Srinivasa, "A policy-blending formalism for shared control", 2013."""
+"""The belief by distance gone.
+
+Dragan and Srinivasa, "A policy-blending formalism for shared control", 2013.
+"""
 
 from collections.abc import Sequence
 from typing import final

@@ -27,8 +27,9 @@ class MaximumEntropyBelief(Belief):
     itself costs depends on the state alone and cancels. ``V_g(s) = -log Σ_{u' in U} exp(-Q_g(s, u'))``
     makes it a distribution over `alternatives`.
 
-    Far from a goal the evidence does not grow with the distance, as it does in `BoltzmannBelief`; there
-    the rules differ most.
+    Far from a goal the evidence does not grow with the distance, as it does in `BoltzmannBelief`. Where
+    all goals are within delta the two rules are one, with beta = c / (2 delta): delta should therefore be
+    wide enough to hold what is done at a goal, or stabbing and scooping there speak against it.
 
     Args:
         goals: (G, n), the goals' configurations, rad.
@@ -47,7 +48,7 @@ class MaximumEntropyBelief(Belief):
         self,
         goals: FloatArray | Sequence[FloatArray],
         cost_per_rad: float = 20.0,
-        near_rad: float = 0.2,
+        near_rad: float = 0.5,
         horizon_s: float = 0.5,
         period_s: float = 0.05,
         prior: FloatArray | None = None,
