@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.assistance.alternatives import alternatives
+from latentarm.assistance.alternatives import alternatives, at_one_speed
 
 vectors = st.integers(1, 6).flatmap(lambda d: hnp.arrays(float, d, elements=st.floats(-1, 1)))
 
@@ -38,3 +38,8 @@ def test_more_axes_could_have_been_pressed_one_by_one():
 def test_many_at_once_are_as_each_alone(axes, rng):
     u = rng.uniform(-1, 1, (3, 4, axes))
     assert np.array_equal(alternatives(u)[1, 2], alternatives(u[1, 2]))
+
+
+def test_at_one_speed_only_the_direction_is_compared():
+    actions = np.array([[0.3, 0.4], [2.0, 0.0], [0.0, -0.1], [0.0, 0.0]])
+    assert at_one_speed(actions) == pytest.approx(np.array([[0.3, 0.4], [0.5, 0.0], [0.0, -0.5], [0.0, 0.0]]))

@@ -120,8 +120,7 @@ def test_moving_straight_to_a_goal_raises_its_probability(rule, goal, size, axes
     rest = np.linalg.svd(GOALS - state)[2][COUNT : COUNT + axes - 1]
     matrix = 0.3 * np.vstack([away / np.linalg.norm(away), rest])
     u = np.zeros(axes)
-    # With one axis a gentle press is itself a choice, against the firm ones.
-    u[0] = size if axes > 1 else 1.0
+    u[0] = size
     model = rule(GOALS)
     belief = model.initial()
     for _ in range(150):

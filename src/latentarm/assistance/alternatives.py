@@ -18,7 +18,8 @@ def alternatives(u: FloatArray) -> FloatArray:
 
     - Two axes: ``u`` turned through eight equal angles.
     - One axis: ``u`` and six levels from -1 to 1. A nonlinear decoder need not do the opposite at
-      ``-u``, so ``{u, -u}`` would say too little about what the person passed over.
+      ``-u``, so ``{u, -u}`` would say too little about what the person passed over. Pressing gently is no
+      evidence against a goal: such alternatives are compared `at_one_speed`.
     - More axes: ``u`` and ``±‖u‖`` along every axis.
 
     Args:
@@ -35,3 +36,16 @@ def alternatives(u: FloatArray) -> FloatArray:
         return np.concatenate([u[..., None, :], levels], axis=-2)
     along = np.sqrt(np.vecdot(u, u))[..., None, None] * np.eye(d)
     return np.concatenate([u[..., None, :], along, -along], axis=-2)
+
+
+def at_one_speed(actions: FloatArray) -> FloatArray:
+    """What was passed over, as fast as what was chosen: then only where it leads is compared.
+
+    Args:
+        actions: (..., K, n), rad/s, the chosen one first.
+
+    Returns:
+        (..., K, n), rad/s; an action of zero stays zero.
+    """
+    speed = np.sqrt(np.vecdot(actions, actions))[..., None]
+    return actions * (speed[..., :1, :] / np.where(speed > 0.0, speed, 1.0))

@@ -6,7 +6,7 @@ from typing import Protocol, final
 
 import numpy as np
 
-from latentarm.assistance.alternatives import alternatives
+from latentarm.assistance.alternatives import alternatives, at_one_speed
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
 
@@ -112,10 +112,12 @@ class Belief(ABC):
             count = np.count_nonzero(given)
             if not count and belief.ndim >= max(u.ndim, state.ndim):
                 return belief
-            if count == given.size:
-                return self._posterior(belief, state, action_of(alternatives(u)))
-            shown = alternatives(np.where(given[..., None], u, 0.0))
-            return np.where(given[..., None], self._posterior(belief, state, action_of(shown)), belief)
+            everywhere = count == given.size
+            actions = action_of(alternatives(u if everywhere else np.where(given[..., None], u, 0.0)))
+            if u.shape[-1] == 1:
+                actions = at_one_speed(actions)
+            after = self._posterior(belief, state, actions)
+            return after if everywhere else np.where(given[..., None], after, belief)
 
     @final
     def observe(self, belief: FloatArray, state: FloatArray, actions: FloatArray) -> FloatArray:
