@@ -6,6 +6,8 @@ from importlib.metadata import entry_points
 
 import pytest
 
+from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
+from latentarm.assistance.catalogue import BELIEFS
 from latentarm.cli import main
 from latentarm.experiments.backends import BACKENDS
 from latentarm.experiments.properties.preset import PRESETS
@@ -44,6 +46,13 @@ def test_a_study_offers_what_there_is(run: Run) -> None:
     _, out, _ = run("reproduce", "properties", "--help")
     for names in (["all", *MOTIONS], PRESETS, BACKENDS):
         assert "{" + ",".join(names) + "}" in out
+
+
+def test_a_drive_offers_every_belief_and_says_the_usual_alphas(run: Run) -> None:
+    _, out, _ = run("drive", "--help")
+    assert "{" + ",".join(BELIEFS) + "}" in out
+    usual = f"By default {FixedAlpha().value:g}, with confidence {ConfidenceAlpha().most:g}."
+    assert usual in " ".join(out.replace("│", " ").split())
 
 
 @pytest.mark.parametrize("words", [["--help"], ["reproduce", "properties", "--help"]])
