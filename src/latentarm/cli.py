@@ -282,16 +282,13 @@ def drive(
     ] = "boltzmann",
     arbitration: Annotated[
         Literal["fixed", "confidence"] | None,
-        arg(
-            help="For latent_assist: the same alpha throughout, or more of it the surer the belief;"
-            " fixed by default."
-        ),
+        arg(help="For latent_assist: the same alpha throughout (the default), or more the surer the belief."),
     ] = None,
     alpha: Annotated[
         float | None,
         arg(
-            help="For latent_assist: alpha of equation 2 at full input, from 0 (the person alone) to 1"
-            " (the robot alone), with confidence the most of it; ALPHAS by default."
+            help="For latent_assist: alpha of equation 2 at full input, a share from 0 (the person alone) to"
+            " 1 (the robot alone); with confidence the most of it. By default 0.15, with confidence 0.5."
         ),
     ] = None,
     time_limit_s: Annotated[
@@ -386,7 +383,7 @@ def bench(
     seed: Seed = 0,
     json: Json = False,
 ) -> int:
-    """Time the online step, with 3 goals and with 50, beside torch, and ten seeds in one fit beside ten fits in turn.
+    """Time the online step with 3 goals and 50, beside torch, and ten seeds in one fit beside ten in turn.
 
     For example: latentarm bench --json
     """
