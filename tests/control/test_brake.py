@@ -5,7 +5,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from latentarm.control.safety.brake import Brake
+from latentarm.control.safety.brake import AT_REST_S, Brake
 
 A = np.array([12.0, 6.0, 8.0])
 J = np.array([6000.0, 3000.0, 80.0])
@@ -21,7 +21,7 @@ def test_ends_at_rest_without_jumps(velocity, acceleration):
     brake = Brake(velocity, acceleration, A, J)
     times = np.linspace(0.0, brake.duration_s * 1.01, 400)
     path = np.array([brake.at(float(t))[0] for t in times])
-    np.testing.assert_allclose(path[0], velocity, atol=1e-12)
+    np.testing.assert_allclose(path[0], velocity, atol=AT_REST_S * A.max())
     assert not path[-1].any()
     step = times[1]
     # What is slower than a nanosecond of braking counts as rest.
@@ -31,6 +31,9 @@ def test_ends_at_rest_without_jumps(velocity, acceleration):
 
 
 @given(velocities, accelerations)
+@example(
+    np.zeros(3), np.array([0.296875, 0.0, 0.0])
+)  # hardly moves: a ramp of a few hundredths of a millisecond
 @settings(deadline=None)
 def test_brakes_in_proportion_on_a_straight_line_and_covers_half_its_time(velocity, acceleration):
     brake = Brake(velocity, acceleration, A, J)
