@@ -30,7 +30,7 @@ class Ablation:
 
     seeds: int = 3
     drives: int = 50
-    weights: tuple[float, ...] = (0.0, 0.1, 0.3, 1.0, 2.0, 5.0, 10.0)
+    weights: tuple[float, ...] = (0.0, 0.3, 1.0, 2.0, 5.0, 10.0, 20.0)
     sharpness: tuple[float, ...] = (1.0, 2.0, 4.0, 8.0)
     contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")
     without_no_goal: bool = True
@@ -70,7 +70,7 @@ class Preset:
     state_noise_rad: float = 0.02
     kl_weight: float = 0.05
     entropy_weights: Mapping[str, float] = field(
-        default_factory=lambda: {"cae": 2.0, "cvae": 2.0, "isometric": 0.5}
+        default_factory=lambda: {"cae": 5.0, "cvae": 5.0, "isometric": 0.5}
     )
     betas: tuple[float, ...] = (0.0, 3.0, 10.0, 30.0, 75.0, 200.0, 1000.0, 10000.0)
     learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 10.0, "fast": 100.0})
