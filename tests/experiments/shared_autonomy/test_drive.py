@@ -21,7 +21,7 @@ def driven(scene, decoder, person=PERFECT, help_by=HELP, drives=6, seed=0, start
     starts = begin + rng.normal(0.0, spread, (drives, len(begin)))
     target = np.arange(drives) % len(scene.goals)
     chances = np.random.default_rng(seed + 1).random((drives, steps_of(person)))
-    return drive(decoder, scene, person, help_by, starts, target, chances)
+    return drive(decoder, scene, [person] * drives, help_by, starts, target, chances)
 
 
 @pytest.mark.parametrize("help_by", [NO_HELP, HELP])
@@ -115,9 +115,22 @@ def test_the_first_drives_are_the_same_however_many_there_are(scene, wild):
     rng = np.random.default_rng(3)
     start = scene.goals.mean(axis=0) + rng.normal(0.0, 0.05, (8, scene.goals.shape[1]))
     target, chances = np.arange(8) % 2, rng.random((8, steps_of(person)))
-    many = drive(wild, scene, person, HELP, start, target, chances)
-    few = drive(wild, scene, person, HELP, start[:3], target[:3], chances[:3])
+    many = drive(wild, scene, [person] * 8, HELP, start, target, chances)
+    few = drive(wild, scene, [person] * 3, HELP, start[:3], target[:3], chances[:3])
     np.testing.assert_allclose(few.state, many.state[:3], atol=1e-9)
+
+
+def test_people_of_several_kinds_drive_in_one_go_as_each_would_alone(scene, wild):
+    people = [of_fixed_expertise(75.0), of_fixed_expertise(3.0), learner("fast", 100.0)]
+    rng = np.random.default_rng(4)
+    start = scene.goals.mean(axis=0) + rng.normal(0.0, 0.05, (3, scene.goals.shape[1]))
+    target, chances = np.array([0, 1, 1]), rng.random((3, steps_of(people[0])))
+    together = drive(wild, scene, people, HELP, start, target, chances)
+    for index, person in enumerate(people):
+        own = slice(index, index + 1)
+        alone = drive(wild, scene, [person], HELP, start[own], target[own], chances[own])
+        np.testing.assert_allclose(alone.state, together.state[own], atol=1e-9)
+        np.testing.assert_allclose(alone.belief, together.belief[own], atol=1e-9)
 
 
 def test_people_at_random_choose_every_input_and_perfect_ones_the_best():

@@ -1,7 +1,7 @@
 """One cell of the study: one model for one arm, with entropy or without, all its seeds and their drives."""
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from enum import IntEnum
 from time import perf_counter
@@ -35,6 +35,9 @@ WITH_HELP: Final = "LA+SA"
 WITH_ENTROPY: Final = "LA+SA+Entropy"
 METHODS: Final[dict[str, Arbitration]] = {WITHOUT_HELP: NO_HELP, WITH_HELP: HELP, WITH_ENTROPY: HELP}
 """The paper's conditions, and how much the robot helps in each."""
+
+ROWS: Final = 100
+"""Drives at a time: few enough for a processor's caches, many enough for NumPy's calls."""
 
 TASKS: Final = {make().name: make for make in TWO_CUPS.values()}
 """Two cups before each arm, by the task's name."""
@@ -159,9 +162,10 @@ def _measure(cell: Cell) -> CellResult:
     chosen = select_episodes(training, range(len(training.episodes) - _validation(training)))
     scene = _scene(task, recorded_pairs(chosen))
     outcomes = tuple(
-        _outcome(cell, task, scene, model, method, person)
+        outcome
         for method in cell.methods
-        for person in cell.people
+        for people in _together(cell)
+        for outcome in _outcomes(cell, task, scene, model, method, people)
     )
     return CellResult(
         cell=cell,
@@ -239,31 +243,61 @@ def _reconstruction(model: LatentActionModel, fitted: Pairs, pairs: Pairs) -> Fl
     return percent_of(pca_error(fitted.action, pairs.action, model.latent_dim), error)
 
 
-def _outcome(
-    cell: Cell, task: TwoCups, scene: Scene, model: LatentActionModel, method: str, person: Person
-) -> Outcome:
+def _together(cell: Cell) -> list[list[Person]]:
+    """The cell's people in groups that drive in one go: for the same time, and about `ROWS` drives."""
+    groups: list[list[Person]] = []
+    for person in cell.people:
+        last = groups[-1] if groups else []
+        alike = bool(last) and last[0].drive_s == person.drive_s
+        if alike and (len(last) + 1) * cell.drives <= ROWS:
+            last.append(person)
+        else:
+            groups.append([person])
+    return groups
+
+
+def _outcomes(
+    cell: Cell, task: TwoCups, scene: Scene, model: LatentActionModel, method: str, people: Sequence[Person]
+) -> list[Outcome]:
+    """What people who drive in one go come to."""
     target = np.arange(cell.drives) % len(scene.goals)
-    figures: list[dict[str, FloatArray]] = []
-    errors: list[FloatArray] = []
-    beliefs: list[FloatArray] = []
+    of_seeds: list[tuple[dict[str, FloatArray], FloatArray, FloatArray]] = []
     for seed in range(cell.seeds):
         starts = _generator(cell, Stream.STARTS, seed)
         start = np.stack([task.sample_start(int(goal), starts) for goal in target])
-        chances = _generator(cell, Stream.CHANCES, seed, int.from_bytes(person.label.encode()))
+        chances = [_chances(cell, seed, person) for person in people]
         drives = drive(
             model.decoder(seed),
             scene,
-            person,
+            [person for person in people for _ in target],
             METHODS[method],
-            start,
-            target,
-            chances.random((cell.drives, steps_of(person))),
+            np.tile(start, (len(people), 1)),
+            np.tile(target, len(people)),
+            np.concatenate(chances),
         )
-        figures.append(measure(drives, scene))
-        errors.append(state_error(drives, scene).mean(axis=0))
-        beliefs.append(true_belief(drives).mean(axis=0))
-    stacked = {name: np.stack([one[name] for one in figures]) for name in figures[0]}
-    return Outcome(method, person, stacked, np.stack(errors), np.stack(beliefs))
+        of_seeds.append((measure(drives, scene), state_error(drives, scene), true_belief(drives)))
+    outcomes: list[Outcome] = []
+    for index, person in enumerate(people):
+        own = slice(index * cell.drives, (index + 1) * cell.drives)
+        outcomes.append(
+            Outcome(
+                method,
+                person,
+                {
+                    name: np.stack([figures[name][own] for figures, _, _ in of_seeds])
+                    for name in of_seeds[0][0]
+                },
+                np.stack([error[own].mean(axis=0) for _, error, _ in of_seeds]),
+                np.stack([belief[own].mean(axis=0) for _, _, belief in of_seeds]),
+            )
+        )
+    return outcomes
+
+
+def _chances(cell: Cell, seed: int, person: Person) -> FloatArray:
+    """What one person's drives with one seed choose by, (P, T), whoever else drives."""
+    chances = _generator(cell, Stream.CHANCES, seed, int.from_bytes(person.label.encode()))
+    return chances.random((cell.drives, steps_of(person)))
 
 
 def _generator(cell: Cell, *use: int) -> np.random.Generator:

@@ -12,6 +12,7 @@ What the paper leaves open is chosen here once, the same for every model and eve
   grasp. No goal falls below 1 %.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from typing import Final
@@ -110,18 +111,18 @@ class Drives:
 def drive(
     decoder: DecodesActions,
     scene: Scene,
-    person: Person,
+    people: Sequence[Person],
     help_by: Arbitration,
     start: FloatArray,
     target: IntArray,
     chances: FloatArray,
 ) -> Drives:
-    """Let P simulated people of one kind drive.
+    """Let P simulated people drive, all for the same time.
 
     Args:
         decoder: sees the context ``c = (s, b)``.
         scene: the arm and the goals.
-        person: how they decide and when they change their mind.
+        people: P, how they decide and when they change their mind.
         help_by: how much the robot helps.
         start: (P, n), rad.
         target: (P,), index of the goal that each of them has in the end.
@@ -129,14 +130,16 @@ def drive(
     """
     state, belief = start, np.broadcast_to(scene.belief.initial(), (len(start), len(scene.goals)))
     places = scene.chain.forward(scene.goals).position
+    changes_at_s = np.array([person.changes_at_s for person in people])
     moments: list[Moment] = []
-    for step in range(steps_of(person)):
+    for step in range(steps_of(people[0])):
         time_s = step * STEP_S
-        wanted = target if time_s >= person.changes_at_s else (target + 1) % len(scene.goals)
+        beta = np.array([person.rationality(time_s) for person in people])
+        wanted = np.where(time_s >= changes_at_s, target, (target + 1) % len(scene.goals))
         context = np.concatenate([state, belief], axis=-1)
         decoded = decoder.decode(np.broadcast_to(INPUTS, (len(state), *INPUTS.shape)), context[:, None])
         commanded = np.where(np.arange(len(INPUTS))[:, None] == REST, 0.0, decoded)
-        likely = _likely(scene, state, commanded, places[wanted], person.rationality(time_s))
+        likely = _likely(scene, state, commanded, places[wanted], beta)
         chosen = _drawn(likely, chances[:, step])
         u, action_human = INPUTS[chosen], commanded[np.arange(len(state)), chosen]
         alpha = help_by.alpha(u, belief)
@@ -156,7 +159,7 @@ def steps_of(person: Person) -> int:
 
 
 def _likely(
-    scene: Scene, state: FloatArray, commanded: FloatArray, place: FloatArray, beta: float
+    scene: Scene, state: FloatArray, commanded: FloatArray, place: FloatArray, beta: FloatArray
 ) -> FloatArray:
     """How likely each input is (equation 24), (P, K).
 
@@ -165,7 +168,7 @@ def _likely(
         state: (P, n), rad.
         commanded: (P, K, n), what each input commands, rad/s.
         place: (P, 3), where each person wants the tool, m.
-        beta: rationality, 1/m².
+        beta: (P,), rationality, 1/m².
     """
     reached = scene.chain.forward(state[:, None] + LOOK_AHEAD_S * commanded).position
     return boltzmann(np.square(place[:, None] - reached).sum(axis=-1), beta)
