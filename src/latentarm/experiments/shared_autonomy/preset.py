@@ -51,8 +51,8 @@ class Preset:
         hidden: units of each hidden layer.
         state_noise_rad: SD of the noise on training states, rad.
         kl_weight: lambda_1 of equation 16, for the cVAE.
-        entropy_weights: lambda_2 of equation 16, by model. The isometric model has less: with 2 some of its
-            seeds stay at the wrong goal that leave it with 0.1.
+        entropy_weights: lambda_2 of equation 16, by model. The isometric model has less: it is odd in z, so
+            that the way back is always open, and more weight only bends it.
         betas: rationalities of people of fixed expertise, 1/m²; the first and the last are the extremes.
         learners: how fast people learn, 1/m² per s, by name.
         changes_s: after how long people change their mind, s.
@@ -70,7 +70,7 @@ class Preset:
     state_noise_rad: float = 0.02
     kl_weight: float = 0.05
     entropy_weights: Mapping[str, float] = field(
-        default_factory=lambda: {"cae": 5.0, "cvae": 5.0, "isometric": 0.1}
+        default_factory=lambda: {"cae": 5.0, "cvae": 5.0, "isometric": 0.5}
     )
     betas: tuple[float, ...] = (0.0, 3.0, 10.0, 30.0, 75.0, 200.0, 1000.0, 10000.0)
     learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 10.0, "fast": 100.0})
