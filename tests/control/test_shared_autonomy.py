@@ -13,13 +13,13 @@ from latentarm.assistance.blending import FixedAlpha, Unprompted
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.bound import radius
 from latentarm.assistance.catalogue import BELIEFS
+from latentarm.control.choices import Choices, full_deflections
 from latentarm.control.export import export_journal
 from latentarm.control.journal import read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.shared_autonomy import full_deflections
 from latentarm.control.step import Step
-from latentarm.types import Goal, Input
+from latentarm.types import Context, Goal, Input
 
 NEUTRAL = Input(np.zeros(2))
 PUSH = Input(np.array([1.0, 0.0]))
@@ -266,7 +266,7 @@ class TestBound:
         assert bound(0.2, 0.6) > bound(0.5, 0.6) > bound(0.9, 0.6)
         assert bound(0.5, 0.6) > bound(0.5, 0.8) > bound(0.5, 0.95)
 
-    def test_it_costs_no_call_of_its_own_when_the_belief_asks_anyway(self, make, arm, scripted):
+    def test_the_controller_is_asked_once_a_step(self, make, arm, scripted):
         class Counts(scripted):
             calls = 0
 
@@ -275,10 +275,11 @@ class TestBound:
                 return super().action(z, context, mode)
 
         with_help, without = Counts(MATRIX), Counts(MATRIX)
-        run(make(FixedAlpha(0.4), controller=with_help), PUSH, arm.home, 20)
-        run(make(None, controller=without), PUSH, arm.home, 20)
-        # One per step, one per update, and once before the first update.
-        assert (without.calls, with_help.calls) == (24, 25)
+        push = Input(np.array([0.4, 0.3]))
+        run(make(FixedAlpha(0.4), controller=with_help), push, arm.home, 20)
+        run(make(None, controller=without), push, arm.home, 20)
+        # Help begins with a bound before the belief asks for the first time.
+        assert (without.calls, with_help.calls) == (20, 21)
 
     def test_it_changes_no_belief_and_no_command(self, make, arm):
         """Full deflections are decoded beside the belief's inputs: what they say must not mix."""
@@ -307,6 +308,25 @@ class TestBound:
         (found,) = read_dataset(tmp_path / "dataset").episodes
         np.testing.assert_allclose(found.extras["assist.bound"][:20, 0], bounds[:20], rtol=1e-6)
         assert (found.extras["assist.bound"][20:] == -1.0).all()
+
+
+class TestChoices:
+    @given(st.integers(1, 3), st.integers(0, 2**32 - 1), st.booleans())
+    def test_whatever_was_asked_before_the_answer_is_the_controller_s(self, scripted, axes, seed, beside):
+        rng = np.random.default_rng(seed)
+        matrix = rng.normal(size=(axes, 7))
+        full = full_deflections(axes)
+        context = Context(np.zeros(7), np.zeros(0))
+        choices = Choices(scripted(matrix), context, 0, full if beside else full[:0])
+        u = rng.uniform(-1, 1, axes)
+        for inputs in (np.stack([u, -u]), rng.uniform(-1, 1, (4, axes)), u[None]):
+            np.testing.assert_allclose(choices(inputs), inputs @ matrix)
+            z, action = choices.chosen(u)
+            np.testing.assert_array_equal(z, u)
+            np.testing.assert_allclose(action, u @ matrix)
+            if beside:
+                largest = np.linalg.norm(full @ matrix, axis=1).max()
+                assert choices.largest_beside() == pytest.approx(largest)
 
 
 @given(st.integers(1, 8))

@@ -1,6 +1,5 @@
 """The robot's part of Algorithm 1: belief over goals, help towards them, and how far that help constrains."""
 
-import itertools
 import math
 from collections.abc import Sequence
 from typing import final
@@ -10,15 +9,13 @@ import numpy as np
 from latentarm.assistance.action import assistive_action
 from latentarm.assistance.belief import Belief
 from latentarm.assistance.blending import Arbitration
+from latentarm.control.choices import Choices, full_deflections
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.types import Context, FloatArray, Goal
 
 _BOUND_PERIOD_S = 0.05
 """The bound is worked out no more often than this, s: people read it, the loop does not."""
-
-_MOST_CORNERS_OF = 6
-"""Axes of input up to which all corners of the stick are looked at; there are 2^d of them."""
 
 
 @final
@@ -108,7 +105,7 @@ class SharedAutonomy:
             raise ValueError(f"an arbitration of {alpha} is not in [0, 1]")
         return assistive_action(state, self._belief, self._goals), alpha
 
-    def update(self, u: FloatArray, context: Context, mode: int, alpha: float) -> float:
+    def update(self, u: FloatArray, context: Context, mode: int, alpha: float) -> tuple[Choices, float]:
         """Line 10 at the belief's own rate, and with it, where that is not too often, the bound.
 
         Args:
@@ -118,8 +115,8 @@ class SharedAutonomy:
             alpha: how much this step helps.
 
         Returns:
-            Radius of the bound about the likeliest goal (equation 14), rad, held in between; NaN without
-            help.
+            What is known of inputs at this moment, and the radius of the bound about the likeliest goal
+            (equation 14), rad, held in between; NaN without help.
 
         Raises:
             ValueError: the controller or the belief gave something that cannot be.
@@ -133,16 +130,16 @@ class SharedAutonomy:
         else:
             bounding = self._bound_rad is None or self._updates_since_bound >= self._updates_per_bound
         beside = self._full_inputs if bounding else self._no_inputs
-        choices = _Choices(self._controller, context, mode, beside)
+        choices = Choices(self._controller, context, mode, beside)
         if due:
             self._since_update = 0
             self._learn(u, context, choices)
         if bounding:
             self._updates_since_bound %= self._updates_per_bound
             self._bound_rad = self._bound(choices.largest_beside(), context, alpha)
-        return math.nan if self._bound_rad is None else self._bound_rad
+        return choices, math.nan if self._bound_rad is None else self._bound_rad
 
-    def _learn(self, u: FloatArray, context: Context, choices: "_Choices") -> None:
+    def _learn(self, u: FloatArray, context: Context, choices: Choices) -> None:
         if self._rule is None:
             return
         updated = self._rule.update(context.belief, u, context.state, choices)
@@ -163,60 +160,3 @@ class SharedAutonomy:
         distance[belief.index(sure)] = 0.0
         delta = (1.0 - alpha) / alpha * sigma_h + (1.0 - sure) * math.sqrt(max(distance))
         return delta / sure if math.isfinite(delta) else math.nan
-
-
-@final
-class _Choices:
-    """What other inputs would do at this moment, asked of the controller in as few calls as can be.
-
-    Args:
-        controller: what turns inputs into actions.
-        context: of this moment.
-        mode: index of the controller's mode.
-        beside: (K, d), inputs to decode together with the first that are asked about; maybe none.
-    """
-
-    __slots__ = ("_beside", "_beside_actions", "_context", "_controller", "_mode")
-
-    def __init__(self, controller: Controller, context: Context, mode: int, beside: FloatArray) -> None:
-        self._controller = controller
-        self._context = context
-        self._mode = mode
-        self._beside = beside
-        self._beside_actions: FloatArray | None = None
-
-    def __call__(self, inputs: FloatArray) -> FloatArray:
-        """Inputs (K, d) to actions (K, n), rad/s."""
-        if self._beside_actions is not None or not len(self._beside):
-            return self._decoded(inputs)
-        actions = self._decoded(np.concatenate([inputs, self._beside]))
-        self._beside_actions = actions[len(inputs) :]
-        return actions[: len(inputs)]
-
-    def largest_beside(self) -> float:
-        """Largest ‖a‖ of the inputs beside, rad/s; NaN where an action is no number."""
-        actions = self._decoded(self._beside) if self._beside_actions is None else self._beside_actions
-        squared = np.vecdot(actions, actions).tolist()
-        return math.sqrt(max(squared)) if math.isfinite(sum(squared)) else math.nan
-
-    def _decoded(self, inputs: FloatArray) -> FloatArray:
-        z = self._controller.latent(inputs, self._context, self._mode)
-        actions = self._controller.action(z, self._context, self._mode)
-        if actions.shape != (len(inputs), len(self._context.state)):
-            raise ValueError(f"{len(inputs)} inputs gave actions of shape {actions.shape}")
-        return actions
-
-
-def full_deflections(input_dim: int) -> FloatArray:
-    """Inputs at the edge of what a person can give: both ends of every axis, and every corner.
-
-    Args:
-        input_dim: d, axes of the input.
-
-    Returns:
-        (K, d), entries in {-1, 0, 1}; corners for up to six axes.
-    """
-    axes = np.concatenate([np.eye(input_dim), -np.eye(input_dim)])
-    if not 1 < input_dim <= _MOST_CORNERS_OF:
-        return axes
-    return np.concatenate([axes, np.array(list(itertools.product((-1.0, 1.0), repeat=input_dim)))])

@@ -193,12 +193,11 @@ class Step:
         try:
             # What overflows here is caught as not finite below.
             with np.errstate(all="ignore"):
-                z, a_h = self._decoded(u, context)
-                wanted = a_h
-                if a_h.shape == q.shape and z.shape == u.shape and len(context.belief):
-                    a_r, alpha = shared.help(u, q)
-                    wanted = blend(a_h, a_r, alpha)
-                    bound_rad = shared.update(u, context, self._mode, alpha)
+                a_r, alpha = shared.help(u, q)
+                choices, bound_rad = shared.update(u, context, self._mode, alpha)
+                # A person who lets go commands no motion, whatever the decoder makes of zero.
+                z, a_h = (u, self._no_motion) if u is self._no_input else choices.chosen(u)
+                wanted = blend(a_h, a_r, alpha) if a_h.shape == q.shape else a_h
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
             stop = Stop(f"The controller failed ({_said(error)}).")
             return self._record(time_s, q, self._refused(stop), u)
@@ -208,13 +207,6 @@ class Step:
         passed = self._passed(wanted, q, input_age_s)
         command = self._command(passed)
         return StepRecord(time_s, q, u, z, a_h, a_r, alpha, context.belief, self._mode, command, bound_rad)
-
-    def _decoded(self, u: FloatArray, context: Context) -> tuple[FloatArray, FloatArray]:
-        """``z`` and ``a_h``, lines 6 and 7; a person who lets go commands no motion."""
-        if u is self._no_input:
-            return u, self._no_motion
-        z = np.asarray(self._controller.latent(u, context, self._mode), dtype=np.float64)
-        return z, np.asarray(self._controller.action(z, context, self._mode), dtype=np.float64)
 
     def _passed(self, wanted: FloatArray, q: FloatArray, input_age_s: float) -> Passed:
         """Through the safety stack; a refusal disengages."""
