@@ -30,6 +30,11 @@ def test_of_fewer_than_three_seeds_drives_are_the_units():
     assert (found.low, found.high) == pytest.approx((low, high))
 
 
+def test_figures_of_the_models_themselves_have_no_drives():
+    found = interval(np.array([[1.0], [3.0]]))
+    assert (found.mean, found.n, found.over) == (2.0, 2, "seeds")
+
+
 def test_one_unit_has_no_interval():
     found = interval(np.array([[0.3]]))
     assert (found.mean, found.sd, found.half_width, found.n) == (0.3, 0.0, 0.0, 1)

@@ -55,7 +55,7 @@ def interval(values: FloatArray) -> Interval:
     Returns:
         Over the seeds' means, or over all drives of fewer than `FEWEST_SEEDS` seeds.
     """
-    seeds = len(values) >= FEWEST_SEEDS
+    seeds = len(values) >= FEWEST_SEEDS or values.shape[1] == 1
     units = values.mean(axis=1) if seeds else values.reshape(-1)
     return Interval(
         mean=float(units.mean()),
