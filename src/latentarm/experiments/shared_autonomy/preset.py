@@ -28,9 +28,9 @@ class Ablation:
             is conveyed.
     """
 
-    seeds: int = 3
+    seeds: int = 5
     drives: int = 50
-    weights: tuple[float, ...] = (0.0, 0.3, 1.0, 2.0, 5.0, 10.0, 20.0)
+    weights: tuple[float, ...] = (0.0, 0.3, 1.0, 5.0, 20.0, 100.0)
     sharpness: tuple[float, ...] = (1.0, 2.0, 4.0, 8.0)
     contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")
     without_no_goal: bool = True
