@@ -86,6 +86,7 @@ def test_every_variant_of_the_entropy_has_its_rows(done):
         "lambda_2 2",
         "kappa 8",
         "equation 15 to the letter",
+        "progress of the joints alone",
         "contexts demonstrated",
     ]
     assert names["lambda_2 0"] is None

@@ -9,6 +9,9 @@ from latentarm.experiments.shared_autonomy.preset import Ablation
 LETTER = "equation 15 to the letter"
 """The variant without an outcome that no goal is conveyed."""
 
+JOINTS_ALONE = "progress of the joints alone"
+"""The variant that does not look at the tool."""
+
 
 def weight_label(weight: float) -> str:
     """What a variant with this lambda_2 is called."""
@@ -35,5 +38,7 @@ def _others(ablation: Ablation, weight: float) -> Iterator[tuple[str, Entropy]]:
         yield f"kappa {sharpness:g}", Entropy(weight, sharpness=sharpness)
     if ablation.without_no_goal:
         yield LETTER, Entropy(weight, least_progress=-math.inf)
+    if ablation.joints_alone:
+        yield JOINTS_ALONE, Entropy(weight, sees_tool=False)
     for where in ablation.contexts:
         yield f"contexts {where.replace('_', ' ')}", Entropy(weight, where=where)

@@ -63,12 +63,14 @@ class Entropy:
         sharpness: kappa.
         least_progress: rho_0; -inf is equation 15 to the letter.
         where: contexts that it is taken in.
+        sees_tool: whether progress is the tool's as well, or the joints' alone.
     """
 
     weight: float
     sharpness: float = GoalEntropy.sharpness
     least_progress: float = GoalEntropy.least_progress
     where: Where = GoalEntropy.where
+    sees_tool: bool = True
 
 
 @dataclass(frozen=True)
@@ -227,6 +229,7 @@ def _term(entropy: Entropy | None, task: TwoCups) -> GoalEntropy | None:
         sharpness=entropy.sharpness,
         least_progress=entropy.least_progress,
         where=entropy.where,
+        chain=task.robot.chain if entropy.sees_tool else None,
     )
 
 

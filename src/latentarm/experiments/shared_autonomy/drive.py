@@ -26,7 +26,9 @@ from latentarm.assistance.blending import Arbitration, FixedAlpha, blend
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.entropy import entropy_over_goals, goal_probabilities, goal_progress
 from latentarm.experiments.shared_autonomy.people import Person
-from latentarm.metrics.contract import DecodesActions, PlacesTool
+from latentarm.kinematics.chain import Chain
+from latentarm.kinematics.torch_chain import TorchChain
+from latentarm.metrics.contract import DecodesActions
 from latentarm.operators.rationality import boltzmann
 from latentarm.types import FloatArray, IntArray
 
@@ -51,12 +53,12 @@ class Scene:
     """What is driven, and to where.
 
     Attributes:
-        chain: the arm's forward kinematics.
+        chain: the arm's kinematics.
         belief: over the G goals, updated every `STEP_S`.
         speed: root mean square of the demonstrated ‖a‖, rad/s.
     """
 
-    chain: PlacesTool
+    chain: Chain
     belief: Belief
     speed: float
 
@@ -183,7 +185,7 @@ def _drawn(probability: FloatArray, chance: FloatArray) -> IntArray:
 def _openness(scene: Scene, state: FloatArray, decoded: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Entropy of ``p_c(g)`` (P,), nats, and the fastest progress to each goal (P, G)."""
     states, actions, goals = (torch.tensor(values) for values in (state, decoded, scene.goals))
-    progress = goal_progress(states, actions, goals, scene.speed)
+    progress = goal_progress(states, actions, goals, scene.speed, TorchChain(scene.chain))
     entropy = entropy_over_goals(goal_probabilities(progress))
     return entropy.numpy(), progress.amax(dim=-2).numpy()
 

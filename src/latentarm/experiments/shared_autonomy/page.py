@@ -163,7 +163,8 @@ def _ablations(places: Found, tasks: Sequence[str], preset: Preset) -> list[str]
         "## What the entropy is made of\n",
         f"LA+SA+Entropy with the {look_of(MODEL).label}, {ablation.seeds} models and {ablation.drives} drives"
         f" each. One thing is varied at a time from lambda_2 = {proper.weight:g},"
-        f" kappa = {proper.sharpness:g}, contexts {proper.where}; lambda_2 = 0 is LA+SA.\n",
+        f" kappa = {proper.sharpness:g}, contexts {proper.where}, progress of joints and tool;"
+        " lambda_2 = 0 is LA+SA.\n",
     ]
     for task in tasks:
         parts += [f"{look_of(task).label}:\n", ablation_table(places, task, MODEL, preset, people)]

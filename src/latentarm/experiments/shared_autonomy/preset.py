@@ -26,6 +26,7 @@ class Ablation:
         contexts: where the entropy is taken.
         without_no_goal: whether to take equation 15 to the letter as well, without an outcome that no goal
             is conveyed.
+        joints_alone: whether to take progress by the joints alone as well, without the tool.
     """
 
     seeds: int = 5
@@ -34,6 +35,7 @@ class Ablation:
     sharpness: tuple[float, ...] = (1.0, 2.0, 4.0, 8.0)
     contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")
     without_no_goal: bool = True
+    joints_alone: bool = True
 
 
 @dataclass(frozen=True)
