@@ -31,6 +31,7 @@ class TorchDecoder:
         context_dim: c.
         action_dim: m.
         dtype: of all tensors.
+        contexts: normaliser of contexts (..., c), the first part of what `observe` gives.
     """
 
     def __init__(self, trained: TrainedModel, action: Action, seed: int, dtype: torch.dtype) -> None:
@@ -68,6 +69,7 @@ class TorchDecoder:
         )
         """What the networks see of contexts: (..., c) to (..., o), of which the first c entries are the
         context, normalised."""
+        self.contexts = contexts.contexts if isinstance(contexts, ToolContexts) else contexts
         self._centre, self._scale = tensor(latents.centre[seed, 0]), tensor(latents.scale[seed, 0])
         self._action_scale = tensor(trained.actions.scale)
 
