@@ -37,6 +37,18 @@ Dataset = Annotated[Path, arg(metavar="DST", help="Folder of a native dataset.")
 MovedDataset = Annotated[
     Path | None, arg(metavar="DST", help="Where the run's dataset lies now, if it was moved.")
 ]
+Jobs = Annotated[int, arg(help="Processes that measure side by side; -1 is one per core.")]
+Backend = Annotated[
+    Literal["joblib", "ray", "dask"],
+    arg(
+        help="Processes of this machine, or a cluster: that of RAY_ADDRESS or DASK_SCHEDULER_ADDRESS,"
+        " or else a new one here."
+    ),
+]
+PresetName = Annotated[
+    Literal["paper", "smoke"],
+    arg(help="The sizes of the paper, or small ones that only show that it runs."),
+]
 
 app = SubcommandApp()
 
@@ -282,16 +294,13 @@ def drive(
     ] = "boltzmann",
     arbitration: Annotated[
         Literal["fixed", "confidence"] | None,
-        arg(
-            help="For latent_assist: the same alpha throughout, or more of it the surer the belief;"
-            " fixed by default."
-        ),
+        arg(help="For latent_assist: the same alpha throughout (the default), or more the surer the belief."),
     ] = None,
     alpha: Annotated[
         float | None,
         arg(
-            help="For latent_assist: alpha of equation 2 at full input, from 0 (the person alone) to 1"
-            " (the robot alone), with confidence the most of it; ALPHAS by default."
+            help="For latent_assist: alpha of equation 2 at full input, a share from 0 (the person alone) to"
+            " 1 (the robot alone); with confidence the most of it. By default 0.15, with confidence 0.5."
         ),
     ] = None,
     time_limit_s: Annotated[
@@ -342,10 +351,7 @@ studies = app.command(
 
 @studies.command
 def properties(
-    preset: Annotated[
-        Literal["paper", "smoke"],
-        arg(help="The sizes of the paper, or small ones that only show that it runs."),
-    ] = "paper",
+    preset: PresetName = "paper",
     task: Annotated[
         Literal["all", "sine", "rotate", "circle", "reach"], arg(help="One of the tasks, or all four.")
     ] = "all",
@@ -353,14 +359,8 @@ def properties(
         "reproduced/properties"
     ),
     seed: Seed = 0,
-    jobs: Annotated[int, arg(help="Processes that measure side by side; -1 is one per core.")] = -1,
-    backend: Annotated[
-        Literal["joblib", "ray", "dask"],
-        arg(
-            help="Processes of this machine, or a cluster: that of RAY_ADDRESS or DASK_SCHEDULER_ADDRESS,"
-            " or else a new one here."
-        ),
-    ] = "joblib",
+    jobs: Jobs = -1,
+    backend: Backend = "joblib",
     json: Json = False,
 ) -> int:
     """Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.
@@ -380,13 +380,46 @@ def properties(
     return 0
 
 
+@studies.command(name="shared-autonomy")
+def shared_autonomy(
+    preset: PresetName = "paper",
+    task: Annotated[
+        Literal["all", "planar_two_cups", "panda_two_cups"],
+        arg(help="Two cups before one of the arms, or before both."),
+    ] = "all",
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")] = Path(
+        "reproduced/shared-autonomy"
+    ),
+    seed: Seed = 0,
+    jobs: Jobs = -1,
+    backend: Backend = "joblib",
+    json: Json = False,
+) -> int:
+    """Let simulated people reach and change goals with help and without (section 8.2).
+
+    For example: latentarm reproduce shared-autonomy --preset smoke
+    """
+    from latentarm.experiments.shared_autonomy.cell import TASKS
+    from latentarm.experiments.shared_autonomy.preset import PRESETS
+    from latentarm.experiments.shared_autonomy.run import SharedAutonomyConfig, run_shared_autonomy
+    from latentarm.experiments.shared_autonomy.summary import summary_tables
+
+    tasks = tuple(TASKS) if task == "all" else (task,)
+    bars = not json and sys.stderr.isatty()
+    config = SharedAutonomyConfig(out, PRESETS[preset], tasks, seed, jobs, backend, quiet=json, bars=bars)
+    rows = run_shared_autonomy(config)
+    _show(rows, json, *summary_tables(rows))
+    _say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
+    return 0
+
+
 @app.command
 def bench(
     repeats: Annotated[int, arg(help="Timed online steps.")] = 20_000,
     seed: Seed = 0,
     json: Json = False,
 ) -> int:
-    """Time the online step, with 3 goals and with 50, beside torch, and ten seeds in one fit beside ten fits in turn.
+    """Time the online step with 3 goals and 50, beside torch, and ten seeds in one fit beside ten in turn.
 
     For example: latentarm bench --json
     """

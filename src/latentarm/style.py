@@ -40,6 +40,11 @@ LOOKS: dict[str, Look] = {
     "latent": Look("latent actions", "#0072B2", "o", "-"),
     "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),
     "end_effector": Look("mode switching", "#7f7f7f", "s", ":"),
+    "LA": Look("LA", "#7f7f7f", "s", ":"),
+    "LA+SA": Look("LA+SA", "#D55E00", "^", "--"),
+    "LA+SA+Entropy": Look("LA+SA+Entropy", "#0072B2", "o", "-"),
+    "planar_two_cups": Look("planar, 5 joints", "#009E73", "D", "--"),
+    "panda_two_cups": Look("Panda, 7 joints", "#CC79A7", "v", "-"),
 }
 
 FIGURE_DPI = 200

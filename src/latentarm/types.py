@@ -5,6 +5,7 @@ state ``s`` (rad), action ``a`` (rad/s), latent action ``z``, input ``u``, conte
 belief ``b``, goal ``g``, end-effector pose ``x``.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 
@@ -177,6 +178,8 @@ class StepRecord:
         belief: (G,), belief that this step used.
         mode: index of the controller's mode.
         command: what was sent.
+        bound_rad: radius ``delta / b(g)`` of the ball about the likeliest goal that help towards the
+            goals constrains the arm to (equation 14), rad; NaN without goals or help.
     """
 
     time_s: float
@@ -189,6 +192,7 @@ class StepRecord:
     belief: FloatArray
     mode: int
     command: Command
+    bound_rad: float = math.nan
 
 
 @dataclass(frozen=True)

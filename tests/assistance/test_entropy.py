@@ -11,9 +11,11 @@ from latentarm.assistance.entropy import (
     goal_progress,
 )
 from latentarm.errors import UserError
+from latentarm.kinematics.torch_chain import TorchChain
 from latentarm.models.autoencoders import CAE
 from latentarm.models.pca import PCA
 from latentarm.models.term import Situation
+from latentarm.robots.planar import planar
 from latentarm.types import Demonstrations, Episode
 
 GOALS = np.array([[1.0, 0.0], [-1.0, 0.0]])
@@ -172,3 +174,29 @@ def test_a_seed_trains_with_the_term_as_it_would_alone():
 def test_a_closed_form_takes_no_term():
     with pytest.raises(UserError, match="closed form"):
         PCA(latent_dim=1).fit(reaches(), term=GoalEntropy(GOALS))
+
+
+def test_progress_counts_the_tool_where_it_lags_behind_the_joints():
+    robot = planar(3)
+    rng = np.random.default_rng(0)
+    goals = rng.uniform(-1, 1, (2, 3))
+    state, actions = rng.uniform(-1, 1, (4, 3)), rng.normal(size=(4, 6, 3))
+    tensors = [torch.from_numpy(values) for values in (state, actions, goals)]
+    joints = goal_progress(*tensors, 0.5).numpy()
+    both = goal_progress(*tensors, 0.5, TorchChain(robot.chain)).numpy()
+    assert (both <= joints + 1e-12).all()
+
+    # The tool's share by finite differences: how fast it nears the goal's tool, over how fast it moves
+    # when the joints go straight.
+    step = 1e-6
+    places = robot.chain.forward(goals).position
+
+    def away(q):
+        return np.linalg.norm(robot.chain.forward(q).position[..., None, :] - places, axis=-1)
+
+    nearing = (away(state)[:, None] - away(state[:, None] + step * actions)) / step
+    straight = goals - state[:, None]
+    straight /= np.linalg.norm(straight, axis=-1, keepdims=True)
+    moved = robot.chain.forward(state[:, None] + step * straight).position
+    moved = np.linalg.norm(moved - robot.chain.forward(state).position[:, None], axis=-1) / step
+    assert both == pytest.approx(np.minimum(joints, nearing / moved[:, None] / 0.5), abs=1e-4)

@@ -6,13 +6,17 @@ from importlib.metadata import entry_points
 
 import pytest
 
+from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
+from latentarm.assistance.catalogue import BELIEFS
 from latentarm.cli import main
 from latentarm.experiments.backends import BACKENDS
 from latentarm.experiments.properties.preset import PRESETS
+from latentarm.experiments.shared_autonomy import preset as shared_autonomy
+from latentarm.experiments.shared_autonomy.cell import TASKS
 from latentarm.tasks.planar.catalogue import MOTIONS
 
 COMMANDS = ["demo", "import", "inspect", "train", "evaluate", "drive", "reproduce", "bench", "robots"]
-STUDIES = ["properties"]
+STUDIES = ["properties", "shared-autonomy"]
 HEAVY = {"torch", "mujoco", "matplotlib", "scipy", "pyarrow", "sklearn", "joblib", "pandas"}
 Run = Callable[..., tuple[int, str, str]]
 
@@ -40,13 +44,26 @@ def test_the_list_of_studies(run: Run) -> None:
     assert "{" + ",".join(STUDIES) + "}" in out
 
 
-def test_a_study_offers_what_there_is(run: Run) -> None:
-    _, out, _ = run("reproduce", "properties", "--help")
-    for names in (["all", *MOTIONS], PRESETS, BACKENDS):
+@pytest.mark.parametrize(
+    ("study", "tasks", "presets"),
+    [("properties", MOTIONS, PRESETS), ("shared-autonomy", TASKS, shared_autonomy.PRESETS)],
+)
+def test_a_study_offers_what_there_is(
+    run: Run, study: str, tasks: dict[str, object], presets: dict[str, object]
+) -> None:
+    _, out, _ = run("reproduce", study, "--help")
+    for names in (["all", *tasks], presets, BACKENDS):
         assert "{" + ",".join(names) + "}" in out
 
 
-@pytest.mark.parametrize("words", [["--help"], ["reproduce", "properties", "--help"]])
+def test_a_drive_offers_every_belief_and_says_the_usual_alphas(run: Run) -> None:
+    _, out, _ = run("drive", "--help")
+    assert "{" + ",".join(BELIEFS) + "}" in out
+    usual = f"By default {FixedAlpha().value:g}, with confidence {ConfidenceAlpha().most:g}."
+    assert usual in " ".join(out.replace("│", " ").split())
+
+
+@pytest.mark.parametrize("words", [["--help"], *(["reproduce", study, "--help"] for study in STUDIES)])
 def test_help_loads_nothing_heavy(words: list[str]) -> None:
     script = (
         "import sys, latentarm.cli\n"

@@ -1,10 +1,14 @@
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from latentarm.experiments.properties.preset import PRESETS, Preset
+from latentarm.experiments.shared_autonomy import preset as shared_autonomy
+from latentarm.experiments.shared_autonomy.cell import TASKS
+from latentarm.experiments.shared_autonomy.figures.draw import FIGURES
 from latentarm.metrics.results import read_results
 
 Run = Callable[..., tuple[int, str, str]]
@@ -38,5 +42,31 @@ def test_the_properties_for_people_and_for_machines(
 
     code, out, err = run(*PROPERTIES, "--json")
     assert code == 0
+    assert json.loads(out) == [row.as_json() for row in written]
+    assert "results.md" in err
+
+
+def test_the_smallest_study_of_shared_autonomy_runs_from_end_to_end(run: Run, workplace: Path) -> None:
+    code, out, err = run("reproduce", "shared-autonomy", "--preset", "smoke", "--jobs", 2)
+    assert code == 0
+    assert "Panda, 7 joints, cAE, simulated: final state error" in out
+    assert "LA+SA+Entropy" in out
+    assert "reproduced/shared-autonomy/results.md" in out
+    assert "12 cells" in " ".join(err.split())
+    folder = Path("reproduced/shared-autonomy")
+    written = read_results(folder / "results.json")
+    assert {row.task for row in written} == set(TASKS)
+    assert {path.stem for path in folder.glob("*.png")} == {*FIGURES} - {"entropy_weight"}
+
+
+def test_one_task_of_shared_autonomy_for_machines(
+    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny = replace(shared_autonomy.PRESETS["smoke"], epochs=1, drives=2, betas=(0.0, 75.0, 1e4))
+    monkeypatch.setitem(shared_autonomy.PRESETS, "smoke", tiny)
+    words = ("--preset", "smoke", "--task", "planar_two_cups", "--jobs", 1, "--json")
+    code, out, err = run("reproduce", "shared-autonomy", *words)
+    assert code == 0
+    written = read_results(Path("reproduced/shared-autonomy/results.json"))
     assert json.loads(out) == [row.as_json() for row in written]
     assert "results.md" in err

@@ -153,3 +153,26 @@ def test_a_decoder_that_sees_the_belief_is_trained_and_driven(run: Run, workplac
     assert code in (0, 1)
     # The controller worked: an input was given and the tool moved.
     assert figures(out)["path_length"] > 0.01
+
+
+def test_help_is_as_the_person_sets_it_and_is_recorded(run: Run, workplace: Path) -> None:
+    from latentarm.demonstrations.dataset import write_dataset
+    from latentarm.tasks.table_top import TableTop
+
+    write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), Path("table"))
+    run("train", "--demonstrations", "table", "--model", "pca")
+    drive = ("drive", "runs/table-pca", "--controller", "latent_assist", "--drives", 1, "--time-limit-s", 3)
+    helped = ("--belief", "distance", "--arbitration", "confidence", "--alpha", 0.4)
+    code, out, _ = run(*drive, *helped, "--record", "helped", "--out", "confidence", "--json")
+    assert code in (0, 1)
+    assert figures(out)["path_length"] > 0
+    said = json.loads(Path("confidence/drives.json").read_text())["about"]
+    assert (said["belief"], said["arbitration"], said["alpha"]["most"]) == ("distance", "confidence", 0.4)
+    for episode in read_dataset(Path("helped")).episodes:
+        alpha, bound = episode.extras["assist.alpha"][:, 0], episode.extras["assist.bound"][:, 0]
+        assert alpha.max() <= 0.4 + 1e-6
+        assert (bound[alpha > 0] > 0).all()
+        assert (bound[alpha == 0] == -1).all()
+    run(*drive, "--out", "usual")
+    said = json.loads(Path("usual/drives.json").read_text())["about"]
+    assert (said["belief"], said["arbitration"], said["alpha"]["value"]) == ("boltzmann", "fixed", 0.15)

@@ -1,11 +1,11 @@
 """The stop: exact, straight, within limits, and never longer than the config was checked for."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from latentarm.control.safety.brake import Brake
+from latentarm.control.safety.brake import AT_REST_S, Brake
 
 A = np.array([12.0, 6.0, 8.0])
 J = np.array([6000.0, 3000.0, 80.0])
@@ -15,19 +15,25 @@ accelerations = arrays(np.float64, 3, elements=st.floats(-6.0, 6.0))
 
 
 @given(velocities, accelerations)
+@example(np.zeros(3), np.array([0.0078125, 0.0, 0.0]))
 @settings(deadline=None)
 def test_ends_at_rest_without_jumps(velocity, acceleration):
     brake = Brake(velocity, acceleration, A, J)
     times = np.linspace(0.0, brake.duration_s * 1.01, 400)
     path = np.array([brake.at(float(t))[0] for t in times])
-    np.testing.assert_allclose(path[0], velocity, atol=1e-12)
+    np.testing.assert_allclose(path[0], velocity, atol=AT_REST_S * A.max())
     assert not path[-1].any()
     step = times[1]
-    assert (np.abs(np.diff(path, axis=0)) <= np.maximum(A, 6.0) * step + 1e-9).all()
-    assert (np.abs(np.diff(path, n=2, axis=0)) <= J * step**2 + 1e-9).all()
+    # What is slower than a nanosecond of braking counts as rest.
+    rest = 1e-9 * A + 1e-9
+    assert (np.abs(np.diff(path, axis=0)) <= np.maximum(A, 6.0) * step + rest).all()
+    assert (np.abs(np.diff(path, n=2, axis=0)) <= J * step**2 + rest).all()
 
 
 @given(velocities, accelerations)
+@example(
+    np.zeros(3), np.array([0.296875, 0.0, 0.0])
+)  # hardly moves: a ramp of a few hundredths of a millisecond
 @settings(deadline=None)
 def test_brakes_in_proportion_on_a_straight_line_and_covers_half_its_time(velocity, acceleration):
     brake = Brake(velocity, acceleration, A, J)

@@ -1,3 +1,5 @@
+import dataclasses
+import math
 import os
 import signal
 import sqlite3
@@ -47,6 +49,7 @@ def record(tick, *, goals=2, stop=None, limited_by=()):
         belief=np.full(goals, 1.0 / goals) if goals else np.zeros(0),
         mode=tick % 3,
         command=Command(rng.normal(size=7), 0.025, stop, limited_by),
+        bound_rad=math.nan if tick % 3 == 1 else rng.uniform(0, 9),
     )
 
 
@@ -54,6 +57,7 @@ def same(one, other):
     for name in ("state", "input", "latent", "action_human", "action_assist", "belief"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
     assert (one.time_s, one.alpha, one.mode) == (other.time_s, other.alpha, other.mode)
+    np.testing.assert_equal(one.bound_rad, other.bound_rad)
     np.testing.assert_array_equal(one.command.velocity, other.command.velocity)
     assert one.command.duration_s == other.command.duration_s
     assert one.command.stop == other.command.stop
@@ -96,6 +100,43 @@ def test_an_episode_that_was_not_ended_is_kept_and_flagged(tmp_path):
     whole, cut = read_journal(path)
     assert (whole.complete, len(whole.records)) == (True, 5)
     assert (cut.complete, len(cut.records)) == (False, 3)
+
+
+def rewritten(path, scalars_of):
+    """Give every sample of a journal other times and scalars."""
+    database = sqlite3.connect(path, isolation_level=None)
+    samples = database.execute("SELECT episode, number, figures FROM samples").fetchall()
+    for episode, number, figures in samples:
+        values = np.frombuffer(figures)
+        widths, scalars, rest = values[:8].copy(), values[8:13], values[13:]
+        scalars = scalars_of(scalars)
+        widths[0] = len(scalars)
+        changed = np.concatenate([widths, scalars, rest]).tobytes()
+        database.execute(
+            "UPDATE samples SET figures = ? WHERE episode = ? AND number = ?", (changed, episode, number)
+        )
+    database.close()
+
+
+def test_a_journal_from_before_the_bound_was_recorded_is_read_and_gone_on_with(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    write(path, [3])
+    rewritten(path, lambda scalars: scalars[:4])
+    write(path, [2])
+    old, new = read_journal(path)
+    for tick, one in enumerate(old.records):
+        same(dataclasses.replace(record(tick), bound_rad=math.nan), one)
+    same(record(0), new.records[0])
+    assert "assist.bound" in demonstrations_of([old], source="drive").episodes[0].extras
+
+
+@pytest.mark.parametrize("count", [3, 6])
+def test_a_sample_of_unknown_make_is_damage(tmp_path, count):
+    path = tmp_path / "drive.sqlite"
+    write(path, [3])
+    rewritten(path, lambda scalars: np.resize(scalars, count))
+    with pytest.raises(UserError, match="damaged"):
+        read_journal(path)
 
 
 def test_a_journal_goes_on_where_it_was_left(tmp_path):
@@ -251,6 +292,7 @@ def test_exports_complete_episodes_with_all_that_was_decided(tmp_path):
         "action.human",
         "action.assist",
         "assist.alpha",
+        "assist.bound",
         "mode",
         "belief",
         "observation.environment_state",
@@ -258,6 +300,8 @@ def test_exports_complete_episodes_with_all_that_was_decided(tmp_path):
     np.testing.assert_allclose(episode.timestamp, 0.01 * np.arange(6), atol=1e-9)
     np.testing.assert_array_equal(episode.action[3], record(3).command.velocity)
     np.testing.assert_array_equal(episode.extras["input.u"][3], record(3).input)
+    bounds = [record(tick).bound_rad for tick in range(6)]
+    np.testing.assert_array_equal(episode.extras["assist.bound"][:, 0], np.nan_to_num(bounds, nan=-1.0))
     assert demonstrations.goals[0].name == "cup"
     assert demonstrations.rate_hz == 100.0
 
@@ -278,6 +322,7 @@ def test_the_exported_dataset_reads_back(tmp_path, arm):
     found = read_dataset(tmp_path / "dataset")
     assert len(found.episodes) == 1
     np.testing.assert_allclose(found.episodes[0].extras["action.human"][2], record(2).action_human, rtol=1e-6)
+    np.testing.assert_allclose(found.episodes[0].extras["assist.bound"][:2, 0], [record(0).bound_rad, -1.0])
     np.testing.assert_allclose(found.goals[1].configuration, np.full(7, 0.2))
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from latentarm.assistance.belief import BoltzmannBelief
 from latentarm.assistance.blending import FixedAlpha
+from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.errors import UserError

@@ -1,6 +1,10 @@
 import numpy as np
 import pytest
 
+from latentarm.assistance.belief import Rule
+from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
+from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.assistance.catalogue import BELIEFS
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.experiments.driving import drive_all
 from latentarm.experiments.simulation import Setup, simulate
@@ -12,8 +16,14 @@ from latentarm.tasks.task import Task
 from latentarm.types import StepRecord
 
 
-def setup(task: Task, *, assisted: bool = False, time_limit_s: float = 60.0) -> Setup:
-    return Setup(task, EndEffectorController(task.robot), assisted, BoltzmannConfig(), time_limit_s)
+def setup(
+    task: Task,
+    arbitration: Arbitration | None = None,
+    time_limit_s: float = 60.0,
+    rule: Rule = BoltzmannBelief,
+) -> Setup:
+    controller = EndEffectorController(task.robot)
+    return Setup(task, controller, arbitration, BoltzmannConfig(), time_limit_s, rule)
 
 
 def test_mode_switching_reaches_and_stabs() -> None:
@@ -44,9 +54,18 @@ def test_every_command_keeps_the_limits() -> None:
 
 
 def test_assistance_believes_in_the_goal_that_is_driven_to() -> None:
-    trace = simulate(setup(TableTop(), assisted=True), 2, "stab", np.random.default_rng(0))
+    trace = simulate(setup(TableTop(), FixedAlpha()), 2, "stab", np.random.default_rng(0))
     assert trace.belief[0] == pytest.approx(1 / 3)
     assert trace.belief[-1].argmax() == 2
+    assert trace.belief.sum(axis=1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("rule", BELIEFS.values(), ids=BELIEFS.keys())
+@pytest.mark.parametrize("arbitration", [FixedAlpha(), ConfidenceAlpha()], ids=["fixed", "confidence"])
+def test_every_rule_is_sure_of_the_goal_on_the_way(rule: Rule, arbitration: Arbitration) -> None:
+    trace = simulate(setup(TableTop(), arbitration, 20.0, rule), 2, "stab", np.random.default_rng(0))
+    assert trace.belief[0] == pytest.approx(1 / 3)
+    assert trace.belief[:, 2].max() > max(0.5, *trace.belief[:, :2].max(axis=0))
     assert trace.belief.sum(axis=1) == pytest.approx(1.0)
 
 

@@ -13,6 +13,10 @@ def test_the_cups_are_equally_far_from_the_start_and_one_radian_apart(task):
     left, right = (goal.configuration for goal in task.goals)
     assert np.linalg.norm(left - right) == pytest.approx(1.0, abs=1e-3)
     assert np.linalg.norm(left - task.start) == pytest.approx(np.linalg.norm(right - task.start), rel=0.02)
+    places = [task.robot.chain.forward(state).position for state in (left, right, task.start)]
+    assert np.linalg.norm(places[0] - places[2]) == pytest.approx(
+        np.linalg.norm(places[1] - places[2]), rel=0.03
+    )
 
 
 def test_grasps_part_to_opposite_sides_and_end_nearer_to_their_goal_than_the_other_cup_is(task):

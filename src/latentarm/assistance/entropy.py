@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, Literal, final
 
 import numpy as np
@@ -10,6 +11,8 @@ import torch
 from torch import Tensor
 
 from latentarm.errors import UserError
+from latentarm.kinematics.chain import Chain
+from latentarm.kinematics.torch_chain import TorchChain
 from latentarm.models.term import LossTerm, Situation
 from latentarm.types import FloatArray
 
@@ -19,6 +22,13 @@ CONTEXTS: Final = 4096
 NEAR_RAD: Final = 0.1
 """Nearer to a goal than this, progress towards it counts in proportion to the distance that is left: at the
 goal there is no direction to it."""
+
+NEAR_M: Final = 0.03
+"""The same for the tool."""
+
+SLOWEST_M: Final = 0.05
+"""Least speed of the tool, per unit of joint speed, that its progress is measured in: an arm that goes
+straight to a goal may hardly move its tool, m/rad."""
 
 Where = Literal["demonstrated", "any_belief", "anywhere"]
 
@@ -51,21 +61,35 @@ def entropy_over_goals(probabilities: Tensor) -> Tensor:
     return -torch.special.xlogy(probabilities, probabilities).sum(-1)
 
 
-def goal_progress(state: Tensor, actions: Tensor, goals: Tensor, speed: float) -> Tensor:
-    """Speed towards each goal, in units of the demonstrated speed.
+def goal_progress(
+    state: Tensor, actions: Tensor, goals: Tensor, speed: float, chain: TorchChain | None = None
+) -> Tensor:
+    """Progress towards each goal, in units of the demonstrated speed.
+
+    That of the joints or, where the arm is known, of joints or tool, whichever is less: people see the
+    tool (equation 24), and a redundant arm can bring its joints nearer to a goal while the tool goes away.
+    The tool's is in units of the speed that it has when the joints go straight to the goal.
 
     Args:
         state: (..., n), rad.
         actions: (..., K, n), rad/s.
         goals: (G, n), rad.
-        speed: the demonstrated speed, rad/s.
+        speed: the demonstrated ‖a‖, rad/s.
+        chain: the arm's kinematics.
 
     Returns:
         (..., K, G).
     """
-    away = goals - state[..., None, :]
-    towards = away / torch.linalg.vector_norm(away, dim=-1, keepdim=True).clamp_min(NEAR_RAD)
-    return actions @ towards.mT / speed
+    towards = _direction(goals - state[..., None, :], NEAR_RAD)
+    progress = actions @ towards.mT / speed
+    if chain is None:
+        return progress
+    with torch.no_grad():
+        jacobian = chain.jacobian(state)[..., :3, :]
+        away = chain(goals)[0] - chain(state)[0][..., None, :]
+        straight = torch.linalg.vector_norm(towards @ jacobian.mT, dim=-1).clamp_min(SLOWEST_M)
+        tool = _direction(away, NEAR_M) / straight[..., None]
+    return torch.minimum(progress, (actions @ jacobian.mT) @ tool.mT / speed)
 
 
 @final
@@ -84,6 +108,7 @@ class GoalEntropy(LossTerm):
         per_axis: evenly spaced inputs in [-1, 1] on each axis, over which z is summed.
         where: contexts: ``demonstrated`` ones, demonstrated states with ``any_belief``, or ``anywhere``
             between demonstrated states as well.
+        chain: the arm's kinematics, for progress as people see it; without it the joints alone count.
 
     Raises:
         UserError: a parameter is out of its range.
@@ -95,6 +120,7 @@ class GoalEntropy(LossTerm):
     least_progress: float = 0.5
     per_axis: int = 7
     where: Where = "anywhere"
+    chain: Chain | None = None
 
     def __post_init__(self) -> None:
         if self.goals.ndim != 2 or len(self.goals) < 2 or not np.isfinite(self.goals).all():
@@ -111,11 +137,13 @@ class GoalEntropy(LossTerm):
     @property
     def settings(self) -> Mapping[str, object]:
         """Name and parameters; ``-inf``, which JSON does not know, as text."""
+        numbers = ("weight", "sharpness", "per_axis", "where")
         return {
-            **asdict(self),
+            **{name: getattr(self, name) for name in numbers},
             "term": "goal_entropy",
             "goals": self.goals.tolist(),
             "least_progress": str(self.least_progress),
+            "sees_tool": self.chain is not None,
         }
 
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
@@ -133,16 +161,25 @@ class GoalEntropy(LossTerm):
         """``lambda_2`` times the negative entropy, mean over contexts: (S,)."""
         state = situation.state
         goals = torch.as_tensor(self.goals, dtype=state.dtype, device=state.device)
-        progress = goal_progress(
-            state, situation.action_of(self._inputs(situation.axes)), goals, situation.speed
-        )
+        actions = situation.action_of(self._inputs(situation.axes))
+        chain = None if self._torch_chain is None else self._torch_chain.to(state)
+        progress = goal_progress(state, actions, goals, situation.speed, chain)
         log = _log_probabilities(progress, self.sharpness, self.least_progress)
         return self.weight * (log.exp() * log).sum(-1).mean(-1)
+
+    @cached_property
+    def _torch_chain(self) -> TorchChain | None:
+        return None if self.chain is None else TorchChain(self.chain)
 
     def _inputs(self, axes: int) -> Tensor:
         """Every input that is summed over, (K, d)."""
         values = torch.linspace(-1.0, 1.0, self.per_axis)
         return torch.cartesian_prod(*[values] * axes).reshape(-1, axes)
+
+
+def _direction(away: Tensor, near: float) -> Tensor:
+    """Unit vectors along (..., k); shorter, in proportion, where less than ``near`` is left."""
+    return away / torch.linalg.vector_norm(away, dim=-1, keepdim=True).clamp_min(near)
 
 
 def _log_probabilities(progress: Tensor, sharpness: float, least_progress: float) -> Tensor:

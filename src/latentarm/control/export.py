@@ -9,6 +9,9 @@ from latentarm.control.journal import JournalEpisode, read_journal
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
 
+NO_BOUND = -1.0
+"""Stands for "no bound" in a dataset, whose numbers are all finite: a radius is never negative."""
+
 _SHORTEST = 2
 """An episode with fewer samples has no motion in it."""
 
@@ -17,8 +20,9 @@ def demonstrations_of(episodes: Sequence[JournalEpisode], *, source: str) -> Dem
     """Recorded episodes as a dataset, with everything that a step decided as further features.
 
     The command is the action. Further features: ``input.u``, ``latent.z``, ``action.human``,
-    ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief`` and
-    ``observation.environment_state`` (position and rotation matrix of every goal, row by row).
+    ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief``, ``assist.bound``
+    (rad; -1 where nothing helps) and ``observation.environment_state`` (position and rotation matrix of
+    every goal, row by row).
     Time starts at each episode's first sample. What was cut short stays in the journal.
 
     Args:
@@ -81,6 +85,8 @@ def _episode(recorded: JournalEpisode) -> Episode:
     }
     if goals:
         extras["belief"] = np.stack([record.belief for record in records])
+        bound = np.array([[record.bound_rad] for record in records])
+        extras["assist.bound"] = np.where(np.isnan(bound), NO_BOUND, bound)
         poses = [np.concatenate([goal.pose.position, goal.pose.rotation.ravel()]) for goal in goals]
         extras["observation.environment_state"] = np.tile(np.concatenate(poses), (len(records), 1))
     return Episode(

@@ -1,6 +1,7 @@
 """Reading a journal, whole or cut short."""
 
 import json
+import math
 import sqlite3
 from contextlib import closing
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from latentarm.errors import UserError
 from latentarm.types import Command, Goal, Pose, StepRecord, Stop
 
 _PARTS = 8
+_SCALARS = 5
 _MOST_FIGURES = 100_000
 
 
@@ -103,7 +105,9 @@ def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:
         raise ValueError("a sample is too long")
     parts = np.split(values[_PARTS:], np.cumsum(widths.astype(np.int64))[:-1])
     scalars, state, given, latent, human, assist, belief, velocity = parts
-    time_s, alpha, mode, duration_s = scalars.tolist()
+    # Journals from before the bound was recorded have one less.
+    known = scalars.tolist() if len(scalars) == _SCALARS else [*scalars.tolist(), math.nan]
+    time_s, alpha, mode, duration_s, bound_rad = known
     return StepRecord(
         time_s=time_s,
         state=state,
@@ -120,4 +124,5 @@ def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:
             stop=None if stop is None else Stop(stop),
             limited_by=tuple(limited_by.split(",")) if limited_by else (),
         ),
+        bound_rad=bound_rad,
     )

@@ -199,15 +199,16 @@ class Recorder:
 
 def figures_of(record: StepRecord) -> Sequence[FloatArray]:
     """The numbers of a record, in the journal's order: times and scalars first, then arrays."""
+    command = record.command
     return (
-        np.array([record.time_s, record.alpha, float(record.mode), record.command.duration_s]),
+        np.array([record.time_s, record.alpha, float(record.mode), command.duration_s, record.bound_rad]),
         record.state,
         record.input,
         record.latent,
         record.action_human,
         record.action_assist,
         record.belief,
-        record.command.velocity,
+        command.velocity,
     )
 
 

@@ -6,14 +6,14 @@ from typing import final
 
 import numpy as np
 
-from latentarm.assistance.action import assistive_action
-from latentarm.assistance.belief import BoltzmannBelief
+from latentarm.assistance.belief import Belief
 from latentarm.assistance.blending import Arbitration, blend
 from latentarm.control.controller import Controller
 from latentarm.control.engagement import Engagement
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.freshness import Freshness
 from latentarm.control.safety.stack import Passed, SafetyStack
+from latentarm.control.shared_autonomy import SharedAutonomy
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.types import Command, Context, FloatArray, Goal, Input, StepRecord, Stop
@@ -41,7 +41,8 @@ class Step:
         step(neutral, 0.0, arm.state(), now)
         step.enable()
 
-    An input within the dead zone wants no motion, whatever the decoder makes of zero, and no help.
+    An input within the dead zone wants no motion, whatever the decoder makes of zero, and no help, save
+    from an arbitration that acts at rest. An enabled arm then moves by itself while inputs are fresh.
     No input of any kind and no failing controller raises an exception here. Controllers and observers see
     arrays that they cannot write to: what they are shown is what the safety filters go by.
 
@@ -64,35 +65,23 @@ class Step:
         controller: Controller,
         safety: SafetyConfig,
         goals: Sequence[Goal] = (),
-        belief: BoltzmannBelief | None = None,
+        belief: Belief | None = None,
         arbitration: Arbitration | None = None,
         dt_s: float = 0.01,
     ) -> None:
-        if (belief is not None or arbitration is not None) and not goals:
-            raise UserError("Assistance needs at least one goal: name goals, or leave assistance out.")
-        if belief is not None and len(belief.initial()) != len(goals):
-            raise UserError(f"The belief is over {len(belief.initial())} goals, but {len(goals)} are given.")
+        self._shared = SharedAutonomy(robot.dof, controller, goals, belief, arbitration, dt_s)
         self._dof = robot.dof
         self._lowest = (robot.limits.lower - _ASTRAY).tolist()
         self._highest = (robot.limits.upper + _ASTRAY).tolist()
         self._controller = controller
         self._stack = SafetyStack(safety, robot, dt_s)
-        self._goals = np.array([goal.configuration for goal in goals], dtype=np.float64).reshape(
-            -1, robot.dof
-        )
-        self._belief_rule = belief
-        self._arbitration = arbitration
         self._config = safety
         self._hold_s = self._stack.bounds.hold_s
-        # The belief counts evidence per its own period, whatever the loop's.
-        self._ticks_per_update = 1 if belief is None else max(1, round(belief.period_s / dt_s))
         self._no_motion = _sealed(np.zeros(robot.dof))
         self._no_input = _sealed(np.zeros(controller.input_dim))
         self._engagement = Engagement()
         self._mode = 0
         self._switch_held = False
-        self._since_update = 0
-        self._belief = self._first_belief()
 
     @property
     def dt_s(self) -> float:
@@ -117,7 +106,7 @@ class Step:
     @property
     def belief(self) -> FloatArray:
         """(G,), the belief that the next step will use."""
-        return self._belief
+        return self._shared.belief
 
     @property
     def stopped(self) -> Stop | None:
@@ -139,8 +128,7 @@ class Step:
         self._engagement = Engagement()
         self._mode = 0
         self._switch_held = False
-        self._since_update = 0
-        self._belief = self._first_belief()
+        self._shared.reset()
 
     def enable(self) -> Stop | None:
         """Let the arm move, if the newest input was neutral.
@@ -193,25 +181,23 @@ class Step:
         self._switch(bool(given.switch_mode))
         if self._engagement.stopped is not None:
             return self._record(time_s, q, Passed(self._stack.stop()))
-        if neutral:
+        if neutral and not self._shared.acts_at_rest:
             return self._record(time_s, q, self._passed(self._no_motion, q, input_age_s))
         return self._driven(u, input_age_s, q, time_s)
 
     def _driven(self, u: FloatArray, input_age_s: float, q: FloatArray, time_s: float) -> StepRecord:
-        """Lines 6 to 10 for an input that wants motion."""
-        context = Context(state=q, belief=self._belief)
-        belief = self._belief
-        a_r, alpha = self._no_motion, 0.0
+        """Lines 6 to 10 for an input that wants motion, or at rest for a robot that helps there too."""
+        shared = self._shared
+        context = Context(state=q, belief=shared.belief)
+        a_r, alpha, bound_rad = self._no_motion, 0.0, math.nan
         try:
             # What overflows here is caught as not finite below.
             with np.errstate(all="ignore"):
-                z = np.asarray(self._controller.latent(u, context, self._mode), dtype=np.float64)
-                a_h = np.asarray(self._controller.action(z, context, self._mode), dtype=np.float64)
-                wanted = a_h
-                if a_h.shape == q.shape and z.shape == u.shape and len(self._goals):
-                    a_r, alpha = self._help(u, q)
-                    wanted = blend(a_h, a_r, alpha)
-                    self._update_belief(u, context)
+                a_r, alpha = shared.help(u, q)
+                choices, bound_rad = shared.update(u, context, self._mode, alpha)
+                # A person who lets go commands no motion, whatever the decoder makes of zero.
+                z, a_h = (u, self._no_motion) if u is self._no_input else choices.chosen(u)
+                wanted = blend(a_h, a_r, alpha) if a_h.shape == q.shape else a_h
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
             stop = Stop(f"The controller failed ({_said(error)}).")
             return self._record(time_s, q, self._refused(stop), u)
@@ -220,32 +206,7 @@ class Step:
             return self._record(time_s, q, self._refused(stop), u)
         passed = self._passed(wanted, q, input_age_s)
         command = self._command(passed)
-        return StepRecord(time_s, q, u, z, a_h, a_r, alpha, belief, self._mode, command)
-
-    def _help(self, u: FloatArray, q: FloatArray) -> tuple[FloatArray, float]:
-        """Assistive action (equation 3) and arbitration."""
-        if self._arbitration is None:
-            return self._no_motion, 0.0
-        alpha = float(self._arbitration.alpha(u, self._belief))
-        if not 0.0 <= alpha <= 1.0:
-            raise ValueError(f"an arbitration of {alpha} is not in [0, 1]")
-        return assistive_action(q, self._belief, self._goals), alpha
-
-    def _update_belief(self, u: FloatArray, context: Context) -> None:
-        """Line 10, at the belief's own rate."""
-        self._since_update += 1
-        if self._belief_rule is None or self._since_update < self._ticks_per_update:
-            return
-        self._since_update = 0
-
-        def action_of(inputs: FloatArray) -> FloatArray:
-            z = self._controller.latent(inputs, context, self._mode)
-            return self._controller.action(z, context, self._mode)
-
-        updated = self._belief_rule.update(context.belief, u, context.state, action_of)
-        if not np.isfinite(updated).all():
-            raise ValueError("the belief is not finite")
-        self._belief = _sealed(updated)
+        return StepRecord(time_s, q, u, z, a_h, a_r, alpha, context.belief, self._mode, command, bound_rad)
 
     def _passed(self, wanted: FloatArray, q: FloatArray, input_age_s: float) -> Passed:
         """Through the safety stack; a refusal disengages."""
@@ -298,12 +259,6 @@ class Step:
             self._mode = (self._mode + 1) % len(self._controller.modes)
         self._switch_held = wanted
 
-    def _first_belief(self) -> FloatArray:
-        if self._belief_rule is not None:
-            return _sealed(np.array(self._belief_rule.initial()))
-        count = len(self._goals)
-        return _sealed(np.full(count, 1.0 / count) if count else np.zeros(0))
-
     def _command(self, passed: Passed) -> Command:
         return Command(passed.velocity, self._hold_s, self._engagement.stopped, passed.limited_by)
 
@@ -311,6 +266,7 @@ class Step:
         self, time_s: float, q: FloatArray, passed: Passed, u: FloatArray | None = None
     ) -> StepRecord:
         """A step without motion wanted."""
+        self._shared.rest()
         return StepRecord(
             time_s=time_s,
             state=q,
@@ -319,7 +275,7 @@ class Step:
             action_human=self._no_motion,
             action_assist=self._no_motion,
             alpha=0.0,
-            belief=self._belief,
+            belief=self._shared.belief,
             mode=self._mode,
             command=self._command(passed),
         )

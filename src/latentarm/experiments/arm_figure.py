@@ -35,7 +35,7 @@ def draw_task(task: Task, demonstrations: Demonstrations, path: Path) -> None:
     """
     figure = new_figure(height_mm=95.0, width_mm=120.0)
     axes: Axes3D = figure.add_subplot(projection="3d", computed_zorder=False)
-    places = [_draw_arm(axes, task.robot)]
+    places = [draw_arm(axes, task.robot, task.robot.home)]
     for episode in demonstrations.episodes[:DRAWN_EPISODES]:
         way = task.robot.chain.forward(episode.state).position
         ends = [np.linalg.norm(way - goal.pose.position, axis=1).min() for goal in task.goals]
@@ -52,18 +52,18 @@ def draw_task(task: Task, demonstrations: Demonstrations, path: Path) -> None:
             label=goal.name,
             zorder=4,
         )
-    _frame(axes, np.concatenate(places))
+    frame(axes, np.concatenate(places))
     figure.legend(loc="outside lower center", ncols=6, frameon=False, fontsize=SMALL_FONT_SIZE)
     save_figure(figure, path)
 
 
-def _draw_arm(axes: "Axes3D", robot: Robot) -> FloatArray:
-    """Draw the robot's capsules at home.
+def draw_arm(axes: "Axes3D", robot: Robot, state: FloatArray) -> FloatArray:
+    """Draw the robot's capsules in one state (n,).
 
     Returns:
         (K, 3), places that they take, m.
     """
-    transforms = robot.chain.link_transforms(robot.home)
+    transforms = robot.chain.link_transforms(state)
     start, end = robot.capsules.placed(robot.chain, transforms)
     # From far to near, because the drawing has no depth buffer.
     eye = np.array([1.0, -1.2, 0.6])
@@ -93,7 +93,7 @@ def _capsule(start: FloatArray, end: FloatArray, radius: float) -> tuple[FloatAr
     return points[..., 0], points[..., 1], points[..., 2]
 
 
-def _frame(axes: "Axes3D", places: FloatArray) -> None:
+def frame(axes: "Axes3D", places: FloatArray) -> None:
     """Equal scale on all axes, just around what is drawn."""
     lowest, highest = places.min(axis=0) - 0.05, places.max(axis=0) + 0.05
     axes.set_xlim(lowest[0], highest[0])

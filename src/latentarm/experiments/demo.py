@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
+from latentarm.assistance.blending import Arbitration, FixedAlpha
 from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
@@ -134,16 +135,18 @@ def _conditions(task: TableTop, config: DemoConfig) -> list[tuple[Subject, list[
     """Latent actions of each model (all its seeds in turn), alone and assisted, and mode switching."""
     conditions: list[tuple[Subject, list[Setup]]] = []
 
-    def add(model: str | None, condition: str, controllers: Sequence[Controller], *, assisted: bool) -> None:
-        setups = [Setup(task, one, assisted, BoltzmannConfig(), TIME_LIMIT_S) for one in controllers]
+    def add(
+        model: str | None, condition: str, controllers: Sequence[Controller], arbitration: Arbitration | None
+    ) -> None:
+        setups = [Setup(task, one, arbitration, BoltzmannConfig(), TIME_LIMIT_S) for one in controllers]
         conditions.append((Subject("demo", task=task.name, model=model, condition=condition), setups))
 
     for model in MODELS:
         run = config.out / "runs" / model
         controllers = [LatentController(load_decoder(run, seed)) for seed in range(config.seeds)]
-        add(model, "latent", controllers, assisted=False)
-        add(model, "latent_assist", controllers, assisted=True)
-    add(None, "end_effector", [EndEffectorController(task.robot)], assisted=False)
+        add(model, "latent", controllers, None)
+        add(model, "latent_assist", controllers, FixedAlpha())
+    add(None, "end_effector", [EndEffectorController(task.robot)], None)
     return conditions
 
 

@@ -1,13 +1,15 @@
 """`latentarm drive`: simulated operators drive a task, with latent actions or with mode switching."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal, cast
 
 import numpy as np
 from joblib import Parallel, delayed
 
+from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
+from latentarm.assistance.catalogue import BELIEFS
 from latentarm.control.controller import Controller
 from latentarm.control.export import export_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
@@ -34,6 +36,8 @@ from latentarm.tasks.task import Task
 from latentarm.types import Demonstrations, Row
 
 ControllerName = Literal["latent", "latent_assist", "end_effector"]
+BeliefName = Literal["boltzmann", "distance", "maximum_entropy"]
+ArbitrationName = Literal["fixed", "confidence"]
 TaskName = Literal["table_top", "held_out", "reach"]
 
 DRIVE_STREAM = 2
@@ -56,6 +60,10 @@ class DriveConfig:
         end_effector: site, body or link of a model file.
         drives: for each goal.
         beta: rationality of the simulated operator.
+        belief: how inputs change the robot's belief over the goals.
+        arbitration: how alpha comes about where the robot helps; fixed where None.
+        alpha: arbitration at full input, in [0, 1], the most of it for confidence; that of `FixedAlpha`
+            or `ConfidenceAlpha` where None.
         time_limit_s: a drive that lasts longer has failed; what `TIME_LIMITS_S` says where None.
         seed: of everything random.
         jobs: processes side by side.
@@ -74,6 +82,9 @@ class DriveConfig:
     end_effector: str | None = None
     drives: int = 3
     beta: float = BoltzmannConfig.beta
+    belief: BeliefName = "boltzmann"
+    arbitration: ArbitrationName | None = None
+    alpha: float | None = None
     time_limit_s: float | None = None
     seed: int = 0
     jobs: int = 1
@@ -86,6 +97,12 @@ class DriveConfig:
         check_positive("rationality beta", self.beta)
         if self.time_limit_s is not None:
             check_positive("time limit in s", self.time_limit_s)
+        if self.controller != "latent_assist":
+            for name in ("arbitration", "alpha"):
+                if getattr(self, name) is not None:
+                    raise UserError(
+                        f"Without help there is no {name} to set: use --controller latent_assist."
+                    )
 
 
 def drive_run(config: DriveConfig) -> list[Row]:
@@ -97,6 +114,7 @@ def drive_run(config: DriveConfig) -> list[Row]:
     Raises:
         UserError: the run, the robot or the task is not to be had, or they do not fit each other.
     """
+    arbitration = _arbitration(config)
     run = None if config.run is None else read_run(config.run)
     demonstrations = None if run is None else run.dataset(config.dataset)
     task = _task(config, run, demonstrations)
@@ -105,9 +123,10 @@ def drive_run(config: DriveConfig) -> list[Row]:
     setup = Setup(
         task=task,
         controller=_controller(config, task),
-        assisted=config.controller == "latent_assist",
+        arbitration=arbitration,
         operator=BoltzmannConfig(beta=config.beta),
         time_limit_s=TIME_LIMITS_S[task.name] if config.time_limit_s is None else config.time_limit_s,
+        rule=BELIEFS[config.belief],
     )
     if config.record is None:
         traces = drive_all([setup], config.drives, config.seed, config.jobs)
@@ -116,7 +135,15 @@ def drive_run(config: DriveConfig) -> list[Row]:
     model = None if run is None or config.controller == "end_effector" else run.model
     subject = Subject("drive", task=task.name, model=model, condition=config.controller)
     rows = drive_rows(subject, [trace.figures for trace in traces])
-    about = {"run": str(config.run), "seed": config.seed, "beta": config.beta, "operator": "simulated"}
+    about = {
+        "run": str(config.run),
+        "seed": config.seed,
+        "beta": config.beta,
+        "operator": "simulated",
+        "belief": config.belief,
+        "arbitration": None if arbitration is None else config.arbitration or "fixed",
+        "alpha": None if arbitration is None else asdict(arbitration),
+    }
     write_results(config.out / "drives.json", rows, about)
     draw_drives({config.controller: traces}, task, config.out / "paths.png")
     return rows
@@ -225,6 +252,15 @@ def _usual_task(config: DriveConfig, demonstrations: Demonstrations | None) -> T
     if goals == {goal.name for goal in TableTop().goals}:
         return "table_top"
     return "held_out"
+
+
+def _arbitration(config: DriveConfig) -> FixedAlpha | ConfidenceAlpha | None:
+    """How much the robot helps, where it does."""
+    if config.controller != "latent_assist":
+        return None
+    if config.arbitration == "confidence":
+        return ConfidenceAlpha() if config.alpha is None else ConfidenceAlpha(config.alpha)
+    return FixedAlpha() if config.alpha is None else FixedAlpha(config.alpha)
 
 
 def _controller(config: DriveConfig, task: Task) -> Controller:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from latentarm.assistance.belief import BoltzmannBelief
-from latentarm.assistance.blending import FixedAlpha
+from latentarm.assistance.belief import Rule
+from latentarm.assistance.blending import Arbitration
+from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
@@ -30,16 +31,18 @@ class Setup:
     Attributes:
         task: the robot, the goals and when they are reached.
         controller: what the simulated operator steers with.
-        assisted: whether the robot helps towards its belief over the task's goals.
+        arbitration: how much the robot helps towards its belief over the task's goals; None never helps.
         operator: how the simulated operator thinks.
         time_limit_s: a drive that lasts longer has failed.
+        rule: how inputs change the belief; without help too, for a decoder may look at it.
     """
 
     task: Task
     controller: Controller
-    assisted: bool
+    arbitration: Arbitration | None
     operator: BoltzmannConfig
     time_limit_s: float
+    rule: Rule = BoltzmannBelief
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +116,14 @@ def simulate(
 
 def _step(setup: Setup, dt_s: float) -> Step:
     task = setup.task
+    goals = np.stack([goal.configuration for goal in task.goals])
     return Step(
         task.robot,
         setup.controller,
         SafetyConfig(obstacles=tuple(task.obstacles)),
         goals=task.goals,
-        # Without help too: a decoder may look at the belief.
-        belief=BoltzmannBelief([goal.configuration for goal in task.goals], period_s=BELIEF_PERIOD_S),
-        arbitration=FixedAlpha() if setup.assisted else None,
+        belief=setup.rule(goals, period_s=BELIEF_PERIOD_S),
+        arbitration=setup.arbitration,
         dt_s=dt_s,
     )
 

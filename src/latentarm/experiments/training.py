@@ -18,6 +18,7 @@ from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.errors import UserError
 from latentarm.experiments.checks import check_seed
 from latentarm.experiments.runs import Run, fingerprint, git_commit, run_facts
+from latentarm.kinematics.chain import Chain
 from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.catalogue import ROBOTS, load_robot
@@ -101,7 +102,7 @@ def train_run(config: TrainConfig) -> list[Row]:
         model.fit(
             select_episodes(demonstrations, training),
             chain=chain,
-            term=_term(config, demonstrations),
+            term=_term(config, demonstrations, chain),
             checkpoint=checkpoint,
             progress=config.progress,
         )
@@ -147,7 +148,7 @@ def _model(config: TrainConfig) -> LatentActionModel:
     return replace(model, **chosen)
 
 
-def _term(config: TrainConfig, demonstrations: Demonstrations) -> GoalEntropy | None:
+def _term(config: TrainConfig, demonstrations: Demonstrations, chain: Chain | None) -> GoalEntropy | None:
     """The entropy over the demonstrations' goals, where it is asked for.
 
     Raises:
@@ -161,7 +162,7 @@ def _term(config: TrainConfig, demonstrations: Demonstrations) -> GoalEntropy | 
             "needs two or more: leave --goal-entropy out."
         )
     goals = np.stack([goal.configuration for goal in demonstrations.goals])
-    return GoalEntropy(goals, weight=config.goal_entropy)
+    return GoalEntropy(goals, weight=config.goal_entropy, chain=chain)
 
 
 def prepared(demonstrations: Demonstrations, context: str) -> Demonstrations:

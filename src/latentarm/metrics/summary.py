@@ -29,6 +29,16 @@ UNITS: dict[str, str] = {
     "path_length": "m",
     "path_over_straight": "1",
     "final_distance": "m",
+    "final_state_error": "1",
+    "final_tool_error": "1",
+    "arrival_rate": "1",
+    "extra_time_percent": "%",
+    "final_belief": "1",
+    "goal_entropy": "nat",
+    "goal_open_share": "1",
+    "certified_share_eq_14": "1",
+    "certified_share_eq_13": "1",
+    "certified_share_known_help": "1",
 }
 """Unit of every measure of this package; "1" is a plain number or ratio."""
 

@@ -37,6 +37,16 @@ NAMES: dict[str, str] = {
     "path_over_straight": "path, over the straight way",
     "final_distance": "final distance",
     "final_distance_percent_of_vae": "final distance, of the VAE's",
+    "final_state_error": "final state error",
+    "final_tool_error": "final tool error",
+    "arrival_rate": "share that arrives",
+    "extra_time_percent": "time of LA beyond LA+SA's",
+    "final_belief": "belief in the true goal at the end",
+    "goal_entropy": "entropy over goals",
+    "goal_open_share": "steps with the true goal open",
+    "certified_share_eq_14": "steps certified by equation 14",
+    "certified_share_eq_13": "steps certified by equation 13",
+    "certified_share_known_help": "steps certified, help known",
 }
 
 AXIS_NAMES: dict[str, str] = {"r2": "R²", "r2_local": "local R²"}

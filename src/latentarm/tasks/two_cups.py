@@ -76,6 +76,11 @@ class TwoCups(Task, ABC):
 
     @property
     @abstractmethod
+    def posture(self) -> FloatArray:
+        """(n,), rad: in which a cup straight ahead would be approached; sideways, joint 1 turns."""
+
+    @property
+    @abstractmethod
     def grasps(self) -> dict[str, Place]:
         """Where each manner of grasping ends."""
 
@@ -156,7 +161,7 @@ class TwoCups(Task, ABC):
         return tuple(self._goal(cup) for cup in range(len(CUPS)))
 
     def _goal(self, cup: int) -> Goal:
-        posture = self.start.copy()
+        posture = self.posture.copy()
         posture[0] += _bearing(cup)
         configuration = solve(self.robot, self.pose(_bearing(cup), self.before), posture)
         return Goal(CUPS[cup], configuration, self.robot.chain.forward(configuration))
@@ -202,8 +207,13 @@ class PlanarTwoCups(TwoCups):
 
     @property
     def start(self) -> FloatArray:
-        """Curled, the tool near the base: (5,), rad."""
-        return np.array([2.1, -1.6, -1.6, -0.6, 0.7])
+        """The tool drawn back along the middle between the cups: (5,), rad."""
+        return np.array([2.1, -1.14, -1.83, -0.5, 1.45])
+
+    @property
+    def posture(self) -> FloatArray:
+        """The elbow to the left: (5,), rad."""
+        return np.array([2.1, -1.5, -1.26, -0.28, 0.94])
 
     def pose(self, bearing_rad: float, place: Place) -> Pose:
         """In the plane, the tool's x axis towards the cup."""
@@ -246,6 +256,11 @@ class PandaTwoCups(TwoCups):
     def start(self) -> FloatArray:
         """Above and before the cups: (7,), rad."""
         return np.array([0.0, -0.6, 0.0, -2.4, 0.0, 2.2, np.pi / 4])
+
+    @property
+    def posture(self) -> FloatArray:
+        """As at the start: (7,), rad."""
+        return self.start
 
     def pose(self, bearing_rad: float, place: Place) -> Pose:
         """The tool's z axis points outwards and down."""

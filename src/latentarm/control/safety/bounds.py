@@ -34,6 +34,7 @@ class Bounds:
         dt_s: as given.
         dof: number of joints n.
         speed: (n,), largest speed of each joint, rad/s; that of links, m/s, where a joint slides.
+        slowest: the smallest of these.
         lower: (n,), lowest joint position, margin taken off, rad.
         upper: (n,), highest joint position, margin taken off, rad.
         positions: (2, n), `lower` and `upper` together.
@@ -80,6 +81,7 @@ class Bounds:
         self.dt_s = dt_s
         self.dof = robot.dof
         self.speed = speed
+        self.slowest = float(speed.min())
         self.lower = hardware.lower + config.joint_margin
         self.upper = hardware.upper - config.joint_margin
         for joint in np.flatnonzero(self.lower + 2 * BUFFER_RAD >= self.upper):

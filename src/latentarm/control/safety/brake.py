@@ -9,7 +9,7 @@ from ruckig import ControlInterface, InputParameter, Result, Ruckig, Trajectory
 from latentarm.control.safety.small import largest, some
 from latentarm.types import FloatArray
 
-_AT_REST_S = 1e-9
+AT_REST_S = 1e-9
 """A brake shorter than this moves nothing that a float64 can tell from standing still."""
 
 
@@ -74,7 +74,7 @@ class Brake:
             self.settle_s, self.kink, self.settled = 0.0, acceleration, velocity
         speed = np.abs(self.settled)
         by_acceleration = largest(speed / stop_acceleration)
-        if by_acceleration < _AT_REST_S:
+        if by_acceleration < AT_REST_S:
             self.rate, self.onset_s, self.ramp_s = math.inf, 0.0, 0.0
             return
         by_jerk = largest(speed / stop_jerk)
@@ -98,35 +98,37 @@ class Brake:
             return velocity, self._acceleration + jerk * since
         if self._fall is None:
             # Found when first needed: most brakes are only checked.
-            self._fall = _Fall(self.rate, self.rate / self.onset_s)
-        sigma, slope = self._fall.at(time_s - self.settle_s)
-        return sigma * self.settled, slope * self.settled
+            self._fall = _Fall(1.0 / (self.rate * self.onset_s))
+        sigma, slope = self._fall.at((time_s - self.settle_s) * self.rate)
+        return sigma * self.settled, slope * self.rate * self.settled
 
 
 @final
 class _Fall:
-    """The ramp sigma from 1 to 0.
+    """The ramp sigma from 1 to 0, at a plateau of -1 per unit of time.
+
+    In units of its own length, whatever that is in seconds: Ruckig's arithmetic is not for deceleration of
+    many thousands per second, as the ramp of an arm that hardly moves has it.
 
     Args:
-        rate: plateau deceleration, 1/s.
-        jerk: 1/s².
+        jerk: per unit of time squared; at least 1.
     """
 
     __slots__ = ("_trajectory",)
 
-    def __init__(self, rate: float, jerk: float) -> None:
+    def __init__(self, jerk: float) -> None:
         wanted = InputParameter(1)
         wanted.control_interface = ControlInterface.Velocity
         wanted.current_velocity = [1.0]
         wanted.target_velocity = [0.0]
-        wanted.max_acceleration = [rate]
+        wanted.max_acceleration = [1.0]
         wanted.max_jerk = [jerk]
         self._trajectory = Trajectory(1)
         result = Ruckig(1).calculate(wanted, self._trajectory)
         if result not in (Result.Working, Result.Finished):
-            raise ArithmeticError(f"no stopping ramp at {rate:g} per s: {result}")
+            raise ArithmeticError(f"no stopping ramp with a jerk of {jerk:g}: {result}")
 
-    def at(self, time_s: float) -> tuple[float, float]:
-        """Sigma and its slope, 1/s, at a time since the ramp began."""
-        _, sigma, slope = self._trajectory.at_time(time_s)
+    def at(self, time: float) -> tuple[float, float]:
+        """Sigma and its slope, in units of the ramp, since it began."""
+        _, sigma, slope = self._trajectory.at_time(time)
         return sigma[0], slope[0]

@@ -11,8 +11,6 @@ from latentarm.control.safety.proximity import Contacts, Proximity
 from latentarm.control.safety.small import largest, smallest, some
 from latentarm.types import FloatArray, Stop
 
-_INWARD: FloatArray = np.array([[-1.0], [1.0]])
-
 _DRIFT_RAD = 0.05
 """A placement from a configuration further away than this is of no use."""
 
@@ -73,7 +71,8 @@ class Situation:
         self.acceleration = acceleration
         self.input_age_s = input_age_s
         self.room = self.bounds.positions - state
-        self.nearest_limit = smallest((self.room * _INWARD).ravel())
+        below, above = self.room
+        self.nearest_limit = min(smallest(above), -largest(below))
         self._nearby: tuple[Placement, FloatArray] | None = None
         self._asked = velocity
         self._contacts: Contacts | None = None

@@ -5,7 +5,7 @@ from typing import final
 import numpy as np
 
 from latentarm.control.safety.filter import SafetyFilter, Situation
-from latentarm.control.safety.small import smallest
+from latentarm.control.safety.small import largest, smallest
 from latentarm.types import FloatArray
 
 
@@ -20,7 +20,9 @@ class JointVelocity(SafetyFilter):
 
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
         """See the base class."""
-        limit = situation.bounds.speed
+        speed, limit = np.abs(velocity), situation.bounds.speed
+        if largest(speed) <= situation.bounds.slowest:
+            return velocity
         # Written so that nothing overflows, neither at 1e308 nor at zero.
-        share = smallest(limit / np.maximum(np.abs(velocity), limit))
+        share = smallest(limit / np.maximum(speed, limit))
         return velocity if share == 1.0 else velocity * share

@@ -143,10 +143,11 @@ class Proximity:
         since = q - self._held_at
         moved = np.abs(since)
         used = moved + self._horizon_s * np.maximum(speed - self._held_speed, 0.0)
-        if largest(moved) > _STALE_RAD or some(self.lever @ used >= self._spare):
+        furthest = largest(moved)
+        if furthest > _STALE_RAD or some(self.lever @ used >= self._spare):
             return None
         held = self._held
-        return Contacts(held.pair, held.height, held.row, since=since, fresh=not some(since))
+        return Contacts(held.pair, held.height, held.row, since=since, fresh=furthest == 0.0)
 
     def measured(self, placement: Placement, speed: FloatArray) -> Contacts:
         """The pairs that matter, measured now.

@@ -1,0 +1,341 @@
+"""The robot's part of Algorithm 1: any belief, help at rest, and how far help constrains the arm."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from latentarm.assistance.belief import Belief
+from latentarm.assistance.blending import FixedAlpha, Unprompted
+from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.assistance.bound import radius
+from latentarm.assistance.catalogue import BELIEFS
+from latentarm.control.choices import Choices, full_deflections
+from latentarm.control.export import export_journal
+from latentarm.control.journal import read_journal
+from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.step import Step
+from latentarm.types import Context, Goal, Input
+
+NEUTRAL = Input(np.zeros(2))
+PUSH = Input(np.array([1.0, 0.0]))
+MATRIX = np.stack([np.full(7, 0.1), np.linspace(-0.2, 0.2, 7)])
+UNPROMPTED = Unprompted(FixedAlpha(0.5))
+
+
+def goals_of(arm, *shifts):
+    return tuple(
+        Goal(f"goal {i}", arm.home + shift, arm.chain.forward(arm.home + shift))
+        for i, shift in enumerate(shifts)
+    )
+
+
+@pytest.fixture
+def make(arm, scripted):
+    """An engaged step towards two goals, the second likelier, and its controller."""
+
+    def make(arbitration=None, period_s=0.05, prior=(0.25, 0.75), rule=BoltzmannBelief, **changes):
+        goals = goals_of(arm, 0.3, -0.2)
+        controller = changes.pop("controller", scripted(MATRIX))
+        belief = rule(
+            np.stack([goal.configuration for goal in goals]), period_s=period_s, prior=np.array(prior)
+        )
+        step = Step(
+            arm, controller, SafetyConfig(), goals=goals, belief=belief, arbitration=arbitration, **changes
+        )
+        step.reset(arm.home)
+        step(NEUTRAL, 0.0, arm.home, 0.0)
+        assert step.enable() is None
+        return step
+
+    return make
+
+
+def run(step, given, state, ticks, age=0.0):
+    records = []
+    for _ in range(ticks):
+        records.append(step(given, age, state, 0.0))
+        state = state + records[-1].command.velocity * step.dt_s
+    return records, state
+
+
+CORNERS = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
+SIGMA_H = np.linalg.norm(CORNERS @ MATRIX, axis=1).max()
+"""The most that a person commands with `MATRIX`, whose actions are convex in the input, rad/s."""
+
+
+def radius_by_hand(arm, state, belief, alpha, sigma_h=SIGMA_H):
+    """Equation 14 about the likeliest of the two goals."""
+    goals = [goal.configuration for goal in goals_of(arm, 0.3, -0.2)]
+    likeliest = int(np.argmax(belief))
+    sigma_r = np.linalg.norm(goals[1 - likeliest] - state)
+    delta = (1 - alpha) / alpha * sigma_h + (1 - belief[likeliest]) * sigma_r
+    return delta / belief[likeliest]
+
+
+class TestAnyBelief:
+    @pytest.mark.parametrize("rule", BELIEFS.values(), ids=BELIEFS.keys())
+    def test_every_rule_believes_in_the_goal_that_is_steered_to(self, make, arm, rule):
+        step = make(FixedAlpha(), rule=rule, prior=(0.5, 0.5))
+        records, _ = run(step, PUSH, arm.home, 150)
+        assert records[0].belief == pytest.approx([0.5, 0.5])
+        assert step.belief[0] > 0.9
+        assert step.belief.sum() == pytest.approx(1.0)
+
+    def test_a_belief_that_is_no_number_stops_the_arm(self, make, arm):
+        class Broken(Belief):
+            def __init__(self, goals, period_s, prior):
+                super().__init__(goals, 0.5, period_s, prior, 0.01)
+
+            def log_likelihood(self, state, actions):
+                raise ArithmeticError("no idea")
+
+        records, _ = run(make(rule=Broken), PUSH, arm.home, 10)
+        assert "no idea" in records[-1].command.stop.reason
+
+
+class TestHelpAtRest:
+    def test_only_where_the_arbitration_acts_at_rest(self, make, arm):
+        for arbitration, moves in ((FixedAlpha(0.5), False), (UNPROMPTED, True), (None, False)):
+            records, state = run(make(arbitration), NEUTRAL, arm.home, 100)
+            assert (not np.array_equal(state, arm.home)) == moves
+            assert (records[-1].alpha > 0) == moves
+            assert records[-1].action_assist.any() == moves
+
+    def test_the_person_commands_nothing_whatever_the_decoder_makes_of_zero(self, make, arm, scripted):
+        class Drifts(scripted):
+            def action(self, z, context, mode):
+                return super().action(z, context, mode) + 0.3
+
+        step = make(UNPROMPTED, controller=Drifts(MATRIX))
+        records, _ = run(step, Input(np.array([0.01, -0.01])), arm.home, 100)
+        assert not np.any([record.action_human for record in records])
+        assert not np.any([record.latent for record in records])
+        # Letting go says nothing about goals.
+        np.testing.assert_array_equal(step.belief, [0.25, 0.75])
+        towards = 0.25 * 0.3 - 0.75 * 0.2
+        np.testing.assert_allclose(records[0].action_assist, np.full(7, towards))
+        wanted = 0.5 * towards
+        assert np.abs(records[40].command.velocity).max() <= abs(wanted) + 1e-12
+
+    def test_it_maintains_the_goal_when_it_is_reached(self, make, arm):
+        goal = arm.home - 0.2
+        _, state = run(make(UNPROMPTED, prior=(0.01, 0.99)), NEUTRAL, arm.home, 1500)
+        assert np.abs(state - goal).max() < 0.02
+
+    def test_a_stale_input_stops_it_all_the_same(self, make, arm):
+        step = make(UNPROMPTED)
+        records, state = run(step, NEUTRAL, arm.home, 60)
+        assert records[-1].command.velocity.any()
+        records, state = run(step, NEUTRAL, state, 40, age=0.2)
+        assert records[0].command.stop is not None
+        assert records[0].alpha == 0.0
+        assert not records[-1].command.velocity.any()
+        # Fresh inputs alone do not start it again.
+        records, _ = run(step, NEUTRAL, state, 40)
+        assert not np.any([record.command.velocity for record in records])
+
+    def test_disengaged_stays_disengaged(self, make, arm):
+        step = make(UNPROMPTED)
+        step.reset(arm.home)
+        records, _ = run(step, NEUTRAL, arm.home, 40)
+        assert not np.any([record.command.velocity for record in records])
+        assert not np.any([record.alpha for record in records])
+        assert step.enable() is None
+        _, state = run(step, NEUTRAL, arm.home, 60)
+        step.stop("The operator pressed Stop.")
+        _, state = run(step, NEUTRAL, state, 40)
+        records, _ = run(step, NEUTRAL, state, 40)
+        assert not np.any([record.command.velocity for record in records])
+
+    def test_an_arbitration_that_fails_at_rest_stops_the_arm(self, make, arm):
+        class Broken(FixedAlpha.__base__):
+            acts_at_rest = True
+
+            def alpha(self, u, belief):
+                return np.nan
+
+        records, _ = run(make(Broken()), NEUTRAL, arm.home, 1)
+        assert "arbitration" in records[0].command.stop.reason
+
+
+class TestBound:
+    @pytest.mark.parametrize("period_s", [0.05, 0.1])
+    def test_the_radius_is_that_of_equation_14_at_the_belief_s_period(self, make, arm, period_s):
+        records, _ = run(make(FixedAlpha(0.4), period_s), Input(np.array([0.2, -0.1])), arm.home, 50)
+        bounds = np.array([record.bound_rad for record in records])
+        assert np.isfinite(bounds).all()
+        ticks = round(100 * period_s)
+        changed = np.flatnonzero(np.diff(bounds)) + 1
+        np.testing.assert_array_equal(changed, np.arange(ticks - 1, 50, ticks))
+        goals = np.stack([goal.configuration for goal in goals_of(arm, 0.3, -0.2)])
+        for tick in (0, *changed):
+            record = records[tick]
+            assert 0 < record.alpha < 0.4
+            expected = radius_by_hand(arm, record.state, record.belief, record.alpha)
+            assert bounds[tick] == pytest.approx(expected)
+            goal = record.belief.argmax()
+            from_bound = radius(SIGMA_H, record.state, record.belief, goals, goal, record.alpha)
+            assert bounds[tick] == pytest.approx(float(from_bound))
+
+    def test_however_often_the_belief_changes_fifty_milliseconds_are_enough(self, make, arm):
+        records, _ = run(make(FixedAlpha(0.4), period_s=0.02), PUSH, arm.home, 60)
+        changed = np.flatnonzero(np.diff([record.bound_rad for record in records])) + 1
+        np.testing.assert_array_equal(np.diff(changed), 6)
+
+    def test_every_number_of_goals_and_any_state(self, arm, scripted):
+        rng = np.random.default_rng(0)
+        for count in (1, 2, 50):
+            states = arm.home + rng.uniform(-0.3, 0.3, (count, 7))
+            goals = [Goal(str(i), q, arm.chain.forward(q)) for i, q in enumerate(states)]
+            prior = rng.dirichlet(np.ones(count))
+            belief = BoltzmannBelief(states, prior=prior, floor=0.0)
+            step = Step(
+                arm,
+                scripted(MATRIX),
+                SafetyConfig(),
+                goals=goals,
+                belief=belief,
+                arbitration=FixedAlpha(0.3),
+            )
+            step(NEUTRAL, 0.0, arm.home, 0.0)
+            step.enable()
+            record = step(PUSH, 0.0, arm.home, 0.0)
+            expected = radius(SIGMA_H, arm.home, prior, states, prior.argmax(), 0.3)
+            assert record.bound_rad == pytest.approx(float(expected))
+
+    def test_a_decoder_without_numbers_at_full_deflection_has_none(self, make, arm, scripted):
+        class Breaks(scripted):
+            def action(self, z, context, mode):
+                return np.where(
+                    np.abs(z).max(axis=-1, keepdims=True) > 0.9, np.nan, super().action(z, context, mode)
+                )
+
+        step = make(FixedAlpha(0.4), controller=Breaks(MATRIX))
+        records, _ = run(step, Input(np.array([0.3, 0.3])), arm.home, 20)
+        assert all(math.isnan(record.bound_rad) for record in records)
+        assert step.stopped is None
+
+    def test_a_controller_that_decodes_one_input_only_stops_the_arm(self, make, arm, scripted):
+        class One(scripted):
+            def action(self, z, context, mode):
+                return (z @ self.matrix).reshape(-1, 7)[0]
+
+        records, _ = run(make(FixedAlpha(0.4), controller=One(MATRIX)), PUSH, arm.home, 1)
+        assert "actions of shape" in records[0].command.stop.reason
+
+    def test_without_help_there_is_none(self, make, arm, scripted):
+        step = make(FixedAlpha(0.4))
+        _, state = run(step, PUSH, arm.home, 20)
+        records, state = run(step, NEUTRAL, state, 30)
+        assert all(math.isnan(record.bound_rad) for record in records)
+        step.stop("enough")
+        assert math.isnan(step(PUSH, 0.0, state, 0.0).bound_rad)
+        for arbitration in (None, FixedAlpha(0.0)):
+            records, _ = run(make(arbitration), PUSH, arm.home, 20)
+            assert all(math.isnan(record.bound_rad) for record in records)
+        alone = Step(arm, scripted(MATRIX), SafetyConfig())
+        alone(NEUTRAL, 0.0, arm.home, 0.0)
+        alone.enable()
+        assert math.isnan(alone(PUSH, 0.0, arm.home, 0.0).bound_rad)
+
+    def test_help_that_begins_anew_has_a_bound_of_its_own(self, make, arm):
+        step = make(FixedAlpha(0.4))
+        run(step, PUSH, arm.home, 3)
+        run(step, NEUTRAL, arm.home, 1)
+        (record,), _ = run(step, PUSH, arm.home + 0.1, 1)
+        expected = radius_by_hand(arm, arm.home + 0.1, record.belief, record.alpha)
+        assert record.bound_rad == pytest.approx(expected)
+
+    def test_help_without_a_belief_has_one_too(self, arm, scripted):
+        goals = goals_of(arm, 0.3, -0.2)
+        step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, arbitration=FixedAlpha(0.4))
+        step(NEUTRAL, 0.0, arm.home, 0.0)
+        step.enable()
+        record = step(PUSH, 0.0, arm.home, 0.0)
+        assert record.bound_rad == pytest.approx(radius_by_hand(arm, arm.home, np.array([0.5, 0.5]), 0.4))
+
+    def test_more_help_and_a_surer_belief_make_it_smaller(self, make, arm):
+        def bound(alpha, sure):
+            return run(make(FixedAlpha(alpha), prior=(1 - sure, sure)), PUSH, arm.home, 1)[0][0].bound_rad
+
+        assert bound(0.2, 0.6) > bound(0.5, 0.6) > bound(0.9, 0.6)
+        assert bound(0.5, 0.6) > bound(0.5, 0.8) > bound(0.5, 0.95)
+
+    def test_the_controller_is_asked_once_a_step(self, make, arm, scripted):
+        class Counts(scripted):
+            calls = 0
+
+            def action(self, z, context, mode):
+                self.calls += 1
+                return super().action(z, context, mode)
+
+        with_help, without = Counts(MATRIX), Counts(MATRIX)
+        push = Input(np.array([0.4, 0.3]))
+        run(make(FixedAlpha(0.4), controller=with_help), push, arm.home, 20)
+        run(make(None, controller=without), push, arm.home, 20)
+        # Help begins with a bound before the belief asks for the first time.
+        assert (without.calls, with_help.calls) == (20, 21)
+
+    def test_it_changes_no_belief_and_no_command(self, make, arm):
+        """Full deflections are decoded beside the belief's inputs: what they say must not mix."""
+        asked = np.random.default_rng(0).uniform(-1, 1, (100, 2))
+        steps = [make(arbitration) for arbitration in (FixedAlpha(1e-9), None)]
+        for u in asked:
+            records = [step(Input(u), 0.0, arm.home, 0.0) for step in steps]
+            np.testing.assert_allclose(records[0].belief, records[1].belief, rtol=1e-12)
+
+    def test_recorded_read_back_and_exported(self, make, arm, tmp_path):
+        from latentarm.demonstrations.dataset import read_dataset
+
+        step, path = make(FixedAlpha(0.4)), tmp_path / "drive.sqlite"
+        records, state = run(step, PUSH, arm.home, 20)
+        records += run(step, NEUTRAL, state, 20)[0]
+        recorder = Recorder(path)
+        recorder.begin_episode(EpisodeHeader("panda", arm.joint_names, 100.0, goals=goals_of(arm, 0.3, -0.2)))
+        for tick, record in enumerate(records):
+            recorder.record(dataclasses.replace(record, time_s=0.01 * tick))
+        recorder.end_episode()
+        recorder.close()
+        bounds = np.array([record.bound_rad for record in records])
+        (episode,) = read_journal(path)
+        np.testing.assert_array_equal([record.bound_rad for record in episode.records], bounds)
+        export_journal(path, tmp_path / "dataset")
+        (found,) = read_dataset(tmp_path / "dataset").episodes
+        np.testing.assert_allclose(found.extras["assist.bound"][:20, 0], bounds[:20], rtol=1e-6)
+        assert (found.extras["assist.bound"][20:] == -1.0).all()
+
+
+class TestChoices:
+    @given(st.integers(1, 3), st.integers(0, 2**32 - 1), st.booleans())
+    def test_whatever_was_asked_before_the_answer_is_the_controller_s(self, scripted, axes, seed, beside):
+        rng = np.random.default_rng(seed)
+        matrix = rng.normal(size=(axes, 7))
+        full = full_deflections(axes)
+        context = Context(np.zeros(7), np.zeros(0))
+        choices = Choices(scripted(matrix), context, 0, full if beside else full[:0])
+        u = rng.uniform(-1, 1, axes)
+        for inputs in (np.stack([u, -u]), rng.uniform(-1, 1, (4, axes)), u[None]):
+            np.testing.assert_allclose(choices(inputs), inputs @ matrix)
+            z, action = choices.chosen(u)
+            np.testing.assert_array_equal(z, u)
+            np.testing.assert_allclose(action, u @ matrix)
+            if beside:
+                largest = np.linalg.norm(full @ matrix, axis=1).max()
+                assert choices.largest_beside() == pytest.approx(largest)
+
+
+@given(st.integers(1, 8))
+def test_full_deflections_are_both_ends_of_every_axis_and_all_corners(input_dim):
+    inputs = full_deflections(input_dim)
+    assert (np.abs(inputs).max(axis=1) == 1.0).all()
+    assert np.unique(inputs, axis=0).shape == inputs.shape
+    np.testing.assert_array_equal(np.sort(inputs, axis=0), np.sort(-inputs, axis=0))
+    for end in (*np.eye(input_dim), *-np.eye(input_dim)):
+        assert (inputs == end).all(axis=1).any()
+    if input_dim <= 6:
+        assert (np.abs(inputs).sum(axis=1) == input_dim).sum() == 2**input_dim

@@ -1,0 +1,77 @@
+"""What studies share; how a study's folder is claimed is tested with each study."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from latentarm.errors import UserError
+from latentarm.experiments.studies.folder import CONFIG, Study, write_json
+from latentarm.experiments.studies.pages import listed, markdown_table, shown
+from latentarm.experiments.studies.statistics import format_p, holm, spreads
+from latentarm.experiments.studies.streams import integer, sequence
+
+STUDY = Study("tides", ("tides.png",))
+
+
+def test_a_folder_says_what_was_asked_for_and_with_what(tmp_path):
+    STUDY.claim(tmp_path / "new", {"study": "tides", "moons": 1})
+    config = json.loads((tmp_path / "new" / CONFIG).read_text())
+    assert config["moons"] == 1
+    assert {"python", "latentarm", "torch"} <= config["versions"].keys()
+
+
+def test_an_earlier_run_makes_room_and_another_study_stays(tmp_path):
+    STUDY.claim(tmp_path, {"study": "tides"})
+    (tmp_path / "tides.png").touch()
+    (tmp_path / "mine.txt").touch()
+    STUDY.claim(tmp_path, {"study": "tides"})
+    assert {path.name for path in tmp_path.iterdir()} == {CONFIG, "mine.txt"}
+    with pytest.raises(UserError, match="no earlier run of this study"):
+        Study("winds", ("tides.png",)).claim(tmp_path, {"study": "winds"})
+
+
+def test_a_figure_that_is_no_number_is_not_written(tmp_path):
+    with pytest.raises(ValueError, match="JSON"):
+        write_json(tmp_path / "file.json", {"mean": float("nan")})
+    assert not list(tmp_path.iterdir())
+
+
+@settings(deadline=None)  # the first call imports the statistics
+@given(st.lists(st.one_of(st.none(), st.floats(0.0, 1.0)), max_size=8))
+def test_holm_by_its_definition(p):
+    tested = sorted(one for one in p if one is not None)
+    stepped = np.maximum.accumulate([(len(tested) - rank) * one for rank, one in enumerate(tested)])
+    expected = {one: min(float(after), 1.0) for one, after in reversed([*zip(tested, stepped, strict=True)])}
+    for before, after in zip(p, holm(p), strict=True):
+        assert after is None if before is None else after == pytest.approx(expected[before], abs=1e-12)
+
+
+def test_rounding_is_no_spread():
+    assert spreads(np.array([1.0, 2.0]))
+    assert not spreads(np.array([1.0]))
+    assert not spreads(np.array([1.0, 1.0 + 1e-12]))
+    assert not spreads(np.zeros(3))
+
+
+def test_small_p_are_not_zero():
+    assert [format_p(p) for p in (None, 0.0, 0.0004, 0.0312)] == ["not tested", "< 0.001", "< 0.001", "0.031"]
+
+
+def test_streams_hang_on_seed_task_and_use_alone():
+    drawn = [sequence(*place).generate_state(2).tolist() for place in ((0, "a", 1), (0, "a", 2), (0, "b", 1))]
+    assert drawn[0] == sequence(0, "a", 1).generate_state(2).tolist()
+    assert len({tuple(one) for one in drawn}) == 3
+    assert 0 <= integer(sequence(3, "a", 1)) < 2**30
+
+
+def test_parts_of_a_page():
+    assert markdown_table(["a", "b"], [["1", "2"]]) == "| a | b |\n| --- | ---: |\n| 1 | 2 |\n"
+    assert shown(["two_cups.png"]) == ["![two cups, simulated](two_cups.png)\n"]
+    assert [listed(names) for names in (["a"], ["a", "b", "a"], ["a", "b", "c"])] == [
+        "a",
+        "a and b",
+        "a, b and c",
+    ]
