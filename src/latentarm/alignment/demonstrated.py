@@ -56,9 +56,11 @@ def _motions(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """All motions of an episode: states before and after, and beliefs before."""
     first, stop = moving_range(episode.state, episode.timestamp)
+    if stop == first:
+        first, stop = 0, 1  # one sample, from which no motion leads
     state, time = episode.state[first:stop], episode.timestamp[first:stop]
     # Timestamps such as 0.1 k carry rounding: a motion that ends with the last sample counts.
-    starts = np.flatnonzero(time + duration_s <= time[-1] + 1e-6) if len(time) else np.empty(0, np.int64)
+    starts = np.flatnonzero(time + duration_s <= time[-1] + 1e-6)
     later = time[starts] + duration_s
     ends = [np.interp(later, time, joint) for joint in state.T]
     belief = np.empty((len(starts), 0))
