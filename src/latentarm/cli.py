@@ -269,6 +269,47 @@ def evaluate(
 
 
 @app.command
+def align(
+    run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")],
+    name: Annotated[str, arg(metavar="NAME", help="Of the person; `drive --profile` takes it.")],
+    answers: Annotated[int, arg(help="Questions to be answered, at most.")] = 10,
+    seed_index: Annotated[int, arg(help="Which of the run's seeds decodes, from 0.")] = 0,
+    simulated: Annotated[
+        bool, arg(help="Let a simulated person answer, for whom the stick's axes are those of the base.")
+    ] = False,
+    demonstrations: MovedDataset = None,
+    seed: Seed = 0,
+    json: Json = False,
+) -> int:
+    """Ask what a person means by their input, and keep it as their profile (section 6 of the paper).
+
+    Shows motions and asks for each how they would push the stick for it: numbers from -1 to 1, or arrow keys.
+    For example: latentarm align runs/pour-cae --name ada
+    """
+    from latentarm.experiments.aligning import AlignConfig, align_run
+
+    config = AlignConfig(
+        run=run,
+        name=name,
+        answers=answers,
+        seed_index=seed_index,
+        simulated=simulated,
+        seed=seed,
+        dataset=demonstrations,
+        progress=not json and sys.stderr.isatty(),
+    )
+    try:
+        rows = align_run(config, lambda sentence: _say(sentence, json))
+    except KeyboardInterrupt:
+        print("\nNothing is saved.", file=sys.stderr)
+        raise
+    _show(rows, json)
+    whose = "simulated person's profile" if simulated else "profile"
+    _say(f"The {whose} is {run}/profiles/{name}/; next: latentarm drive {run} --profile {name}", json)
+    return 0
+
+
+@app.command
 def drive(
     run: Annotated[
         Positional[Path | None], arg(metavar="RUN", help="A trained run; without one, mode switching drives.")
@@ -286,6 +327,9 @@ def drive(
         arg(help="A robot's name or the path of an MJCF or URDF file; that of the run by default."),
     ] = None,
     end_effector: EndEffector = None,
+    profile: Annotated[
+        str | None, arg(metavar="NAME", help="A person that `latentarm align` has asked; z = u without.")
+    ] = None,
     drives: Annotated[int, arg(help="Drives for each goal.")] = 3,
     beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0,
     belief: Annotated[
@@ -327,6 +371,7 @@ def drive(
             task=task,
             robot=robot,
             end_effector=end_effector,
+            profile=profile,
             drives=drives,
             beta=beta,
             belief=belief,

@@ -15,7 +15,18 @@ from latentarm.experiments.shared_autonomy import preset as shared_autonomy
 from latentarm.experiments.shared_autonomy.cell import TASKS
 from latentarm.tasks.planar.catalogue import MOTIONS
 
-COMMANDS = ["demo", "import", "inspect", "train", "evaluate", "drive", "reproduce", "bench", "robots"]
+COMMANDS = [
+    "demo",
+    "import",
+    "inspect",
+    "train",
+    "evaluate",
+    "align",
+    "drive",
+    "reproduce",
+    "bench",
+    "robots",
+]
 STUDIES = ["properties", "shared-autonomy"]
 HEAVY = {"torch", "mujoco", "matplotlib", "scipy", "pyarrow", "sklearn", "joblib", "pandas"}
 Run = Callable[..., tuple[int, str, str]]

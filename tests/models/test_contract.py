@@ -5,6 +5,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+import torch
 
 from latentarm.errors import UserError
 from latentarm.models.catalogue import MODELS, load_model
@@ -103,6 +104,34 @@ def test_the_numpy_runtime_equals_the_model_at_any_size(name, demonstrations, la
     )
 
 
+@pytest.mark.parametrize("context_kind", ["state", "state_belief"])
+def test_the_torch_decoder_equals_the_model_and_its_gradient_is_the_slope(name, demonstrations, context_kind):
+    model = MODELS[name](**SMALL, context=context_kind).fit(demonstrations)
+    rng = np.random.default_rng(2)
+    width = 4 if context_kind == "state" else 6
+    z, context = rng.uniform(-1, 1, (3, 5, 2)), rng.uniform(-1, 1, (3, 5, width))
+    for seed in range(2):
+        decoder = model.torch_decoder(seed, torch.float64)
+        assert (decoder.context, decoder.latent_dim) == (context_kind, 2)
+        assert (decoder.context_dim, decoder.action_dim) == (width, 4)
+
+        def action(z, context, decoder=decoder):
+            return decoder.decode(z, decoder.observe(context))
+
+        inputs = [torch.from_numpy(values).requires_grad_() for values in (z, context)]
+        expected = model.decoder(seed).decode(z, context)
+        np.testing.assert_allclose(action(*inputs).detach().numpy(), expected, rtol=0, atol=1e-10)
+        assert torch.autograd.gradcheck(action, inputs, atol=1e-5)
+
+
+def test_what_the_torch_decoder_sees_begins_with_the_normalised_context(model, samples):
+    context, _ = samples
+    seen = model.torch_decoder(0, torch.float64).observe(torch.from_numpy(context))[..., :4].numpy()
+    tensors = model.trained_.tensors
+    expected = (context - tensors["context.centre"]) / tensors["context.scale"]
+    np.testing.assert_allclose(seen, expected, rtol=0, atol=1e-12)
+
+
 def test_one_pair_alone_equals_the_same_pair_in_a_batch(model, samples):
     context, z = samples
     action = z @ np.ones((2, 4))
@@ -149,6 +178,7 @@ def test_unfitted_says_so(name, samples, tmp_path):
         lambda: fresh.decode(z, context),
         lambda: fresh.encode(context, context),
         fresh.decoder,
+        fresh.torch_decoder,
         lambda: fresh.save(tmp_path),
         lambda: fresh.collapsed_,
     ):
@@ -181,7 +211,7 @@ def test_a_wrong_action_is_refused(model):
 
 def test_a_seed_that_is_not_there_is_refused(model, tmp_path):
     model.save(tmp_path)
-    for use in (model.decoder, lambda seed: load_decoder(tmp_path, seed)):
+    for use in (model.decoder, model.torch_decoder, lambda seed: load_decoder(tmp_path, seed)):
         with pytest.raises(UserError, match="no seed index 2"):
             use(2)
 

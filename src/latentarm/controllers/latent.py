@@ -1,22 +1,14 @@
 """Steering by learned latent actions."""
 
-from collections.abc import Callable
 from typing import final
 
 import numpy as np
 
+from latentarm.alignment.contract import Alignment, identity
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.models.decoder import Decoder
 from latentarm.types import Context, FloatArray
-
-Alignment = Callable[[FloatArray, FloatArray], FloatArray]
-"""``z = f(u, c)`` (equation 4): inputs (..., d) and a context vector (c,) to latent actions (..., d)."""
-
-
-def identity(u: FloatArray, context: FloatArray) -> FloatArray:
-    """``z = u``: the alignment before anything is known about the person."""
-    return u
 
 
 @final

@@ -8,6 +8,8 @@ from typing import Literal, cast
 import numpy as np
 from joblib import Parallel, delayed
 
+from latentarm.alignment.contract import identity
+from latentarm.alignment.profile import load_profile
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.control.controller import Controller
@@ -58,6 +60,7 @@ class DriveConfig:
         task: what is to be done; what the run was trained for where None.
         robot: a robot's name or model file; that of the run where None.
         end_effector: site, body or link of a model file.
+        profile: name of the person whose alignment stands between input and latent action; z = u where None.
         drives: for each goal.
         beta: rationality of the simulated operator.
         belief: how inputs change the robot's belief over the goals.
@@ -80,6 +83,7 @@ class DriveConfig:
     task: TaskName | None = None
     robot: str | None = None
     end_effector: str | None = None
+    profile: str | None = None
     drives: int = 3
     beta: float = BoltzmannConfig.beta
     belief: BeliefName = "boltzmann"
@@ -97,6 +101,10 @@ class DriveConfig:
         check_positive("rationality beta", self.beta)
         if self.time_limit_s is not None:
             check_positive("time limit in s", self.time_limit_s)
+        if self.controller == "end_effector" and self.profile is not None:
+            raise UserError(
+                "A profile aligns latent actions, and mode switching has none: leave one of them out."
+            )
         if self.controller != "latent_assist":
             for name in ("arbitration", "alpha"):
                 if getattr(self, name) is not None:
@@ -137,6 +145,7 @@ def drive_run(config: DriveConfig) -> list[Row]:
     rows = drive_rows(subject, [trace.figures for trace in traces])
     about = {
         "run": str(config.run),
+        "profile": config.profile,
         "seed": config.seed,
         "beta": config.beta,
         "operator": "simulated",
@@ -268,10 +277,11 @@ def _controller(config: DriveConfig, task: Task) -> Controller:
         return EndEffectorController(task.robot)
     if config.run is None:
         raise UserError("Latent actions need a trained run: name one, as in `latentarm drive RUN`.")
-    decoder = load_decoder(config.run)
+    profile = None if config.profile is None else load_profile(config.run, config.profile)
+    decoder = load_decoder(config.run, 0 if profile is None else profile.seed_index)
     if decoder.action_dim != task.robot.dof:
         raise UserError(
             f"{config.run} was trained for {decoder.action_dim} joints and the robot {task.robot.name} has"
             f" {task.robot.dof}."
         )
-    return LatentController(decoder)
+    return LatentController(decoder, identity if profile is None else profile)

@@ -8,12 +8,11 @@ import numpy as np
 
 from latentarm.models.layout import DecoderForm
 from latentarm.models.normaliser import Normaliser
+from latentarm.models.numpy_networks import Layer, halve_hidden, network_output, propagate
 from latentarm.models.saving import read_model
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.trained import TrainedModel
 from latentarm.types import FloatArray
-
-Layer = tuple[FloatArray, FloatArray]
 
 NORM_FLOOR: Final = 1e-12
 """Added under the root of a squared column length, so that a column of zeros divides by a number."""
@@ -101,10 +100,10 @@ class _Latent(_Form):
     def __init__(self, trained: TrainedModel, seed: int) -> None:
         layers = _scale_output(_layers(trained, seed), trained.actions.scale)
         weight, bias = _scale_latent(layers[0], trained, seed)
-        (self._weight, self._bias), *self._rest = _halve_hidden([(weight, bias), *layers[1:]])
+        (self._weight, self._bias), *self._rest = halve_hidden([(weight, bias), *layers[1:]])
 
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        action = _propagate(z @ self._weight + self._bias, self._rest)
+        action = propagate(z @ self._weight + self._bias, self._rest)
         if context.ndim == 1:
             return action
         shape = np.broadcast_shapes(action.shape[:-1], context.shape[:-1])
@@ -123,12 +122,12 @@ class _LatentContext(_Form):
         from_latent, bias = _scale_latent((weight[:d], bias), trained, seed)
         from_context, bias = _scale_context((weight[d:], bias), trained)
         weight = np.concatenate([from_latent, from_context])
-        (weight, self._bias), *self._rest = _halve_hidden([(weight, bias), *layers[1:]])
+        (weight, self._bias), *self._rest = halve_hidden([(weight, bias), *layers[1:]])
         self._from_latent, self._from_context = weight[:d].copy(), weight[d:].copy()
 
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
         first = z @ self._from_latent + (context @ self._from_context + self._bias)
-        return _propagate(first, self._rest)
+        return propagate(first, self._rest)
 
 
 @final
@@ -138,13 +137,13 @@ class _Matrix(_Form):
     def __init__(self, trained: TrainedModel, seed: int) -> None:
         layers = _layers(trained, seed)
         first = _scale_context(layers[0], trained)
-        (self._weight, self._bias), *self._rest = _halve_hidden([first, *layers[1:]])
+        (self._weight, self._bias), *self._rest = halve_hidden([first, *layers[1:]])
         joints = trained.dimensions.action
         self._parts = [slice(axis * joints, (axis + 1) * joints) for axis in range(trained.dimensions.latent)]
         self._gain: FloatArray = trained.latents.scale[seed, 0] * trained.actions.scale
 
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        raw = _propagate(context @ self._weight + self._bias, self._rest)
+        raw = propagate(context @ self._weight + self._bias, self._rest)
         columns = _orthonormal([raw[..., part] for part in self._parts])
         scaled = z * self._gain
         action = scaled[..., :1] * columns[0]
@@ -159,8 +158,8 @@ class _Isometry(_Form):
 
     def __init__(self, trained: TrainedModel, seed: int) -> None:
         self._contexts = ToolContexts.of_tensors(trained.tensors)
-        self._twist = _halve_hidden(_layers(trained, seed, "decoder"))
-        self._posture = _halve_hidden(_layers(trained, seed, "posture"))
+        self._twist = halve_hidden(_layers(trained, seed, "decoder"))
+        self._posture = halve_hidden(_layers(trained, seed, "posture"))
         ((weight, bias),) = _layers(trained, seed, "gain")
         self._saturation = float(np.logaddexp(0.0, weight[0, 0] + bias[0]))
         self._speed = float(trained.actions.scale[0] / np.tanh(self._saturation))
@@ -185,8 +184,8 @@ class _Isometry(_Form):
         seen = observed[..., : sizes.seen]
         jacobian = observed[..., sizes.jacobian].reshape(*lead, sizes.twists, sizes.joints)
         lift = observed[..., sizes.lift].reshape(*lead, sizes.joints, sizes.twists)
-        twist = _network(seen, self._twist).reshape(*lead, 2 * d, sizes.twists)
-        posture = _network(seen, self._posture).reshape(*lead, 2 * d, sizes.joints)
+        twist = network_output(seen, self._twist).reshape(*lead, 2 * d, sizes.twists)
+        posture = network_output(seen, self._posture).reshape(*lead, 2 * d, sizes.joints)
         columns = lift @ twist.mT + posture.mT
         straight, straight_twist = columns[..., :d], jacobian @ columns[..., :d]
 
@@ -219,20 +218,6 @@ _FORMS: Final[dict[DecoderForm, type[_Form]]] = {
 }
 
 
-def _propagate(values: FloatArray, layers: list[Layer]) -> FloatArray:
-    """Through the layers after the first; ``values`` are the first one's halved pre-activations.
-
-    SiLU is x sigmoid(x) = h + h tanh(h) with h = x / 2: the halving is in the weights.
-    """
-    for weight, bias in layers:
-        curved = np.tanh(values)
-        curved *= values
-        curved += values
-        values = curved @ weight
-        values += bias
-    return values
-
-
 def _orthonormal(columns: list[FloatArray]) -> list[FloatArray]:
     """Gram-Schmidt over d columns, each (..., m)."""
     done: list[FloatArray] = []
@@ -242,12 +227,6 @@ def _orthonormal(columns: list[FloatArray]) -> list[FloatArray]:
             column = column - np.vecdot(column, other)[..., None] * other
         done.append(column / np.sqrt(np.vecdot(column, column) + NORM_FLOOR)[..., None])
     return done
-
-
-def _network(values: FloatArray, layers: list[Layer]) -> FloatArray:
-    """Through all layers, whose weights `_halve_hidden` gave."""
-    (weight, bias), *rest = layers
-    return _propagate(values @ weight + bias, rest)
 
 
 def _layers(trained: TrainedModel, seed: int, network: str = "decoder") -> list[Layer]:
@@ -279,8 +258,3 @@ def _scale_context(layer: Layer, trained: TrainedModel) -> Layer:
     contexts = Normaliser(trained.tensors["context.centre"], trained.tensors["context.scale"])
     scaled = weight / contexts.scale[:, None]
     return scaled, bias - contexts.centre @ scaled
-
-
-def _halve_hidden(layers: list[Layer]) -> list[Layer]:
-    """Fold SiLU's halving into every layer that an activation follows."""
-    return [*((weight / 2, bias / 2) for weight, bias in layers[:-1]), layers[-1]]

@@ -8,6 +8,8 @@ from typing import ClassVar, Final, Literal, Self
 from warnings import warn
 
 import numpy as np
+import torch
+from torch import Tensor
 
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import split_episodes
@@ -16,6 +18,7 @@ from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import TrainingData
 from latentarm.models.decoder import Decoder
 from latentarm.models.layout import LAYOUTS, Dimensions
+from latentarm.models.networks import Networks
 from latentarm.models.normaliser import Normaliser, action_normaliser, context_normaliser
 from latentarm.models.parameters import check_held_out, check_parameters, check_rows
 from latentarm.models.saving import write_model
@@ -30,6 +33,7 @@ from latentarm.models.scaling import (
 )
 from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.tool_contexts import ToolContexts
+from latentarm.models.torch_decoder import TorchDecoder
 from latentarm.models.trained import TrainedModel, TrainingSummary
 from latentarm.models.training import TrainingResult
 from latentarm.robots.catalogue import load_robot
@@ -118,6 +122,10 @@ class LatentActionModel(ABC):
     @abstractmethod
     def _decode(self, weights: Weights, latent: FloatArray, context: FloatArray) -> FloatArray:
         """phi: latents as trained (S, N, d), normalised contexts (N, c) to normalised actions (S, N, m)."""
+
+    @abstractmethod
+    def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
+        """As `_decode`, in torch: (S, B, d) and (S, B, c) to (S, B, m)."""
 
     def fit(
         self,
@@ -222,6 +230,18 @@ class LatentActionModel(ABC):
             UserError: the model is not fitted, or has no such seed.
         """
         return Decoder(self._fitted(), seed)
+
+    def torch_decoder(self, seed: int = 0, dtype: torch.dtype = torch.float32) -> TorchDecoder:
+        """The decoder of one seed in torch, differentiable with respect to z and c.
+
+        Args:
+            seed: index of the seed, 0..S-1.
+            dtype: to compute in.
+
+        Raises:
+            UserError: the model is not fitted, or has no such seed.
+        """
+        return TorchDecoder(self._fitted(), self._action, seed, dtype)
 
     def save(self, folder: Path, *, run: Mapping[str, object] | None = None) -> None:
         """Write ``model.safetensors`` and ``config.json``.

@@ -44,10 +44,6 @@ class NeuralModel(LatentActionModel, ABC):
     def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
         """psi: (S, B, c) and (S, B, m) to (S, B, d); the mean where psi is a distribution."""
 
-    @abstractmethod
-    def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
-        """phi: (S, B, d) and (S, B, c) to (S, B, m)."""
-
     @final
     def _learn(
         self,

@@ -9,6 +9,20 @@ from torch import Tensor
 FIRST_DECAY: Final = 0.9
 SECOND_DECAY: Final = 0.999
 EPSILON: Final = 1e-8
+FINAL_RATE: Final = 0.01
+"""The learning rate ends at this share of where it began."""
+
+
+def falling_rate(initial: float, done: int, total: int) -> float:
+    """Half a cosine from the initial learning rate down to `FINAL_RATE` of it.
+
+    Args:
+        initial: the learning rate at the start.
+        done: steps or epochs done.
+        total: of how many.
+    """
+    fall = (1 + math.cos(math.pi * done / total)) / 2
+    return initial * (FINAL_RATE + (1 - FINAL_RATE) * fall)
 
 
 @final

@@ -6,11 +6,13 @@ from typing import ClassVar, final
 
 import numpy as np
 from sklearn import decomposition
+from torch import Tensor
 
 from latentarm.errors import UserError
 from latentarm.models.batches import TrainingData
 from latentarm.models.layout import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
+from latentarm.models.networks import Networks, mlp
 from latentarm.models.term import ScaledTerm
 from latentarm.models.training import TrainingResult
 from latentarm.types import FloatArray
@@ -63,3 +65,6 @@ class PCA(LatentActionModel):
 
     def _decode(self, weights: Weights, latent: FloatArray, context: FloatArray) -> FloatArray:
         return latent @ weights["decoder.0.weight"] + weights["decoder.0.bias"]
+
+    def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
+        return mlp(networks["decoder"], latent)

@@ -126,12 +126,21 @@ def read_model(folder: Path) -> TrainedModel:
         history=training.array("history", (None, seeds), gaps=True),
         collapsed=section.array("collapsed", (seeds, dimensions.latent)).astype(np.bool_),
     )
-    tensors = _read_tensors(folder / WEIGHTS_NAME, shapes, section.text("sha256"))
+    tensors = read_tensors(folder / WEIGHTS_NAME, shapes, section.text("sha256"))
     return TrainedModel(kind, parameters.plain(), dimensions, tensors, summary)
 
 
-def _read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[str, FloatArray]:
-    """The tensors, after every check that can be made on them."""
+def read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[str, FloatArray]:
+    """The tensors of a safetensors file, after every check that can be made on them.
+
+    Args:
+        path: the file; the ``config.json`` beside it says what must be in it.
+        shapes: of every tensor, by name.
+        sha256: of the whole file.
+
+    Raises:
+        UserError: the file is missing, or not what its ``config.json`` says.
+    """
     payload = 8 * sum(int(np.prod(shape, dtype=object)) for shape in shapes.values())
     if payload > WEIGHTS_LIMIT:
         raise UserError(

@@ -164,7 +164,7 @@ class ToolContexts:
         """
         sizes = self.sizes
         places, jacobian = _places(self.chain, context[..., : sizes.joints])
-        jacobian = jacobian * self._twist_weight[:, None]
+        jacobian = jacobian * self.twist_weight[:, None]
         metric = jacobian.mT @ jacobian + self.damping * np.eye(sizes.joints)
         lift = np.asarray(np.linalg.solve(metric, jacobian.mT), dtype=np.float64)
         lead = context.shape[:-1]
@@ -191,7 +191,7 @@ class ToolContexts:
         return Normaliser(centre=np.zeros(1), scale=np.quantile(speed, SPAN_QUANTILE).reshape(1))
 
     @cached_property
-    def _twist_weight(self) -> FloatArray:
+    def twist_weight(self) -> FloatArray:
         """(6 k,), the square root of W over k."""
         one = np.concatenate([np.ones(3), np.full(3, self.rotation_weight)])
         weight: FloatArray = np.tile(one, self.sizes.tools) / math.sqrt(self.sizes.tools)

@@ -19,11 +19,8 @@ from latentarm.models.batches import Batch, Batches, TrainingData, seed_generato
 from latentarm.models.checkpoint import TrainingState, fingerprint, read_checkpoint, write_checkpoint
 from latentarm.models.layout import Shape
 from latentarm.models.networks import FlatNetworks, Networks
-from latentarm.models.optimiser import FlatAdam
+from latentarm.models.optimiser import FlatAdam, falling_rate
 from latentarm.types import FloatArray, IntArray
-
-FINAL_RATE: Final = 0.01
-"""The learning rate ends at this share of where it began."""
 
 THREADED_WORK: Final = 40_000
 """Hidden units computed per layer and step from which a second thread costs less than it saves."""
@@ -116,12 +113,12 @@ def train(
     batches = Batches(data, seeds, config.batch_size, noise_dim, device)
     written = monotonic()
     with (
-        _threads(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())),
-        _bar(progress) as bar,
+        threads_for(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())),
+        progress_bar(progress, "epochs") as bar,
     ):
         task = bar.add_task("training", total=config.epochs, completed=state.epoch, loss="")
         while state.epoch < config.epochs and not state.stalled(config.patience).all():
-            rate = _learning_rate(config, state.epoch)
+            rate = falling_rate(config.learning_rate, state.epoch, config.epochs)
             for batch in batches.epoch(state.epoch + 1):
                 networks.fill_gradient(objective(networks.networks, batch).sum())
                 adam.step(networks.values, networks.gradient, rate)
@@ -148,15 +145,13 @@ def train(
     )
 
 
-def _learning_rate(config: TrainingConfig, epoch: int) -> float:
-    """Half a cosine from ``learning_rate`` down to `FINAL_RATE` of it."""
-    fall = (1 + math.cos(math.pi * epoch / config.epochs)) / 2
-    return config.learning_rate * (FINAL_RATE + (1 - FINAL_RATE) * fall)
-
-
 @contextmanager
-def _threads(work: int) -> Generator[None]:
-    """One thread for small steps, where handing over costs more than it saves; then as it was before."""
+def threads_for(work: int) -> Generator[None]:
+    """One thread for small steps, where handing over costs more than it saves; then as it was before.
+
+    Args:
+        work: hidden units computed per layer and step.
+    """
     before = torch.get_num_threads()
     torch.set_num_threads(before if work >= THREADED_WORK else 1)
     try:
@@ -165,12 +160,18 @@ def _threads(work: int) -> Generator[None]:
         torch.set_num_threads(before)
 
 
-def _bar(shown: bool) -> Progress:
+def progress_bar(shown: bool, unit: str) -> Progress:
+    """A bar on standard error that goes away when it is done, with a field ``loss`` for a few words.
+
+    Args:
+        shown: whether there is one at all.
+        unit: what is counted.
+    """
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
-        TextColumn("epochs"),
+        TextColumn(unit),
         TextColumn("{task.fields[loss]}"),
         TimeRemainingColumn(),
         console=Console(stderr=True),

@@ -1,0 +1,1 @@
+"""What a person means by their input: the alignment z = f(u, c), its priors, and whom to ask what."""

@@ -1,0 +1,48 @@
+"""Manual Align: the baseline of section 8.3 that needs no training."""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from latentarm.alignment.answers import Answers
+from latentarm.models.model import LatentActionModel
+from latentarm.types import FloatArray
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class AffineAlignment:
+    """``z = A u + b``, the same in every context.
+
+    Attributes:
+        matrix: (d, d), A.
+        offset: (d,), b.
+    """
+
+    matrix: FloatArray
+    offset: FloatArray
+
+    def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
+        """Latent actions (..., d) of inputs (..., d); the context does not count."""
+        return u @ self.matrix.T + self.offset
+
+
+def fit_affine(model: LatentActionModel, answers: Answers, seed_index: int = 0) -> AffineAlignment:
+    """The affine map that takes the answers nearest to what the encoder makes of the motions.
+
+    Of several that are equally near, as with fewer answers than d + 1, the smallest.
+
+    Args:
+        model: a fitted model.
+        answers: motions, and the inputs that were meant for them.
+        seed_index: which of the model's seeds encodes.
+
+    Raises:
+        UserError: the model is not fitted, has no such seed, or the answers do not fit it.
+    """
+    model.decoder(seed_index)  # refuses a seed that is not there
+    z = model.encode(answers.motions.context, answers.motions.action)[seed_index]
+    inputs = np.concatenate([answers.u, np.ones((len(answers), 1))], axis=1)
+    solution = np.linalg.lstsq(inputs, z, rcond=None)[0]
+    return AffineAlignment(matrix=solution[:-1].T, offset=solution[-1])

@@ -1,0 +1,97 @@
+"""Motions that a person is shown, and the inputs by which they would ask for them."""
+
+from dataclasses import dataclass, field
+from typing import Self, final
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.types import FloatArray, IntArray
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Motions:
+    """N motions ``(s, s*)`` of one arm.
+
+    Attributes:
+        start: (N, n), states before, rad.
+        end: (N, n), states ``s*`` after, rad.
+        duration_s: how long each takes, s.
+        belief: (N, G), beliefs over goals at the start, for decoders that look at them; (N, 0) without.
+
+    Raises:
+        UserError: sizes do not fit each other, there is no motion, or a number is not finite.
+    """
+
+    start: FloatArray
+    end: FloatArray
+    duration_s: float
+    belief: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+
+    def __post_init__(self) -> None:
+        if self.start.ndim != 2 or len(self.start) == 0 or self.start.shape != self.end.shape:
+            raise UserError(
+                f"Motions begin and end at states of one arm, N times n numbers, not {self.start.shape} and"
+                f" {self.end.shape}."
+            )
+        if self.belief.size == 0:
+            object.__setattr__(self, "belief", np.empty((len(self.start), 0)))
+        if self.belief.ndim != 2 or len(self.belief) != len(self.start):
+            raise UserError(f"{len(self.start)} motions have as many beliefs, not {self.belief.shape}.")
+        if not all(np.isfinite(values).all() for values in (self.start, self.end, self.belief)):
+            raise UserError("A motion holds a NaN or an infinity.")
+        if not 0 < self.duration_s < np.inf:
+            raise UserError(f"A motion takes a positive time, not {self.duration_s:g} s.")
+
+    def __len__(self) -> int:
+        """N."""
+        return len(self.start)
+
+    def __getitem__(self, rows: IntArray) -> Self:
+        """The motions (K,) at some rows."""
+        return type(self)(self.start[rows], self.end[rows], self.duration_s, self.belief[rows])
+
+    @property
+    def context(self) -> FloatArray:
+        """(N, c), contexts at the start: the state, and the belief where there is one."""
+        return np.concatenate([self.start, self.belief], axis=1)
+
+    @property
+    def action(self) -> FloatArray:
+        """(N, n), the constant joint velocities from start to end, rad/s."""
+        return (self.end - self.start) / self.duration_s
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """What a person said: the input ``u`` by which they would ask for each of N motions.
+
+    Attributes:
+        motions: N motions.
+        u: (N, d), each entry in [-1, 1].
+
+    Raises:
+        UserError: sizes do not fit each other, or an input is none.
+    """
+
+    motions: Motions
+    u: FloatArray
+
+    def __post_init__(self) -> None:
+        if self.u.ndim != 2 or len(self.u) != len(self.motions) or self.u.shape[1] == 0:
+            raise UserError(f"{len(self.motions)} motions have as many answers, not {self.u.shape}.")
+        # Written so that a value that is not a number fails too.
+        wrong = ~((self.u >= -1) & (self.u <= 1)).all(axis=1)
+        if wrong.any():
+            row = int(wrong.argmax())
+            raise UserError(f"Answer {row} is {self.u[row].tolist()}; each number must be in [-1, 1].")
+
+    def __len__(self) -> int:
+        """N."""
+        return len(self.u)
+
+    def __getitem__(self, rows: IntArray) -> Self:
+        """The answers (K,) at some rows."""
+        return type(self)(self.motions[rows], self.u[rows])

@@ -1,0 +1,71 @@
+"""Motions to ask about, out of the demonstrations."""
+
+from typing import Final, Literal
+
+import numpy as np
+
+from latentarm.alignment.answers import Motions
+from latentarm.alignment.error import lengths
+from latentarm.errors import UserError
+from latentarm.kinematics.chain import Chain
+from latentarm.kinematics.stillness import moving_range
+from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray
+
+DURATION_S: Final = 0.5
+"""How long a shown motion takes, s: long enough to be seen, short enough to be one push of the stick."""
+
+
+def demonstrated_motions(
+    demonstrations: Demonstrations,
+    count: int,
+    rng: np.random.Generator,
+    *,
+    context: Literal["state", "state_belief"] = "state",
+    duration_s: float = DURATION_S,
+) -> Motions:
+    """Motions that were demonstrated, drawn at random from all samples while an arm moves.
+
+    A motion ends where the demonstration was ``duration_s`` later, between samples if need be.
+
+    Args:
+        demonstrations: whole episodes.
+        count: N; all that there are where there are fewer.
+        rng: decides which.
+        context: whether a belief belongs to what the decoder sees.
+        duration_s: how long a motion takes, s.
+
+    Raises:
+        UserError: no motion is that long, or a belief is asked for and missing.
+    """
+    every = [_motions(episode, duration_s, context) for episode in demonstrations.episodes]
+    start, end, belief = (np.concatenate(parts) for parts in zip(*every, strict=True))
+    if not len(start):
+        raise UserError(f"No demonstration moves for {duration_s:g} s: there is no motion to ask about.")
+    rows = rng.permutation(len(start))[:count]
+    return Motions(start[rows], end[rows], duration_s, belief[rows])
+
+
+def noticeable(motions: Motions, chain: Chain) -> BoolArray:
+    """Which motions (N,) a person can tell from standing still: at least half as long as half of all are."""
+    length = lengths(chain, motions)
+    return length >= 0.5 * np.median(length)
+
+
+def _motions(
+    episode: Episode, duration_s: float, context: Literal["state", "state_belief"]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """All motions of an episode: states before and after, and beliefs before."""
+    first, stop = moving_range(episode.state, episode.timestamp)
+    if stop == first:
+        first, stop = 0, 1  # one sample, from which no motion leads
+    state, time = episode.state[first:stop], episode.timestamp[first:stop]
+    # Timestamps such as 0.1 k carry rounding: a motion that ends with the last sample counts.
+    starts = np.flatnonzero(time + duration_s <= time[-1] + 1e-6)
+    later = time[starts] + duration_s
+    ends = [np.interp(later, time, joint) for joint in state.T]
+    belief = np.empty((len(starts), 0))
+    if context == "state_belief":
+        if "belief" not in episode.extras:
+            raise UserError("The model's context holds a belief, and the demonstrations have none.")
+        belief = episode.extras["belief"][first:stop][starts]
+    return state[starts], np.stack(ends, axis=-1), belief

@@ -1,0 +1,55 @@
+"""How far an alignment misses what a person meant."""
+
+import numpy as np
+
+from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.contract import Alignment
+from latentarm.alignment.poses import pose_vectors
+from latentarm.kinematics.chain import Chain
+from latentarm.models.decoder import Decoder
+from latentarm.types import FloatArray
+
+
+def outcome(
+    alignment: Alignment, decoder: Decoder, chain: Chain, motions: Motions, u: FloatArray
+) -> FloatArray:
+    """Poses ``Psi(T(s, u))`` that inputs lead to from the starts of motions, in as much time.
+
+    Args:
+        alignment: f.
+        decoder: phi.
+        chain: the arm.
+        motions: N motions; only their starts count.
+        u: (..., N, d).
+
+    Returns:
+        (..., N, 12 k), see `pose_vectors`, m.
+    """
+    context = motions.context
+    action = decoder.decode(alignment(u, context), context)
+    return pose_vectors(chain, motions.start + motions.duration_s * action)
+
+
+def lengths(chain: Chain, motions: Motions) -> FloatArray:
+    """How far each motion takes the tools, (N,), m; turns are counted, see `pose_vectors`."""
+    step = pose_vectors(chain, motions.end) - pose_vectors(chain, motions.start)
+    return np.linalg.norm(step, axis=-1)
+
+
+def relative_alignment_error(alignment: Alignment, decoder: Decoder, chain: Chain, answers: Answers) -> float:
+    """``‖x* - x^(t+1)‖^2 / ‖x* - x^t‖^2`` (section 8.3), each averaged over all motions.
+
+    A mean of ratios would be that of the few motions that hardly move.
+
+    Args:
+        alignment: f.
+        decoder: phi.
+        chain: the arm.
+        answers: motions, and the inputs that were meant for them.
+
+    Returns:
+        0 where every motion is met, 1 for an arm that does not move.
+    """
+    reached = outcome(alignment, decoder, chain, answers.motions, answers.u)
+    missed = reached - pose_vectors(chain, answers.motions.end)
+    return float(np.square(missed).sum() / np.square(lengths(chain, answers.motions)).sum())

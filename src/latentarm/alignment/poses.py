@@ -1,0 +1,44 @@
+"""Poses as vectors, so that how far apart two poses are is how far apart two points are."""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from latentarm.kinematics.chain import Chain
+from latentarm.types import FloatArray
+
+ROTATION_WEIGHT_M: Final = 0.2
+"""What a turn of a tool by 1 rad counts beside a motion by 1 m: as much as the motion of a point of the hand
+this far from the tool point."""
+
+POSE_SIZE: Final = 12
+"""Entries for each tool: its position, and its weighted rotation matrix row by row."""
+
+
+def pose_weights(tools: int) -> tuple[float, float]:
+    """What positions, and what entries of rotation matrices, are multiplied by."""
+    return 1 / math.sqrt(tools), ROTATION_WEIGHT_M / math.sqrt(2 * tools)
+
+
+def pose_vectors(chain: Chain, state: FloatArray) -> FloatArray:
+    """``Psi(s)`` as a vector: positions and rotations of all k tools.
+
+    The squared distance between two such vectors is the mean over tools of ``‖Δp‖^2 + w^2 ‖ΔR‖_F^2 / 2``. The
+    latter is ``2 (1 - cos θ)`` for a turn by θ, so about ``θ^2``, and has no seam at half a turn.
+
+    Args:
+        chain: the arm.
+        state: (..., n), rad.
+
+    Returns:
+        (..., 12 k), m.
+    """
+    transforms = chain.link_transforms(state)
+    position_weight, rotation_weight = pose_weights(len(chain.tools))
+    parts: list[FloatArray] = []
+    for tool in range(len(chain.tools)):
+        pose = chain.tool_pose(transforms, tool)
+        parts.append(position_weight * pose.position)
+        parts.append(rotation_weight * pose.rotation.reshape(*state.shape[:-1], 9))
+    return np.concatenate(parts, axis=-1)

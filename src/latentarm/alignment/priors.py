@@ -1,0 +1,100 @@
+"""What people expect of any control before they are asked: equations 20 to 22, and what they were asked, 19.
+
+Each is a mean over the second axis, (S,), of squared lengths of poses, m^2 (see `pose_vectors`), so that they
+can be summed (equation 23).
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Final, final
+
+import torch
+from torch import Tensor
+
+from latentarm.alignment.transition import Push
+from latentarm.errors import UserError
+
+
+@final
+@dataclass(frozen=True)
+class Priors:
+    """How much each prior counts beside the answers (equation 23); without units.
+
+    Attributes:
+        proportional: lambda_1.
+        reversible: lambda_2.
+        consistent: lambda_3. Lower, since the same input need not do quite the same elsewhere.
+        gamma: how fast consistency fades with the distance of two states, 1/rad.
+
+    Raises:
+        UserError: a weight is negative or not finite.
+    """
+
+    proportional: float = 1.0
+    reversible: float = 1.0
+    consistent: float = 0.2
+    gamma: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("proportional", "reversible", "consistent", "gamma"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0):
+                raise UserError(f"The weight {name} of a prior must be zero or more, not {value:g}.")
+
+
+NO_PRIORS: Final = Priors(proportional=0.0, reversible=0.0, consistent=0.0)
+"""Learning from answers alone (equation 19)."""
+
+
+def supervised(push: Push, wanted: Tensor) -> Tensor:
+    """``‖x* - Psi(T(s, u))‖^2`` (equation 19): the input of an answer leads where the shown motion led.
+
+    Args:
+        push: (S, N), the answers' inputs.
+        wanted: (S, N, p), the poses at the motions' ends.
+    """
+    return _squared(push.pose - wanted).mean(-1)
+
+
+def proportional(push: Push, part: Push, alpha: Tensor) -> Tensor:
+    """``‖Psi(T(alpha u, s)) - Psi(s) - alpha Δx‖^2`` (equation 20): half the push moves half as far.
+
+    Where f is smooth in u, as a network is, only a linear one has this property for all alpha.
+
+    Args:
+        push: (S, B), inputs u.
+        part: (S, B), inputs alpha u in the same places.
+        alpha: (S, B, 1), in [-1, 1].
+    """
+    return _squared(part.change - alpha * push.change).mean(-1)
+
+
+def reversible(push: Push, back: Push) -> Tensor:
+    """``‖Psi(s) - Psi(T(-u, T(u, s)))‖^2`` (equation 21): the opposite push undoes a push.
+
+    Args:
+        push: (S, B), inputs u.
+        back: (S, B), inputs -u, from where those led.
+    """
+    return _squared(push.before.pose - back.pose).mean(-1)
+
+
+def consistent(push: Push, elsewhere: Push, gamma: float, joints: int) -> Tensor:
+    """``‖Δx(s_1) - Δx(s_2)‖^2 exp(-gamma ‖s_1 - s_2‖)`` (equation 22): the same push moves alike nearby.
+
+    Equation 22 compares how far the tool moves; this compares where to as well, and squares what it compares
+    like the other terms.
+
+    Args:
+        push: (S, B), inputs u in places s_1.
+        elsewhere: (S, B), the same inputs in other places s_2.
+        gamma: 1/rad.
+        joints: n.
+    """
+    apart = (push.before.context - elsewhere.before.context)[..., :joints]
+    weight = torch.exp(-gamma * torch.linalg.vector_norm(apart, dim=-1))
+    return (weight * _squared(push.change - elsewhere.change)).mean(-1)
+
+
+def _squared(vectors: Tensor) -> Tensor:
+    return vectors.square().sum(-1)

@@ -1,0 +1,126 @@
+"""Which motion to ask about next, and when to stop: where an ensemble of alignments disagrees."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.contract import Alignment
+from latentarm.alignment.error import lengths, outcome
+from latentarm.alignment.poses import pose_vectors
+from latentarm.errors import UserError
+from latentarm.kinematics.chain import Chain
+from latentarm.models.decoder import Decoder
+from latentarm.types import FloatArray
+
+INPUTS_TRIED: Final = 200
+"""Inputs, at most, that are tried to find the one that an alignment would want for a motion."""
+
+
+def bootstrap(answers: Answers, count: int, rng: np.random.Generator) -> list[Answers]:
+    """As many answers drawn from those with replacement, for each alignment of an ensemble.
+
+    Alignments that differ in their first weights alone agree long before they are right; each of these has
+    heard something else as well.
+
+    Args:
+        answers: N.
+        count: how many times to draw.
+        rng: source of the draws.
+    """
+    return [answers[rng.integers(0, len(answers), len(answers))] for _ in range(count)]
+
+
+def disagreement(
+    alignments: Sequence[Alignment], decoder: Decoder, chain: Chain, motions: Motions
+) -> FloatArray:
+    """How far apart the motions are that an ensemble would make of the answer.
+
+    Each alignment i has an input u_i that comes nearest to the motion. Were the answer u_j, as another one
+    expects, alignment i would lead to Psi(T_i(s, u_j)) where it wants Psi(T_i(s, u_i)): the root mean square
+    distance between the two, over all i and j, is the disagreement. It is one of the tool's motions, so that
+    inputs that do the same count as the same.
+
+    Args:
+        alignments: S of them.
+        decoder: phi.
+        chain: the arm.
+        motions: N.
+
+    Returns:
+        (N,), m, see `pose_vectors`.
+    """
+    inputs = _grid(decoder.latent_dim)
+    tried = np.broadcast_to(inputs[:, None], (len(inputs), len(motions), decoder.latent_dim))
+    led = np.stack([outcome(alignment, decoder, chain, motions, tried) for alignment in alignments])
+    wanted = np.square(led - pose_vectors(chain, motions.end)).sum(-1).argmin(axis=1)  # (S, N)
+    each, motion = np.arange(len(alignments)), np.arange(len(motions))
+    # (i, j, N, p): where alignment i leads with the input that j wants.
+    crossed = led[each[:, None, None], wanted[None], motion]
+    own = led[each[:, None], wanted, motion]
+    return np.sqrt(np.square(crossed - own[:, None]).sum(-1).mean(axis=(0, 1)))
+
+
+def next_motion(apart: FloatArray, asked: Sequence[int]) -> int:
+    """The motion that disagreement (N,) is largest about, of those not yet asked about.
+
+    Raises:
+        UserError: all have been asked about.
+    """
+    if len(set(asked)) >= len(apart):
+        raise UserError(f"All {len(apart)} motions have been asked about.")
+    left = apart.copy()
+    left[list(asked)] = -np.inf
+    return int(left.argmax())
+
+
+@final
+@dataclass(frozen=True)
+class StoppingRule:
+    """When further questions would teach little.
+
+    Attributes:
+        share: enough is known where the ensemble disagrees by less than this share of a motion's length,
+            root mean square over the motions.
+        fall: nor is anything learned where ``patience`` answers have not lowered it by this share.
+        patience: answers.
+
+    Raises:
+        UserError: a figure is out of its range.
+    """
+
+    share: float = 0.1
+    fall: float = 0.05
+    patience: int = 3
+
+    def __post_init__(self) -> None:
+        for name in ("share", "fall"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise UserError(f"The stopping rule's {name} must be within 0 and 1.")
+        if self.patience < 1:
+            raise UserError("The stopping rule waits for at least one answer.")
+
+    def enough(self, history: Sequence[float]) -> bool:
+        """Whether to stop asking.
+
+        Args:
+            history: the disagreement after each answer so far, as a share of a motion's length.
+        """
+        if history and history[-1] < self.share:
+            return True
+        earlier, recent = history[: -self.patience], history[-self.patience :]
+        return bool(earlier) and min(recent) > (1 - self.fall) * min(earlier)
+
+
+def disagreement_share(apart: FloatArray, chain: Chain, motions: Motions) -> float:
+    """Disagreement (N,) about motions as a share of their length, both root mean square."""
+    return float(np.sqrt(np.square(apart).mean() / np.square(lengths(chain, motions)).mean()))
+
+
+def _grid(axes: int) -> FloatArray:
+    """Inputs (K, d) evenly over [-1, 1]^d, with zero among them."""
+    per_axis = max(3, int(INPUTS_TRIED ** (1 / axes)))
+    values = np.linspace(-1, 1, min(per_axis - 1 + per_axis % 2, 41))
+    return np.stack(np.meshgrid(*[values] * axes, indexing="ij"), axis=-1).reshape(-1, axes)

@@ -1,0 +1,81 @@
+"""A learned alignment as the control loop runs it: NumPy alone."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+from typing import Final, final
+
+from latentarm.models.layout import Shape
+from latentarm.models.numpy_networks import Layer, halve_hidden, propagate
+from latentarm.types import FloatArray
+
+NETWORK: Final = "alignment"
+"""The network's name in ``<network>.<layer>.weight``."""
+
+
+def layer_shapes(latent: int, context: int, hidden: tuple[int, ...]) -> dict[str, Shape]:
+    """Shape of every weight of f by name: a perceptron from (u, normalised c) to z.
+
+    Args:
+        latent: d.
+        context: c.
+        hidden: units of each hidden layer.
+    """
+    shapes: dict[str, Shape] = {}
+    for layer, (inputs, outputs) in enumerate(pairwise((latent + context, *hidden, latent))):
+        shapes[f"{NETWORK}.{layer}.weight"] = (inputs, outputs)
+        shapes[f"{NETWORK}.{layer}.bias"] = (1, outputs)
+    return shapes
+
+
+def tensor_shapes(latent: int, context: int, hidden: tuple[int, ...]) -> dict[str, Shape]:
+    """Shape of every tensor of a learned alignment by name: its weights, and the contexts' normaliser."""
+    return {
+        **layer_shapes(latent, context, hidden),
+        "context.centre": (context,),
+        "context.scale": (context,),
+    }
+
+
+@final
+class LearnedAlignment:
+    """``z = f(u, c)`` of one person (equation 4).
+
+    Nothing is checked in the call: the control loop has checked its input, and a wrong shape raises in NumPy.
+
+    Attributes:
+        tensors: float64 arrays by name, as `tensor_shapes` lists them.
+        latent_dim: d.
+        context_dim: c.
+        hidden: units of each hidden layer.
+    """
+
+    def __init__(self, tensors: Mapping[str, FloatArray]) -> None:
+        self.tensors = {name: tensors[name].copy() for name in sorted(tensors)}
+        layers = self._layers()
+        self.context_dim = len(tensors["context.centre"])
+        self.latent_dim = len(layers[-1][1])
+        self.hidden = tuple(len(bias) for _, bias in layers[:-1])
+        (weight, bias), *self._rest = halve_hidden(layers)
+        # Two products instead of one over (u, c) joined: cheaper than joining, and they broadcast.
+        self._from_input = weight[: self.latent_dim].copy()
+        self._from_context: FloatArray = weight[self.latent_dim :] / tensors["context.scale"][:, None]
+        self._bias: FloatArray = bias - tensors["context.centre"] @ self._from_context
+
+    def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
+        """Latent actions of inputs.
+
+        Args:
+            u: (..., d), each entry in [-1, 1].
+            context: (..., c); leading axes broadcast against those of ``u``.
+
+        Returns:
+            (..., d), in input units.
+        """
+        return propagate(u @ self._from_input + (context @ self._from_context + self._bias), self._rest)
+
+    def _layers(self) -> list[Layer]:
+        layers: list[Layer] = []
+        while f"{NETWORK}.{len(layers)}.weight" in self.tensors:
+            stem = f"{NETWORK}.{len(layers)}"
+            layers.append((self.tensors[f"{stem}.weight"], self.tensors[f"{stem}.bias"][0]))
+        return layers

@@ -1,0 +1,142 @@
+"""Learning alignments: S runs in one batched loop, each as it would be alone."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Final, final
+
+import numpy as np
+import torch
+
+from latentarm.alignment.answers import Answers
+from latentarm.alignment.loss import ANSWERS_AT_ONCE, AlignmentLoss, Draw
+from latentarm.alignment.priors import Priors
+from latentarm.alignment.runtime import LearnedAlignment, layer_shapes
+from latentarm.errors import UserError
+from latentarm.kinematics.chain import Chain
+from latentarm.models.batches import seed_generator
+from latentarm.models.model import LatentActionModel
+from latentarm.models.networks import FlatNetworks
+from latentarm.models.optimiser import FlatAdam, falling_rate
+from latentarm.models.training import progress_bar, threads_for
+from latentarm.types import FloatArray
+
+JUDGED: Final = 512
+"""Contexts in which all runs are judged at the end."""
+
+JUDGE: Final = 0
+"""The seed that they are drawn from."""
+
+
+@final
+@dataclass(frozen=True)
+class FitConfig:
+    """How an alignment is learned.
+
+    Attributes:
+        priors: what counts beside the answers.
+        hidden: units of each hidden layer of f.
+        steps: of Adam.
+        learning_rate: at the start; it falls along half a cosine.
+        batch_size: contexts without an answer that each step sees.
+
+    Raises:
+        UserError: a figure is out of its range.
+    """
+
+    priors: Priors = field(default_factory=Priors)
+    hidden: tuple[int, ...] = (64, 64)
+    steps: int = 400
+    learning_rate: float = 5e-3
+    batch_size: int = 64
+
+    def __post_init__(self) -> None:
+        if min(self.steps, self.batch_size, *self.hidden) < 1:
+            raise UserError("An alignment is learned in at least one step, batch and unit of each layer.")
+        if not (math.isfinite(self.learning_rate) and self.learning_rate > 0):
+            raise UserError(f"The learning rate must be positive, not {self.learning_rate:g}.")
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class FittedAlignments:
+    """S learned alignments.
+
+    Attributes:
+        alignments: S of them.
+        loss: (S,), of equation 23 at the end, all runs judged in the same
+            contexts, relative to the mean squared length of the motions.
+    """
+
+    alignments: tuple[LearnedAlignment, ...]
+    loss: FloatArray
+
+    @property
+    def best(self) -> LearnedAlignment:
+        """The one with the least loss."""
+        return self.alignments[int(self.loss.argmin())]
+
+
+def fit_alignments(
+    model: LatentActionModel,
+    chain: Chain,
+    answers: Sequence[Answers],
+    unlabelled: FloatArray,
+    config: FitConfig | None = None,
+    *,
+    seed_index: int = 0,
+    seeds: Sequence[int] | None = None,
+    progress: bool = False,
+) -> FittedAlignments:
+    """Learn an alignment for each run, all runs together.
+
+    Args:
+        model: a fitted model, whose decoder stays as it is.
+        chain: the arm.
+        answers: those of each of S runs, equally many of motions that take equally long.
+        unlabelled: (M, c), contexts in which the priors shall hold.
+        config: how; the defaults where None.
+        seed_index: which of the model's seeds decodes.
+        seeds: S, of the weights and draws of each run; 0..S-1 where None.
+        progress: show a bar.
+
+    Raises:
+        UserError: the model is not fitted or has no such seed, the answers do not fit it, or the training
+            diverged.
+    """
+    config = config or FitConfig()
+    seeds = range(len(answers)) if seeds is None else seeds
+    decoder = model.torch_decoder(seed_index)
+    loss = AlignmentLoss(decoder, chain, answers, unlabelled, config.priors)
+    shapes = layer_shapes(decoder.latent_dim, decoder.context_dim, config.hidden)
+    networks = FlatNetworks(
+        {name: (len(seeds), *shape) for name, shape in shapes.items()}, torch.device("cpu")
+    )
+    networks.initialise([seed_generator(seed, 0) for seed in seeds], {})
+    adam = FlatAdam(networks.values)
+    draws = loss.draws(seeds, config.steps, config.batch_size)
+    rows = 3 * config.batch_size + min(len(answers[0]), ANSWERS_AT_ONCE)
+    with (
+        threads_for(len(seeds) * rows * max(config.hidden, default=1)),
+        progress_bar(progress, "steps") as bar,
+    ):
+        task = bar.add_task("learning the alignment", total=config.steps, loss="")
+        for step in range(config.steps):
+            draw = Draw(*(part[step] for part in draws))
+            networks.fill_gradient(loss(networks.networks, draw).sum())
+            rate = falling_rate(config.learning_rate, step, config.steps)
+            adam.step(networks.values, networks.gradient, rate)
+            bar.update(task, completed=step + 1)
+    with torch.no_grad():
+        # The same draws for every run, so that their losses compare.
+        judged = loss.draws([JUDGE] * len(seeds), 1, JUDGED)
+        final = loss(networks.networks, Draw(*(part[0] for part in judged))).double().numpy()
+    weights = networks.arrays(networks.values)
+    if not np.isfinite(final).all():
+        raise UserError(f"The alignment diverged: lower its learning rate ({config.learning_rate:g}).")
+    normaliser = decoder.contexts.tensors()
+    alignments = tuple(
+        LearnedAlignment({**{name: array[run] for name, array in weights.items()}, **normaliser})
+        for run in range(len(seeds))
+    )
+    return FittedAlignments(alignments, final)

@@ -1,0 +1,98 @@
+"""A trained decoder in torch: frozen, and differentiable with respect to z and c."""
+
+from collections.abc import Callable
+from typing import cast, final
+
+import torch
+from torch import Tensor
+
+from latentarm.models.layout import weight_shapes
+from latentarm.models.networks import Networks, group_layers
+from latentarm.models.tool_contexts import ToolContexts
+from latentarm.models.torch_tool_contexts import TorchToolContexts
+from latentarm.models.trained import TrainedModel
+from latentarm.types import FloatArray
+
+Action = Callable[[Networks, Tensor, Tensor], Tensor]
+"""A model's phi as it is trained: networks, latents (1, B, d) and what is seen of the contexts (1, B, o), to
+normalised actions (1, B, m)."""
+
+
+@final
+class TorchDecoder:
+    """``a_h = phi(u, c)`` of one seed in torch, as `Decoder` is in NumPy, for what is learned on top of it.
+
+    In two steps, for contexts that come back again and again: `observe` what the networks see of a
+    context, and decode in what was seen.
+
+    Attributes:
+        context: kind of context, ``state`` or ``state_belief``.
+        latent_dim: d.
+        context_dim: c.
+        action_dim: m.
+        dtype: of all tensors.
+        contexts: normaliser of contexts (..., c), the first part of what `observe` gives.
+    """
+
+    def __init__(self, trained: TrainedModel, action: Action, seed: int, dtype: torch.dtype) -> None:
+        """Take one seed's decoder out of a trained model.
+
+        Args:
+            trained: the model.
+            action: its phi.
+            seed: index of the seed, 0..S-1.
+            dtype: to compute in.
+
+        Raises:
+            UserError: there is no such seed.
+        """
+        trained.check_seed_index(seed)
+
+        def tensor(values: FloatArray) -> Tensor:
+            return torch.as_tensor(values, dtype=dtype)
+
+        self.context = cast(str, trained.parameters["context"])
+        self.latent_dim = trained.dimensions.latent
+        self.context_dim = trained.dimensions.context
+        self.action_dim = trained.dimensions.action
+        self.dtype = dtype
+        learned = weight_shapes(trained.layout, trained.dimensions)
+        self._networks = group_layers(
+            {name: tensor(trained.tensors[name][seed : seed + 1]) for name in learned}
+        )
+        self._action = action
+        contexts, latents = trained.contexts, trained.latents
+        self.observe: Callable[[Tensor], Tensor] = (
+            TorchToolContexts(contexts, dtype)
+            if isinstance(contexts, ToolContexts)
+            else _Normalise(tensor(contexts.centre), tensor(contexts.scale))
+        )
+        """What the networks see of contexts: (..., c) to (..., o), of which the first c entries are the
+        context, normalised."""
+        self.contexts = contexts.contexts if isinstance(contexts, ToolContexts) else contexts
+        self._centre, self._scale = tensor(latents.centre[seed, 0]), tensor(latents.scale[seed, 0])
+        self._action_scale = tensor(trained.actions.scale)
+
+    def decode(self, z: Tensor, observed: Tensor) -> Tensor:
+        """Joint velocities of latent actions in observed contexts.
+
+        Args:
+            z: (..., d), in input units.
+            observed: (..., o), from `observe`, with the same leading axes.
+
+        Returns:
+            (..., m), rad/s.
+        """
+        lead = z.shape[:-1]
+        latent = (self._centre + self._scale * z).reshape(1, -1, self.latent_dim)
+        action = self._action(self._networks, latent, observed.reshape(1, -1, observed.shape[-1]))
+        return (action * self._action_scale).reshape(*lead, self.action_dim)
+
+
+@final
+class _Normalise:
+    def __init__(self, centre: Tensor, scale: Tensor) -> None:
+        self._centre, self._scale = centre, scale
+
+    def __call__(self, context: Tensor) -> Tensor:
+        return (context - self._centre) / self._scale

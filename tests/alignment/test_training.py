@@ -1,0 +1,143 @@
+"""Learning alignments: what two answers and the priors give, and runs that do not meddle with each other."""
+
+import numpy as np
+import pytest
+
+from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.contract import identity
+from latentarm.alignment.error import relative_alignment_error
+from latentarm.alignment.priors import NO_PRIORS, Priors
+from latentarm.alignment.training import FitConfig, fit_alignments
+from latentarm.errors import UserError
+from latentarm.models.pca import PCA
+
+SMALL = FitConfig(hidden=(8, 8), steps=30, batch_size=8)
+
+
+def turned(angle, mirror=1.0):
+    """A person's axes: the decoder's, turned and perhaps mirrored."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([[cos, -sin], [sin, cos]]) @ np.diag([1.0, mirror])
+
+
+def two_answers(circles, columns, axes):
+    """One push along each axis of the stick, from two demonstrated states."""
+    start = np.stack([circles.episodes[0].state[5], circles.episodes[1].state[40]])
+    end = start + 0.5 * axes.T @ columns
+    return Answers(Motions(start, end, 0.5), np.eye(2))
+
+
+@pytest.fixture(scope="module")
+def states(circles):
+    return np.concatenate([episode.state for episode in circles.episodes])
+
+
+def test_a_rotation_and_a_mirror_are_recovered_from_two_answers(
+    linear_model, slides, circles, columns, states
+):
+    axes = [turned(0.7), turned(2.5, mirror=-1.0)]
+    answers = [two_answers(circles, columns, one) for one in axes]
+    fitted = fit_alignments(linear_model, slides.chain, answers, states, FitConfig(steps=1500))
+    rng = np.random.default_rng(0)
+    u, context = rng.uniform(-1, 1, (500, 2)), states[rng.integers(0, len(states), 500)]
+    for one, alignment in zip(axes, fitted.alignments, strict=True):
+        missed = alignment(u, context) - u @ one.T
+        assert np.sqrt(np.square(missed).sum(axis=-1).mean()) < 1e-2
+        # As the tool shows it, over all that could be asked.
+        motions = Motions(context, context + 0.5 * (u @ one.T) @ columns, 0.5)
+        decoder = linear_model.decoder()
+        meant = Answers(motions, u)
+        assert relative_alignment_error(alignment, decoder, slides.chain, meant) < 2e-4
+        assert relative_alignment_error(identity, decoder, slides.chain, meant) > 0.4
+
+
+def test_without_priors_two_answers_are_not_enough(linear_model, slides, circles, columns, states):
+    axes = turned(0.7)
+    answers = two_answers(circles, columns, axes)
+    rng = np.random.default_rng(0)
+    u, context = rng.uniform(-1, 1, (500, 2)), states[rng.integers(0, len(states), 500)]
+    meant = Answers(Motions(context, context + 0.5 * (u @ axes.T) @ columns, 0.5), u)
+    errors = {}
+    for name, priors in {"none": NO_PRIORS, "all": Priors()}.items():
+        config = FitConfig(priors, steps=200)
+        (alignment,) = fit_alignments(linear_model, slides.chain, [answers], states, config).alignments
+        met = relative_alignment_error(alignment, linear_model.decoder(), slides.chain, answers)
+        assert met < 0.01, "the answers themselves are met either way"
+        errors[name] = relative_alignment_error(alignment, linear_model.decoder(), slides.chain, meant)
+    assert errors["all"] < 0.02 < 0.2 < errors["none"]
+
+
+@pytest.mark.parametrize("many", [5, 150])
+def test_runs_together_are_what_each_is_alone(curved_model, arm, answered, many):
+    answers = [answered(4, count=many, seed=seed) for seed in range(3)]
+    unlabelled = answered(4, count=40, seed=9).motions.context
+    seeds = [7, 3, 11]
+    together = fit_alignments(curved_model, arm.chain, answers, unlabelled, SMALL, seeds=seeds)
+    rng = np.random.default_rng(0)
+    u, context = rng.uniform(-1, 1, (30, 2)), rng.uniform(-0.5, 0.5, (30, 4))
+    for run in range(3):
+        alone = fit_alignments(
+            curved_model, arm.chain, answers[run : run + 1], unlabelled, SMALL, seeds=seeds[run : run + 1]
+        )
+        np.testing.assert_allclose(
+            alone.alignments[0](u, context), together.alignments[run](u, context), rtol=0, atol=1e-6
+        )
+        np.testing.assert_allclose(alone.loss[0], together.loss[run], rtol=1e-5)
+
+
+def test_the_same_seed_gives_the_same_alignment_and_another_another(curved_model, arm, answered):
+    answers = [answered(4)] * 2
+    unlabelled = answered(4, count=40).motions.context
+    first, again = (
+        fit_alignments(curved_model, arm.chain, answers, unlabelled, SMALL, seeds=[1, 2]) for _ in range(2)
+    )
+    u, context = np.ones((1, 2)), np.zeros((1, 4))
+    for one, other in zip(first.alignments, again.alignments, strict=True):
+        np.testing.assert_array_equal(one(u, context), other(u, context))
+    assert not np.array_equal(first.alignments[0](u, context), first.alignments[1](u, context))
+    assert first.best is first.alignments[int(np.argmin(first.loss))]
+
+
+def test_the_seed_of_the_model_that_is_asked_for_is_the_one_that_is_learned_for(curved_model, arm, answered):
+    answers = [answered(4)]
+    unlabelled = answered(4, count=40).motions.context
+    errors = np.array(
+        [
+            [
+                relative_alignment_error(alignment, curved_model.decoder(driven), arm.chain, answers[0])
+                for driven in range(2)
+            ]
+            for learned in range(2)
+            for alignment in fit_alignments(
+                curved_model,
+                arm.chain,
+                answers,
+                unlabelled,
+                FitConfig(NO_PRIORS, hidden=(16,), steps=150),
+                seed_index=learned,
+            ).alignments
+        ]
+    )
+    assert errors[0, 0] < errors[0, 1]
+    assert errors[1, 1] < errors[1, 0]
+
+
+def test_a_belief_may_belong_to_the_context(swings, arm, answered):
+    model = PCA(context="state_belief").fit(swings)
+    unlabelled = answered(4, count=40, goals=2).motions.context
+    (alignment,) = fit_alignments(model, arm.chain, [answered(4, goals=2)], unlabelled, SMALL).alignments
+    assert alignment.context_dim == 6
+
+
+def test_what_cannot_be_learned_is_refused(curved_model, arm, answered):
+    answers = answered(4)
+    for wrong in ({"steps": 0}, {"batch_size": 0}, {"hidden": (8, 0)}, {"learning_rate": float("nan")}):
+        with pytest.raises(UserError):
+            FitConfig(**wrong)
+    with pytest.raises(UserError, match="no seed index 2"):
+        fit_alignments(curved_model, arm.chain, [answers], answers.motions.context, SMALL, seed_index=2)
+    with pytest.raises(UserError, match="not fitted"):
+        fit_alignments(PCA(), arm.chain, [answers], answers.motions.context, SMALL)
+    config = FitConfig(hidden=(8,), steps=60, learning_rate=1e30)
+    with pytest.raises(UserError, match="diverged"):
+        fit_alignments(curved_model, arm.chain, [answers], answers.motions.context, config)
