@@ -108,7 +108,7 @@ def test_no_more_is_asked_when_enough_is_known(
     assert code == 0
     # After three answers there is a first disagreement, after four a second.
     assert out.count("Question ") == 4
-    assert "4 are enough" in out
+    assert "4 answers of a simulated person are enough" in out
 
 
 def test_an_input_that_ends_saves_nothing(run: Run, trained: Path, monkeypatch: pytest.MonkeyPatch) -> None:
