@@ -24,8 +24,6 @@ from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.experiments.asking import Person, PersonAtTerminal, Question, Say, SimulatedPerson
 from latentarm.experiments.checks import check_count, check_seed
-from latentarm.experiments.evaluating import robot_of
-from latentarm.experiments.runs import Run, read_run
 from latentarm.experiments.stick_line import read_line
 from latentarm.experiments.training import prepared
 from latentarm.kinematics.chain import Chain
@@ -34,6 +32,7 @@ from latentarm.metrics.summary import unit_of
 from latentarm.models.catalogue import load_model
 from latentarm.models.model import LatentActionModel
 from latentarm.operators.preference import AXES, ToolAxes
+from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.types import Demonstrations, FloatArray, Row
 
 ALIGN_STREAM: Final = 3
