@@ -1,0 +1,32 @@
+/** Who drives, who watches, and how the one becomes the other. */
+
+/**
+ * @param {{text: HTMLElement, ask: HTMLButtonElement, handOver: HTMLButtonElement, release: HTMLButtonElement}} parts
+ * @param {import("./connection.js").Connection} connection
+ */
+export function attachSeat(parts, connection) {
+  parts.ask.addEventListener("click", () => connection.send("ask_to_drive"));
+  parts.release.addEventListener("click", () => connection.send("release"));
+  parts.handOver.addEventListener("click", () => {
+    const asking = connection.state?.asking;
+    if (asking) connection.send("hand_over", { to: asking });
+  });
+
+  connection.addEventListener("state", () => {
+    const { you, driver, driver_name, asking, asking_name, watchers } = connection.state;
+    const askedHere = asking !== null && asking === connection.welcome?.id;
+    parts.ask.hidden = you;
+    parts.ask.disabled = askedHere;
+    parts.release.hidden = !you;
+    parts.handOver.hidden = !you || asking === null;
+    parts.handOver.textContent = `Hand over to ${asking_name || "the person who asks"}`;
+    const others = watchers === 1 ? "1 other page watches" : `${watchers} other pages watch`;
+    let text = "Nobody is driving.";
+    if (you) text = asking ? `You are driving. ${asking_name || "Somebody"} asks to drive.` : `You are driving; ${others}.`;
+    else if (driver !== null) {
+      text = `${driver_name || "Somebody else"} is driving; you are watching, and may stop the arm.`;
+      if (askedHere) text += " You have asked to drive.";
+    }
+    if (parts.text.textContent !== text) parts.text.textContent = text;
+  });
+}
