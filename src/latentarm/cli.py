@@ -389,6 +389,37 @@ def drive(
     return 0 if any(row.measure == "success_rate" and row.mean for row in rows) else 1
 
 
+@app.command
+def teleop(
+    run: Annotated[
+        Positional[Path | None],
+        arg(metavar="RUN", help="A trained run; without one, the end-effector is driven."),
+    ] = None,
+    host: Annotated[
+        str, arg(help="The address that people open; off this machine they need a link that works once.")
+    ] = "127.0.0.1",
+    port: Annotated[int, arg(help="0 takes any that is free.")] = 8460,
+    profile: Annotated[
+        str | None, arg(metavar="NAME", help="A person that `latentarm align` has asked; z = u without.")
+    ] = None,
+    certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
+    keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
+    seed: Seed = 0,
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for what is recorded.")] = Path("teleop"),
+) -> int:
+    """Drive a simulated arm from a web page: stick, buttons, keyboard, gamepad or switches.
+
+    Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
+    """
+    from latentarm.web.addresses import TeleopConfig
+    from latentarm.web.server import serve
+    from latentarm.web.setting import Spec
+
+    spec = Spec(run, profile, seed, out)
+    serve(TeleopConfig(spec, host, port, certfile, keyfile), lambda sentence: print(sentence, flush=True))
+    return 0
+
+
 studies = app.command(
     SubcommandApp(), name="reproduce", help="Reproduce a study of the paper; `reproduce --help` lists them."
 )

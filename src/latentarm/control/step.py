@@ -99,6 +99,11 @@ class Step:
         return self._stack.at_rest
 
     @property
+    def dead_zone(self) -> float:
+        """Length of an input up to which it is neutral."""
+        return self._config.dead_zone
+
+    @property
     def mode(self) -> int:
         """Index of the controller's mode."""
         return self._mode
@@ -137,6 +142,19 @@ class Step:
             None where the arm may move now, else why it may not.
         """
         return self._engagement.enable()
+
+    def choose_mode(self, mode: int) -> None:
+        """Go on in another mode from the next step on; the motion under way is ramped over to it.
+
+        Args:
+            mode: index of the controller's mode.
+
+        Raises:
+            UserError: the controller has no such mode.
+        """
+        if not 0 <= mode < len(self._controller.modes):
+            raise UserError(f"The controller has modes 0 to {len(self._controller.modes) - 1}, not {mode}.")
+        self._mode = mode
 
     def stop(self, reason: str) -> None:
         """Stop the arm from the next step on.
