@@ -30,6 +30,10 @@ INPUT_TIMEOUT_S: Final = 0.05
 """How long a fresh input counts: 2.5 inputs of a page that sends 50 a second. What is left of 0.15 s is the
 stop's."""
 
+INPUT_GRACE_S: Final = 0.07
+"""A person whose connection falters for no longer than this and the above finds the arm slowed down, and need
+not enable it again."""
+
 COMMAND_PERIODS: Final = 5.0
 """How many periods a command lasts: a shared computer may hold the loop up for 50 ms before the arm stops."""
 
@@ -128,6 +132,7 @@ class Setting:
             self.controller,
             SafetyConfig(
                 input_timeout_s=INPUT_TIMEOUT_S,
+                input_grace_s=INPUT_GRACE_S,
                 command_periods=COMMAND_PERIODS,
                 obstacles=tuple(self.task.obstacles),
             ),

@@ -8,6 +8,7 @@ from latentarm.web.channel import Phase
 
 _HELD_BACK: Final = {
     "clearance": "it is close to something",
+    "freshness": "the connection falters",
     "workspace": "it is at the edge of where it may be",
     "joint position": "a joint is near its limit",
 }
