@@ -62,7 +62,8 @@ def body_of(page: Page, pages: tuple[Page, ...]) -> str:
         What goes into the body.
     """
     links = "".join(
-        f'<a href="{escape(other.path)}"{_current(other is page)}>{escape(other.title)}</a>' for other in pages
+        f'<a href="{escape(other.path)}"{_current(other is page)}>{escape(other.title)}</a>'
+        for other in pages
     )
     return _STATIC.joinpath(page.fragment).read_text(encoding="utf-8").replace("{pages}", links)
 

@@ -1,10 +1,13 @@
 /** Small texts that stay beside points of the scene, in both views. */
 
+const LINE_PX = 22;
+const RAISED_PX = 24;
+
 export class Labels {
   /** @param {import("./views.js").Views} views */
   constructor(views) {
     this._views = views;
-    /** @type {Map<string, {point: any, shown: boolean, elements: HTMLElement[]}>} */
+    /** @type {Map<string, {point: any, shown: boolean, wide: number, elements: HTMLElement[]}>} */
     this._all = new Map();
     views.beforeFrame.push(() => this._place());
   }
@@ -25,26 +28,37 @@ export class Labels {
         view.labels.append(element);
         return element;
       });
-      label = { point: null, shown, elements };
+      label = { point: null, shown, wide: 0, elements };
       this._all.set(key, label);
     }
     label.point = point?.clone() ?? null;
     label.shown = shown && point !== null;
-    for (const element of label.elements) {
-      if (element.textContent !== text) element.textContent = text;
-    }
+    if (label.elements[0].textContent === text) return;
+    for (const element of label.elements) element.textContent = text;
+    label.wide = label.elements[0].offsetWidth;
   }
 
   _place() {
-    for (const { point, shown, elements } of this._all.values()) {
-      elements.forEach((element, index) => {
+    this._views.views.forEach((view, index) => {
+      const width = view.element.clientWidth;
+      /** @type {{x: number, y: number, wide: number}[]} */
+      const placed = [];
+      for (const { point, shown, elements, wide } of this._all.values()) {
+        const element = elements[index];
         element.hidden = !shown;
-        if (!shown) return;
-        const view = this._views.views[index];
-        const { x, y } = this._views.project(view, point);
-        const beside = element.classList.contains("ghost") ? "translate(-50%, -50%)" : "translate(-50%, -190%)";
-        element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) ${beside}`;
-      });
-    }
+        if (!shown) continue;
+        let { x, y } = this._views.project(view, point);
+        if (!element.classList.contains("ghost")) {
+          y -= RAISED_PX;
+          x = Math.min(Math.max(x, wide / 2 + 2), width - wide / 2 - 2);
+          // Names that would cover each other are stacked.
+          for (const other of placed) {
+            if (Math.abs(other.y - y) < LINE_PX && Math.abs(other.x - x) < (other.wide + wide) / 2) y = other.y - LINE_PX;
+          }
+          placed.push({ x, y, wide });
+        }
+        element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+      }
+    });
   }
 }

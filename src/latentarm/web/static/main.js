@@ -70,7 +70,7 @@ part("enable").addEventListener("click", enable);
 const modes = attachModes({ mode: part("mode"), axes: part("axes") }, connection);
 attachSeat({ text: part("seat"), ask: part("ask"), handOver: part("hand-over"), release: part("release") }, connection);
 attachRecording({ button: part("record"), task: part("record-task"), text: part("record-text") }, connection);
-attachSettingsDialog(part("settings"), part("settings-open"), settings);
+const dialog = attachSettingsDialog(part("settings"), part("settings-open"), settings);
 
 const refused = () => status.halted("the arm is not enabled");
 attachStick(part("stick"), part("stick-value"), inputs, settings);
@@ -87,10 +87,7 @@ const belief = attachBelief({
   alpha: part("alpha"), alphaText: part("alpha-text"),
 });
 const ghostList = listGhosts(part("ghosts"));
-part("trail-clear").addEventListener("click", () => {
-  connection.send("trail_clear");
-  drawing?.clearTrail();
-});
+part("trail-clear").addEventListener("click", () => connection.send("trail_clear"));
 part("reset").addEventListener("click", () => connection.send("reset"));
 
 for (const radio of document.querySelectorAll("input[name=panel]")) {
@@ -157,7 +154,6 @@ function applySettings() {
 }
 
 let name = settings.name;
-let profile = "";
 settings.addEventListener("change", () => {
   if (settings.values.panel !== lastPanel) inputs.drop();
   lastPanel = settings.values.panel;
@@ -169,11 +165,15 @@ settings.addEventListener("change", () => {
 let lastPanel = settings.values.panel;
 applySettings();
 
-/** A profile aligns the latent actions of whoever drives. */
+let profileAsked = "";
+
+/** The person's alignment, once they drive and the arm stands still; asked for once. */
 function chooseProfile() {
-  if (!connection.driving || settings.values.profile === profile) return;
-  profile = settings.values.profile;
-  connection.send("profile", { name: profile || null });
+  const { state, welcome } = connection;
+  const wanted = welcome?.profiles.includes(settings.values.profile) ? settings.values.profile : "";
+  if (!connection.driving || connection.engaged || wanted === (state.profile ?? "") || wanted === profileAsked) return;
+  profileAsked = wanted;
+  connection.send("profile", { name: wanted || null });
 }
 
 connection.addEventListener("welcome", () => {
@@ -181,9 +181,12 @@ connection.addEventListener("welcome", () => {
   write(part("about"), run ? `${robot}, run ${run}` : `${robot}, tool directions only: no run is loaded`);
   write(part("latch-max"), String(limits.latch_max_s));
   belief.name(goals);
-  profile = "";
+  dialog.offer(connection.welcome.profiles);
 });
+let trail = 0;
 connection.addEventListener("state", () => {
+  if (connection.state.trail !== trail) drawing?.clearTrail();
+  trail = connection.state.trail;
   chooseProfile();
   show();
 });

@@ -23,9 +23,9 @@ export function attachModes(parts, connection) {
     fill(parts.axes, "axes", axes.map((label) => AXES_LABELS[label] ?? label), (index) => ask("end_effector", index));
   });
   connection.addEventListener("state", () => {
-    const { mode, axes: pair, you, driver } = connection.state;
-    check(parts.mode, modes.indexOf(mode), you || driver === null);
-    check(parts.axes, pair, you || driver === null);
+    const { mode, axes: pair, you } = connection.state;
+    check(parts.mode, modes.indexOf(mode), you);
+    check(parts.axes, pair, you);
     parts.axes.hidden = mode !== "end_effector";
   });
 

@@ -18,7 +18,8 @@ export function attachRecording(parts, connection) {
     write(parts.button, on ? "Stop recording" : "Start recording");
     const episodes = recording?.episodes ?? 0;
     const kept = episodes === 0 ? "Nothing recorded yet." : `${episodes} ${episodes === 1 ? "episode" : "episodes"} recorded.`;
-    write(parts.text, on ? `Recording: ${recording.samples} samples.` : you ? kept : "The person who drives can record.");
+    if (recording?.problem) write(parts.text, recording.problem);
+    else write(parts.text, on ? `Recording: ${recording.samples} samples.` : you ? kept : "The person who drives can record.");
   });
 }
 

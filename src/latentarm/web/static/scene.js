@@ -2,8 +2,9 @@
 
 import { THREE } from "nicegui-scene";
 import { colour } from "./colours.js";
-import { meshGeometry, place, shapeOf } from "./shapes.js";
+import { meshGeometry, obstacleOf, place, shapeOf } from "./shapes.js";
 
+const FLOOR_M = 1.6;
 const TRAIL_POINTS = 600;
 const TRAIL_STEP_M = 0.008;
 /** States come about this far apart, ms; poses glide for no longer. */
@@ -13,7 +14,7 @@ export class ArmScene {
   /** @param {any} description what /scene.json holds @param {Map<number, any>} meshes */
   constructor(description, meshes) {
     this.scene = new THREE.Scene();
-    this.goals = description.goals ?? [];
+    this.goals = description.goals;
     this.tool = new THREE.Vector3();
     this._sky = new THREE.HemisphereLight(0xffffff, 0x8a98a0, 2.1);
     const sun = new THREE.DirectionalLight(0xffffff, 1.7);
@@ -26,16 +27,16 @@ export class ArmScene {
         const shape = shapeOf(geom, meshes);
         if (shape) group.add(shape);
       }
-      this.scene.add(group);
       return group;
     });
+    this.scene.add(...this._bodies);
     this._from = this._bodies.map(() => null);
     /** @type {number[][] | null} */
     this._to = null;
     this._began = this._glideMs = 0;
     this._heardAt = 0;
 
-    this._addFloor();
+    this._addObstacles(description.obstacles);
     this._addTool();
     this._addGoals();
     this._addTrail();
@@ -45,10 +46,9 @@ export class ArmScene {
   /** Fetch the description and its meshes. @returns {Promise<ArmScene>} */
   static async load() {
     const description = await (await fetch("/scene.json")).json();
-    const numbers = new Set(
-      description.bodies.flatMap((/** @type {any} */ body) => body.geoms)
-        .filter((/** @type {any} */ geom) => geom.type === "mesh").map((/** @type {any} */ geom) => geom.mesh),
-    );
+    const geoms = description.bodies.flatMap((/** @type {any} */ body) => body.geoms);
+    const numbers = new Set(geoms.map((/** @type {any} */ geom) => geom.mesh));
+    numbers.delete(null);
     const meshes = new Map();
     await Promise.all([...numbers].map(async (number) => {
       meshes.set(number, meshGeometry(await (await fetch(`/mesh/${number}`)).arrayBuffer()));
@@ -85,9 +85,9 @@ export class ArmScene {
     });
     this.tool.lerpVectors(this._toolFrom, this._toolTo, share);
     this._mark.position.copy(this.tool);
-    this._plumb.position.set(this.tool.x, this.tool.y, 0);
-    this._plumb.scale.z = Math.max(this.tool.z, 1e-3);
-    this._foot.position.set(this.tool.x, this.tool.y, 0.002);
+    this._plumb.position.set(this.tool.x, this.tool.y, this._height);
+    this._plumb.scale.z = Math.max(this.tool.z - this._height, 1e-3);
+    this._foot.position.set(this.tool.x, this.tool.y, this._height + 0.002);
     return share < 1;
   }
 
@@ -130,6 +130,7 @@ export class ArmScene {
     this._foot.material.color.set(colour("tool"));
     this._trail.material.color.set(colour("trail"));
     this._ball.material.color.set(colour("ring"));
+    for (const solid of this._solids) solid.material.color.set(colour("table"));
     for (const ring of this._rings) ring.material.color.set(colour("ring"));
     for (const spot of this._spots) spot.material.color.set(colour("food"));
   }
@@ -142,19 +143,22 @@ export class ArmScene {
     return points;
   }
 
-  _addFloor() {
-    const width = 1.6;
-    this._floor = new THREE.Mesh(new THREE.PlaneGeometry(width, width), new THREE.MeshBasicMaterial());
-    this._floor.position.set(0.35, 0, -0.002);
+  /** What the arm must keep clear of; level planes are drawn as the table, with a grid of 10 cm. @param {any[]} obstacles */
+  _addObstacles(obstacles) {
+    this._solids = obstacles.map(obstacleOf).filter((/** @type {any} */ shape) => shape !== null);
+    const level = obstacles.find((one) => one.type === "plane" && one.normal[2] > 0.99);
+    const height = level ? level.point[2] : 0;
+    this._floor = new THREE.Mesh(new THREE.PlaneGeometry(FLOOR_M, FLOOR_M), new THREE.MeshBasicMaterial());
+    this._floor.position.set(0.35, 0, height - 0.002);
+    const half = FLOOR_M / 2;
     const points = [];
-    for (let at = -8; at <= 8; at += 1) {
-      points.push(at / 10, -0.8, 0, at / 10, 0.8, 0, -0.8, at / 10, 0, 0.8, at / 10, 0);
-    }
+    for (let at = -half; at < half + 1e-6; at += 0.1) points.push(at, -half, 0, at, half, 0, -half, at, 0, half, at, 0);
     const lines = new THREE.BufferGeometry();
     lines.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
     this._grid = new THREE.LineSegments(lines, new THREE.LineBasicMaterial());
-    this._grid.position.set(0.35, 0, 0);
-    this.scene.add(this._floor, this._grid);
+    this._grid.position.set(0.35, 0, height);
+    this._height = height;
+    this.scene.add(this._floor, this._grid, ...this._solids);
   }
 
   _addTool() {

@@ -20,9 +20,9 @@ export function attachSeat(parts, connection) {
     parts.release.hidden = !you;
     parts.handOver.hidden = !you || asking === null;
     parts.handOver.textContent = `Hand over to ${asking_name || "the person who asks"}`;
-    const others = watchers === 1 ? "1 other page watches" : `${watchers} other pages watch`;
+    const others = ["", "; one other page watches"][watchers] ?? `; ${watchers} other pages watch`;
     let text = "Nobody is driving.";
-    if (you) text = asking ? `You are driving. ${asking_name || "Somebody"} asks to drive.` : `You are driving; ${others}.`;
+    if (you) text = asking ? `You are driving. ${asking_name || "Somebody"} asks to drive.` : `You are driving${others}.`;
     else if (driver !== null) {
       text = `${driver_name || "Somebody else"} is driving; you are watching, and may stop the arm.`;
       if (askedHere) text += " You have asked to drive.";

@@ -43,15 +43,22 @@ export function attachSettingsDialog(dialog, opener, settings) {
   form.addEventListener("change", (event) => {
     const field = /** @type {HTMLInputElement} */ (event.target);
     if (field.name === "name") settings.become(field.value);
-    if (field.name === "profile") settings.change({ profile: field.value.trim() });
   });
   form.addEventListener("keydown", (event) => {
     const field = /** @type {HTMLInputElement} */ (event.target);
     if (event.code === "Enter" && field.matches("input:not(.key)")) event.preventDefault();
     if (field.matches(".key")) askForKey(field, event, settings);
   });
+  /** @param {string[]} names people whose alignment can be chosen */
+  const offer = (names) => {
+    const choices = ["", ...names].map((value) =>
+      Object.assign(document.createElement("option"), { value, textContent: value || "none" }));
+    /** @type {any} */ (form.elements).profile.replaceChildren(...choices);
+    show();
+  };
   form.querySelector("#settings-reset")?.addEventListener("click", () => settings.reset());
   settings.addEventListener("change", show);
+  return { offer };
 }
 
 /** Enter in a key's field, then the key itself. @param {HTMLInputElement} field @param {KeyboardEvent} event @param {import("./settings.js").Settings} settings */

@@ -2,13 +2,10 @@
 
 import { THREE } from "nicegui-scene";
 
-/** MuJoCo draws planes without an end; here they are this wide, m, each way. */
-const PLANE_M = 2;
-
 /**
  * One geom, placed in its body.
  *
- * @param {{type: string, size: number[], pos: number[], quat: number[], rgba: number[], mesh?: number | null}} geom
+ * @param {{type: string, size: number[], pos: number[], quat: number[], rgba: number[], mesh: number | null}} geom
  *   sizes as MuJoCo has them: half lengths and radii, m.
  * @param {Map<number, any>} meshes geometries by number
  * @returns {any} a mesh, or null for a kind that is not drawn
@@ -27,12 +24,40 @@ export function shapeOf(geom, meshes) {
   return mesh;
 }
 
+/**
+ * Something that the arm must keep clear of; planes are drawn by the scene.
+ *
+ * @param {any} obstacle as /scene.json has it
+ * @returns {any} a mesh, or null
+ */
+export function obstacleOf(obstacle) {
+  const material = new THREE.MeshLambertMaterial({ transparent: true, opacity: 0.6 });
+  if (obstacle.type === "sphere") {
+    const ball = new THREE.Mesh(new THREE.SphereGeometry(obstacle.radius, 24, 16), material);
+    ball.position.set(...obstacle.centre);
+    return ball;
+  }
+  if (obstacle.type === "capsule") {
+    const [start, end] = [new THREE.Vector3(...obstacle.start), new THREE.Vector3(...obstacle.end)];
+    const along = end.clone().sub(start);
+    const rod = new THREE.Mesh(new THREE.CapsuleGeometry(obstacle.radius, along.length(), 8, 24), material);
+    rod.position.copy(start).lerp(end, 0.5);
+    rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
+    return rod;
+  }
+  if (obstacle.type === "box") {
+    const [a, b, c] = obstacle.half_extents;
+    const box = new THREE.Mesh(new THREE.BoxGeometry(2 * a, 2 * b, 2 * c), material);
+    place(box, [...obstacle.pos, ...obstacle.quat]);
+    return box;
+  }
+  return null;
+}
+
 /** @param {any} geom @param {Map<number, any>} meshes */
 function geometryOf({ type, size, mesh }, meshes) {
   const [a, b, c] = size;
   switch (type) {
-    case "plane":
-      return new THREE.PlaneGeometry(2 * (a || PLANE_M), 2 * (b || PLANE_M));
     case "sphere":
       return new THREE.SphereGeometry(a, 24, 16);
     case "ellipsoid":

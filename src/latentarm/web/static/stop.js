@@ -7,7 +7,8 @@
 export function attachStop(connection, alsoHere = () => {}) {
   const stop = () => {
     alsoHere();
-    connection.send("stop");
+    // Where the line is doubtful, by another way as well; the arm also stops by itself when inputs cease.
+    if (!connection.send("stop") || !connection.fresh) fetch("/stop", { method: "POST", keepalive: true }).catch(() => {});
   };
   // Capture, on the window: before anything else on the page can keep the press for itself.
   window.addEventListener("pointerdown", (event) => {

@@ -8,6 +8,8 @@ const MARGIN_M = 0.13;
 /** Slower frames than this, ms, on average, and the drawing gets coarser. */
 const SLOW_MS = 40;
 const COARSEST = 0.5;
+/** Without a graphics processor, pixels are dear from the start. */
+const SOFTWARE_SHARE = 0.7;
 
 /** Where each camera looks from, as directions from the middle of the scene. */
 const DIRECTIONS = {
@@ -30,7 +32,7 @@ export class Views {
     const software = drawsInSoftware();
     this._renderer = new THREE.WebGLRenderer({ canvas, antialias: !software, alpha: true, powerPreference: "low-power" });
     this._renderer.setScissorTest(true);
-    this._ratio = software ? COARSEST : Math.min(devicePixelRatio, 2);
+    this._ratio = Math.min(devicePixelRatio, 2) * (software ? SOFTWARE_SHARE : 1);
     /** @type {any} Passed by the graphics processor when the last frame is done. */
     this._fence = null;
     this._frameMs = 16;
