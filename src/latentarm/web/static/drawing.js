@@ -55,8 +55,8 @@ export class Drawing {
     this._scene.bound(wanted.showBound ? state.bound_m : null, likeliest);
     this._scene.showTrail(wanted.showTrail);
     this._scene.goals.forEach((/** @type {any} */ goal, /** @type {number} */ index) => {
-      const sure = state.belief ? ` ${Math.round(100 * state.belief[index])} %` : "";
-      this._labels.set(`goal-${index}`, new THREE.Vector3(...goal.position), goal.name + sure);
+      const share = state.belief ? `${Math.round(100 * state.belief[index])} %` : undefined;
+      this._labels.set(`goal-${index}`, new THREE.Vector3(...goal.position), goal.name, { share });
     });
     this._ghosts.show(paths, pressed, wanted.showGhosts);
     if (this._first || this._views.seat !== wanted.seat) {

@@ -16,9 +16,9 @@ export class Labels {
    * @param {string} key
    * @param {any} point
    * @param {string} text
-   * @param {{shown?: boolean, ghost?: string}} [look]
+   * @param {{shown?: boolean, ghost?: string, share?: string}} [look] a share is left out where there is little room
    */
-  set(key, point, text, { shown = true, ghost } = {}) {
+  set(key, point, text, { shown = true, ghost, share } = {}) {
     let label = this._all.get(key);
     if (!label) {
       const elements = this._views.views.map((view) => {
@@ -33,9 +33,14 @@ export class Labels {
     }
     label.point = point?.clone() ?? null;
     label.shown = shown && point !== null;
-    if (label.elements[0].textContent === text) return;
-    for (const element of label.elements) element.textContent = text;
-    label.wide = label.elements[0].offsetWidth;
+    const [first] = label.elements;
+    if (first.textContent === text && first.dataset.share === share) return;
+    for (const element of label.elements) {
+      element.textContent = text;
+      if (share) element.dataset.share = share;
+      else delete element.dataset.share;
+    }
+    label.wide = first.offsetWidth;
   }
 
   _place() {
