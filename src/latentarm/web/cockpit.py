@@ -199,6 +199,8 @@ class Cockpit(InputSource):
                     self._choose(mode, self._axes if axes is None else axes)
             case Record(on=on, task=task):
                 self._record(on=on, task=task)
+            case ChooseProfile(name=name) if name == self._setting.spec.profile:
+                pass
             case ChooseProfile() | Reset():
                 if self._step.stopped is None or not self._step.at_rest:
                     self._say("Stop the arm first.")

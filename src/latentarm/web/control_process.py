@@ -3,8 +3,10 @@
 import gc
 import os
 import signal
+from contextlib import suppress
 from dataclasses import replace
 from types import FrameType
+from typing import Final
 
 from threadpoolctl import threadpool_limits
 
@@ -17,6 +19,9 @@ from latentarm.web.cockpit import Cockpit
 from latentarm.web.live_arm import LiveArm
 from latentarm.web.recording import EpisodeWriter
 from latentarm.web.setting import Setting, Spec, load_setting
+
+_PRIORITY: Final = 10
+"""Of the least urgent real-time processes."""
 
 
 def run_control(spec: Spec, channel: Channel, server: int) -> None:
@@ -37,6 +42,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
     # Ctrl-C in a terminal reaches both processes: the server then ends this one in good order.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, end)
+    _ask_for_priority()
     with threadpool_limits(1):
         setting = load_setting(spec)
         clock = MonotonicClock()
@@ -64,6 +70,12 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
         finally:
             writer.close()
             gc.unfreeze()
+
+
+def _ask_for_priority() -> None:
+    """Come before ordinary processes, where the system allows it: a busy computer makes us late."""
+    with suppress(OSError):
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
 def _with_profile(setting: Setting, name: str | None) -> tuple[Setting, str]:

@@ -43,6 +43,9 @@ DRIVER_PERIOD_S: Final = 0.02
 WATCHER_PERIOD_S: Final = 0.033
 """How often a page is sent a state, at most: the driver's is also what makes the next input fresh."""
 
+_PROTOCOL_BROKEN: Final = (1002, 1003, 1007, 1009)
+"""Codes with which the server below us hangs up: no frame, no text, or far too long."""
+
 _BROKEN: Final = "A page sent what is no message: the arm was stopped."
 
 
@@ -124,16 +127,20 @@ class DriveSocket:
 
     def _take(self, page: Page, message: ClientMessage) -> None:
         """Do what a page asks for; what only the driver may ask for is not heard from others."""
+        if isinstance(message, Hello) or not self._suits(message):
+            raise _ViolationError
         if isinstance(message, PressStop):
             self.stop(page.name)
         elif isinstance(message, AskToDrive):
             self._sessions.ask(page)
         elif isinstance(message, TrailClear):
             self._states.clear_trail()
-        elif isinstance(message, Hello):
-            raise _ViolationError
         elif self._sessions.drives(page):
             self._take_from_driver(page, message)
+
+    def _suits(self, message: ClientMessage) -> bool:
+        """Whether an input has no more axes than what is driven."""
+        return not isinstance(message, DriverInput) or len(message.u) <= self._states.input_dim
 
     def _take_from_driver(self, page: Page, message: ClientMessage) -> None:
         match message:
@@ -159,10 +166,7 @@ class DriveSocket:
                 pass
 
     def _give(self, seq: int, nonce: str, u: tuple[float, ...], *, latched: bool) -> None:
-        axes = self._states.input_dim
-        if len(u) > axes:
-            raise _ViolationError
-        padded = u + (0.0,) * (axes - len(u))
+        padded = u + (0.0,) * (self._states.input_dim - len(u))
         self._control.give(Given(driver=self._sessions.turn, seq=seq, nonce=nonce, u=padded, latched=latched))
 
 
@@ -192,7 +196,9 @@ async def _receive(socket: WebSocket, allowance: _Allowance) -> ClientMessage:
     """
     event = await socket.receive()
     if event["type"] == "websocket.disconnect":
-        raise WebSocketDisconnect(event.get("code", 1006))
+        if event.get("code") in _PROTOCOL_BROKEN:
+            raise _ViolationError
+        raise WebSocketDisconnect
     text = event.get("text")
     if not allowance.spend() or text is None or len(text) > FRAME_LIMIT or len(text.encode()) > FRAME_LIMIT:
         raise _ViolationError

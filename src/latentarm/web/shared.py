@@ -6,9 +6,11 @@ import zlib
 from multiprocessing.sharedctypes import RawArray
 from typing import Final, final
 
-_HEADER: Final = struct.Struct("<QII")
-"""Version of the content, its length in bytes, and its checksum."""
+_VERSION_BYTES: Final = 8
+_HEADER: Final = struct.Struct("<II")
+"""After the version: the message's length in bytes, and its checksum."""
 
+_START: Final = _VERSION_BYTES + _HEADER.size
 _TRIES: Final = 4
 
 
@@ -17,9 +19,10 @@ class LatestSlot:
     """Holds the newest message of one writer for any readers; older ones are lost, and nobody waits.
 
     The version is odd while the writer is at it. A reader takes a message only if the version was the
-    same before and after, and its checksum is right: so one that was changed while it was read, or whose
-    writer was killed half-way, is never taken for a message. A slot is handed to a new process as an
-    argument, and goes when the last process that holds it ends.
+    same before and after, and the checksum over both is right: so one that was changed while it was read,
+    or whose writer was killed half-way, is never taken for a message. The version is written in one piece;
+    the rest need not be, nor in any order. A slot is handed to a new process as an argument, and goes when
+    the last process that holds it ends.
 
     Args:
         size: the longest message, bytes.
@@ -27,13 +30,13 @@ class LatestSlot:
 
     def __init__(self, size: int) -> None:
         self._size = size
-        self._memory = RawArray(ctypes.c_ubyte, _HEADER.size + size)
+        self._memory = RawArray(ctypes.c_uint64, -(-(_START + size) // _VERSION_BYTES))
         self._written = 0
 
     @property
     def version(self) -> int:
         """Changes with every message; 0 before the first."""
-        return int(_HEADER.unpack_from(self._view())[0])
+        return int(self._memory[0])
 
     def write(self, message: bytes) -> None:
         """Replace the message; one process alone may do so.
@@ -45,27 +48,32 @@ class LatestSlot:
             raise ValueError(f"a message of {len(message)} bytes is too long for {self._size}")
         view = self._view()
         self._written += 2
-        checksum = zlib.crc32(message)
-        _HEADER.pack_into(view, 0, self._written - 1, len(message), checksum)
-        view[_HEADER.size : _HEADER.size + len(message)] = message
-        _HEADER.pack_into(view, 0, self._written, len(message), checksum)
+        self._memory[0] = self._written - 1
+        _HEADER.pack_into(view, _VERSION_BYTES, len(message), _checksum(message, self._written))
+        view[_START : _START + len(message)] = message
+        self._memory[0] = self._written
 
     def read(self) -> tuple[int, bytes] | None:
         """The newest message and its version, or None where there is none that is whole."""
         view = self._view()
         for _ in range(_TRIES):
-            version, length, checksum = _HEADER.unpack_from(view)
+            version = self.version
             if version == 0:
                 return None
+            length, checksum = _HEADER.unpack_from(view, _VERSION_BYTES)
             if version % 2 or length > self._size:
                 continue
-            message = bytes(view[_HEADER.size : _HEADER.size + length])
-            if _HEADER.unpack_from(view)[0] == version and zlib.crc32(message) == checksum:
+            message = bytes(view[_START : _START + length])
+            if self.version == version and _checksum(message, version) == checksum:
                 return version, message
         return None
 
     def _view(self) -> memoryview:
         return memoryview(self._memory).cast("B")
+
+
+def _checksum(message: bytes, version: int) -> int:
+    return zlib.crc32(message, version & 0xFFFFFFFF)
 
 
 @final
