@@ -33,7 +33,7 @@ export function attachKeyboard(inputs, settings, actions) {
       letGo();
       return;
     }
-    if (isTaken(event.target, event.code)) return;
+    if (isTaken(event.target, event.code, inputs.flowing)) return;
     const direction = ARROWS[event.code] ?? (settings.values.shortcuts ? LETTERS[event.code] : undefined);
     if (direction) {
       if (inputs.flowing) event.preventDefault();
@@ -57,15 +57,17 @@ export function attachKeyboard(inputs, settings, actions) {
   inputs.addEventListener("dropped", () => down.clear());
 }
 
-/** Whether the focused control wants this key for itself. @param {EventTarget | null} target @param {string} code */
-function isTaken(target, code) {
+/** Whether the focused control wants this key for itself. @param {EventTarget | null} target @param {string} code @param {boolean} driving */
+function isTaken(target, code, driving) {
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog")) return true;
   if (target.matches("textarea, select, input:not([type=radio], [type=checkbox], [type=button])")) return true;
-  return code.startsWith("Arrow") && target.matches("input[type=radio]");
+  // Arrows choose among radio buttons; while the arm is enabled they drive it.
+  return !driving && code.startsWith("Arrow") && target.matches("input[type=radio]");
 }
 
-/** @param {EventTarget | null} target */
+/** Whether Enter means something to the focused control. @param {EventTarget | null} target */
 export function isInteractive(target) {
-  return target instanceof HTMLElement && target.closest("a, button, input, select, textarea, summary, dialog") !== null;
+  const takers = "a, button, input:not([type=radio], [type=checkbox]), select, textarea, summary, dialog";
+  return target instanceof HTMLElement && target.closest(takers) !== null;
 }
