@@ -48,6 +48,9 @@ class Spec:
         profile: the person whose alignment is used; z = u where None.
         seed: of where the arm starts.
         out: folder for recordings.
+
+    Raises:
+        UserError: the seed is none, or a profile is named without a run.
     """
 
     run: Path | None = None
@@ -56,6 +59,8 @@ class Spec:
     out: Path = Path("teleop")
 
     def __post_init__(self) -> None:
+        if not 0 <= self.seed < 2**31:
+            raise UserError(f"The seed is {self.seed}: it must be from 0 to {2**31 - 1}.")
         if self.run is None and self.profile is not None:
             raise UserError(
                 "A profile belongs to a run: name one, as in `latentarm teleop RUN --profile NAME`."
