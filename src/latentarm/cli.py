@@ -100,7 +100,7 @@ def demo(
 ) -> int:
     """Learn latent actions and drive a 7-DoF Panda to three goals, against mode switching.
 
-    For example: latentarm demo --out demo
+    In a terminal it ends with the page of `latentarm teleop`. For example: latentarm demo --out demo
     """
     from latentarm.experiments.demo import DemoConfig, run_demo
 
@@ -108,7 +108,11 @@ def demo(
     rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars))
     _show(rows, json)
     _say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
-    return 0
+    run = out / "runs" / "cvae"
+    if json or not (sys.stdin.isatty() and sys.stdout.isatty()):
+        _say(f"To drive the arm yourself: latentarm teleop {run}", json)
+        return 0
+    return teleop(run, port=0, out=out / "teleop")
 
 
 @app.command(name="import")
