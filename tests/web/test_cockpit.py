@@ -206,7 +206,7 @@ def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
 def test_an_episode_is_in_the_journal(desk, tmp_path):
     def tick(now_s):
         enabled_at(desk, now_s)
-        desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
+        desk.give(1.0 if 0.5 <= now_s < 1.4 else 0.0, 0.0)
         if abs(now_s - 0.3) < 0.005:
             desk.order(Record(on=True, task="stab the carrot"))
         if abs(now_s - 1.3) < 0.005:
@@ -219,7 +219,8 @@ def test_an_episode_is_in_the_journal(desk, tmp_path):
     (episode,) = read_journal(path)
     assert episode.complete
     assert episode.header.task == "stab the carrot"
-    assert len(episode.records) == desk.reports[-1].recording.samples == pytest.approx(100, abs=2)
+    assert not episode.records[-1].command.velocity.any()
+    assert len(episode.records) == desk.reports[-1].recording.samples == pytest.approx(150, abs=10)
     assert desk.writer.status.episodes == 1
 
 

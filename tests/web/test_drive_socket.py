@@ -129,6 +129,16 @@ def test_modes_can_be_switched_while_it_moves(site):
             assert page.state["phase"] == "moving"
 
 
+def test_an_episode_ends_with_its_driver(site):
+    with site.page() as ada, site.page("Bob") as bob:
+        ada.send(type="record", on=True, task="stab")
+        assert bob.wait(lambda state: state["recording"] and state["recording"]["on"])
+        before = bob.state["recording"]["episodes"]
+        drive(ada)
+        ada.socket.close()
+        bob.wait(lambda state: not state["recording"]["on"] and state["recording"]["episodes"] > before)
+
+
 def test_help_shows_in_the_state(site):
     with site.page() as page:
         page.send(type="mode", mode="assisted")

@@ -80,7 +80,7 @@ class ChooseProfile(_Message):
 
 @final
 class Record(_Message):
-    """Begin an episode of what is driven, or end it."""
+    """Begin an episode of what is driven, or end it once the arm is at rest."""
 
     order: Literal["record"] = "record"
     on: bool

@@ -88,6 +88,7 @@ class Cockpit(InputSource):
         self._axes = 0
         self._tick = 0
         self._late_share = self._late_p99_ms = 0.0
+        self._ending_episode = False
         self._note = ""
         self._note_until_s = -math.inf
         self._change: ChooseProfile | Reset | None = None
@@ -131,6 +132,9 @@ class Cockpit(InputSource):
         """Called by the loop after every command."""
         self._tick += 1
         self._writer.add(record)
+        if self._ending_episode and self._step.at_rest:
+            self._ending_episode = False
+            self._writer.end()
         self._obey(record)
         self._enable_if_asked(record.time_s)
         if self._tick % _REPORT_EVERY == 0:
@@ -215,8 +219,9 @@ class Cockpit(InputSource):
         self._step.choose_mode(self._setting.mode_index(mode, self._axes))
 
     def _record(self, *, on: bool, task: str) -> None:
+        # An episode ends with the arm at rest: its last motion belongs to it.
+        self._ending_episode = not on
         if not on:
-            self._writer.end()
             return
         robot = self._setting.task.robot
         self._writer.begin(

@@ -112,7 +112,7 @@ class DriveSocket:
             if sender is not None:
                 sender.cancel()
             if page is not None and self._sessions.leave(page):
-                self._control.stop("The page of the person who drove has gone.")
+                self._wheel_changed("The page of the person who drove has gone.")
 
     async def _send_states(self, socket: WebSocket, page: Page) -> None:
         """States as fast as the page takes them, always the newest: nothing queues up."""
@@ -158,12 +158,17 @@ class DriveSocket:
                 self._control.order(Reset())
             case HandOver(to=to):
                 if self._sessions.hand_over(page, to):
-                    self._control.stop("The wheel was handed over.")
+                    self._wheel_changed("The wheel was handed over.")
             case Release():
                 if self._sessions.release(page):
-                    self._control.stop("The driver has given up the wheel.")
+                    self._wheel_changed("The driver has given up the wheel.")
             case _:
                 pass
+
+    def _wheel_changed(self, why: str) -> None:
+        """The arm stops for it, and an episode is one driver's."""
+        self._control.stop(why)
+        self._control.order(Record(on=False, task=""))
 
     def _give(self, seq: int, nonce: str, u: tuple[float, ...], *, latched: bool) -> None:
         padded = u + (0.0,) * (self._states.input_dim - len(u))

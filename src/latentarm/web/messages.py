@@ -116,7 +116,7 @@ class TrailClear(_Message):
 
 @final
 class RecordEpisode(_Message):
-    """Begin an episode, or end it."""
+    """Begin an episode, or end it once the arm is at rest; a change of the driver ends it too."""
 
     type: Literal["record"]
     on: bool

@@ -46,7 +46,7 @@ def _add_page(page: Page, pages: tuple[Page, ...]) -> None:
     def build() -> None:  # pyright: ignore[reportUnusedFunction]
         for style in (*_COMMON_STYLES, *page.styles):
             ui.add_head_html(f'<link rel="stylesheet" href="/static/{style}">')
-        # Beside NiceGUI's own application and not inside it: a page that drives must not be redrawn by anybody.
+        # Beside NiceGUI's own application and not inside it: nobody may redraw a page that drives.
         ui.add_body_html(body_of(page, pages))
         ui.add_body_html(f'<script type="module" src="/static/{page.script}"></script>')
 

@@ -55,12 +55,13 @@ class EpisodeWriter:
         """Begin an episode, where none is under way."""
         if self._on:
             return
-        if self._thread is None or not self._thread.is_alive():
-            self._thread = threading.Thread(target=self._write, name="recording", daemon=True)
-            self._thread.start()
+        # Before the thread begins: it may find at once that nothing can be written.
         self._problem = None
         self._on, self._samples = True, 0
         self._put(header)
+        if self._thread is None or not self._thread.is_alive():
+            self._thread = threading.Thread(target=self._write, name="recording", daemon=True)
+            self._thread.start()
 
     def add(self, record: StepRecord) -> None:
         """Keep a step, where an episode is under way."""
