@@ -24,6 +24,12 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 HERE = Path(__file__).parent
 
+SETTLING_S = 0.2
+"""The simulated arm follows its last command, zero, within this."""
+
+TRIES = 8
+"""A busy computer keeps inputs waiting, and the arm stops then, as it must: a person enables it again."""
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
@@ -98,18 +104,30 @@ class Arm:
     def enabled(self) -> bool:
         return self.state["phase"] in ("ready", "moving")
 
-    def wait(self, until: Callable[[], Any], within_s: float = 8.0) -> None:
+    def comes_to(self, until: Callable[[], Any], within_s: float) -> bool:
         end_s = time.monotonic() + within_s
         while time.monotonic() < end_s:
             if self.state and until():
-                return
+                return True
             time.sleep(0.01)
+        return False
+
+    def wait(self, until: Callable[[], Any], within_s: float = 8.0) -> None:
+        if self.comes_to(until, within_s):
+            return
         shown = {key: self.state.get(key) for key in ("phase", "why", "mode", "axes", "driver", "tool")}
         raise AssertionError(f"it never came to that: {shown}")
 
     def comes_to_rest(self) -> None:
         """Disengaged within a second, and not moving any more."""
         self.wait(lambda: self.state["phase"] in ("disengaged", "neutral_needed"), 1.0)
+        time.sleep(SETTLING_S)
+        self.stays()
+
+    def is_let_go(self) -> None:
+        """At rest within a second, enabled or not."""
+        self.wait(lambda: self.state["phase"] not in ("moving", "stopping"), 1.0)
+        time.sleep(SETTLING_S)
         self.stays()
 
     def stays(self, for_s: float = 0.5) -> None:
@@ -196,8 +214,22 @@ def seated(page: Page, arm: Arm) -> Page:
 
 
 def enable(page: Page, arm: Arm) -> None:
-    page.get_by_role("button", name="Enable", exact=True).click()
-    arm.wait(lambda: arm.enabled)
+    for _ in range(TRIES):
+        page.get_by_role("button", name="Enable", exact=True).click()
+        if arm.comes_to(lambda: arm.enabled, 1.5):
+            return
+    raise AssertionError(f"the arm is never enabled: {arm.state['why']}")
+
+
+def move(page: Page, arm: Arm, press: Callable[[], Any], let_go: Callable[[], Any]) -> None:
+    """Press until the arm moves, and keep on pressing."""
+    for _ in range(TRIES):
+        press()
+        if arm.comes_to(lambda: arm.state["phase"] == "moving", 1.5):
+            return
+        let_go()
+        enable(page, arm)
+    raise AssertionError(f"the arm never moves: {arm.state['why']}")
 
 
 @pytest.fixture
@@ -227,6 +259,11 @@ def drag(page: Page, right: float, up: float) -> None:
 @pytest.fixture
 def drag_stick() -> Callable[[Page, float, float], None]:
     return drag
+
+
+@pytest.fixture
+def press_until_moving() -> Callable[[Page, Arm, Callable[[], Any], Callable[[], Any]], None]:
+    return move
 
 
 @pytest.fixture

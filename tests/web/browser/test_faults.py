@@ -11,14 +11,28 @@ navigator.getGamepads = () => (window.pad ? [window.pad] : [null]);
 
 
 @pytest.fixture
-def push(arm, drag_stick):
+def push(arm, drag_stick, press_until_moving):
     """Hold the stick to one side until the arm moves."""
 
     def push(page):
-        drag_stick(page, -0.4, 0.0)
-        arm.wait(lambda: arm.state["phase"] == "moving")
+        press_until_moving(page, arm, lambda: drag_stick(page, -0.4, 0.0), page.mouse.up)
 
     return push
+
+
+@pytest.fixture
+def tilt(arm, press_until_moving):
+    """The same with a gamepad."""
+
+    def tilt(page):
+        press_until_moving(
+            page,
+            arm,
+            lambda: page.evaluate("pad.axes = [-1, 0]"),
+            lambda: page.evaluate("pad.axes = [0, 0]"),
+        )
+
+    return tilt
 
 
 def test_nothing_moves_before_enable(page, arm, drag_stick):
@@ -31,8 +45,7 @@ def test_letting_go_outside_the_window_stops_the_arm(enabled, arm, push):
     push(enabled)
     enabled.mouse.move(-80, -80)
     enabled.mouse.up()
-    arm.wait(lambda: arm.state["phase"] != "moving", 1.0)
-    arm.stays()
+    arm.is_let_go()
 
 
 @pytest.mark.parametrize(
@@ -91,21 +104,21 @@ def test_a_page_that_hangs_stops_the_arm(enabled, arm, push):
     arm.stays()
 
 
-def test_a_gamepad_that_is_pulled_out_stops_the_arm(open_page, seat, arm, press_enable):
+def test_a_gamepad_that_is_pulled_out_stops_the_arm(open_page, seat, arm, press_enable, tilt):
     page = seat(open_page(GAMEPAD), arm)
     press_enable(page, arm)
-    page.evaluate("pad.axes = [-1, 0]")
-    arm.wait(lambda: arm.state["phase"] == "moving")
+    tilt(page)
     page.evaluate("window.pad = null")
     arm.comes_to_rest()
     page.get_by_role("status").get_by_text("gamepad was disconnected").wait_for()
 
 
-def test_an_arm_that_was_stopped_needs_a_stick_at_rest_to_be_enabled(open_page, seat, arm, press_enable):
+def test_an_arm_that_was_stopped_needs_a_stick_at_rest_to_be_enabled(
+    open_page, seat, arm, press_enable, tilt
+):
     page = seat(open_page(GAMEPAD), arm)
     press_enable(page, arm)
-    page.evaluate("pad.axes = [-1, 0]")
-    arm.wait(lambda: arm.state["phase"] == "moving")
+    tilt(page)
     page.keyboard.press("Space")
     arm.comes_to_rest()
     page.get_by_role("button", name="Enable", exact=True).click()

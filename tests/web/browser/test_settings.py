@@ -23,15 +23,23 @@ def person(open_page, seat, arm, press_enable):
     return page
 
 
-def held(page, key):
+@pytest.fixture
+def held(person, arm, press_until_moving):
     """What is sent while a key is held."""
-    page.locator("#stick").focus()
-    page.keyboard.down(key)
-    page.wait_for_timeout(150)
-    last = json.loads(page.evaluate("sent.at(-1)"))
-    page.keyboard.up(key)
-    page.wait_for_timeout(100)
-    return last
+
+    def held(key):
+        def press():
+            person.locator("#stick").focus()
+            person.keyboard.down(key)
+
+        press_until_moving(person, arm, press, lambda: person.keyboard.up(key))
+        person.wait_for_timeout(100)
+        deflected = [one for one in map(json.loads, person.evaluate("sent")) if any(one["u"])]
+        person.keyboard.up(key)
+        arm.wait(lambda: arm.state["phase"] != "moving")
+        return deflected[-1]
+
+    return held
 
 
 def settings(page):
@@ -39,8 +47,8 @@ def settings(page):
     return page.get_by_role("dialog")
 
 
-def test_axes_sensitivity_and_name_are_kept(person, arm, press_enable):
-    assert held(person, "ArrowUp")["u"] == [0, 1]
+def test_axes_sensitivity_and_name_are_kept(person, arm, held, press_enable):
+    assert held("ArrowUp")["u"] == [0, 1]
     dialog = settings(person)
     dialog.get_by_label("Name").fill("Ada")
     dialog.get_by_label("Name").press("Tab")
@@ -52,52 +60,46 @@ def test_axes_sensitivity_and_name_are_kept(person, arm, press_enable):
     person.get_by_text("Nobody is driving").wait_for()
     press_enable(person, arm)
     assert arm.state["driver_name"] == "Ada"
-    assert held(person, "ArrowUp")["u"] == [0.5, 0]
+    assert held("ArrowUp")["u"] == [0.5, 0]
 
 
-def test_the_last_input_is_neutral(person):
-    held(person, "ArrowLeft")
+def test_the_last_input_is_neutral(person, held):
+    held("ArrowLeft")
     assert json.loads(person.evaluate("sent.at(-1)"))["u"] == [0, 0]
 
 
-def test_the_tool_goes_where_the_stick_points_in_the_front_view(person, arm, press_enable):
+def test_the_tool_goes_where_the_stick_points_in_the_front_view(person, arm, held):
     person.get_by_role("radio", name="Tool directions").check()
     arm.wait(lambda: arm.state["mode"] == "end_effector")
-    if not arm.enabled:
-        press_enable(person, arm)
     before = arm.tool
-    person.locator("#stick").focus()
-    person.keyboard.down("ArrowRight")
-    arm.wait(lambda: np.linalg.norm(arm.tool - before) > 0.03)
-    person.keyboard.up("ArrowRight")
+    held("ArrowRight")
+    held("ArrowRight")
     moved = arm.tool - before
     # The camera faces the arm: its right is the arm's left, which is +y.
+    assert moved[1] > 0.005
     assert moved[1] > 3 * abs(moved[0])
 
 
-def test_a_step_ends_by_itself(person, arm, press_enable):
+def test_a_step_ends_by_itself(person, arm, press_enable, press_until_moving):
     settings(person).get_by_label("moves the arm one step").check()
     person.get_by_role("button", name="Done").click()
     person.get_by_role("radio", name="Buttons").check()
     arm.wait(lambda: not arm.enabled)
     press_enable(person, arm)
     before = arm.tool
-    person.get_by_role("button", name="Left", exact=True).click()
-    arm.wait(lambda: arm.state["phase"] == "moving")
+    press_until_moving(person, arm, person.get_by_role("button", name="Left", exact=True).click, lambda: None)
     arm.wait(lambda: arm.state["phase"] != "moving", 2.0)
     assert np.linalg.norm(arm.tool - before) > 0.005
 
 
-def test_a_latched_press_goes_on_until_the_next(person, arm, press_enable):
+def test_a_latched_press_goes_on_until_the_next(person, arm, press_enable, press_until_moving):
     settings(person).get_by_label("moves the arm until I press again").check()
     person.get_by_role("button", name="Done").click()
     person.get_by_role("radio", name="Buttons").check()
     arm.wait(lambda: not arm.enabled)
     press_enable(person, arm)
     left = person.get_by_role("button", name="Left", exact=True)
-    left.click()
-    arm.wait(lambda: arm.state["phase"] == "moving")
+    press_until_moving(person, arm, left.click, lambda: None)
     assert json.loads(person.evaluate("sent.at(-1)"))["latched"] is True
     left.click()
-    arm.wait(lambda: arm.state["phase"] != "moving", 1.0)
-    arm.stays()
+    arm.is_let_go()

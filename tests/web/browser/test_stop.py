@@ -4,11 +4,23 @@ import pytest
 
 
 @pytest.fixture
-def moving(enabled, arm):
+def hold_key(arm, press_until_moving):
+    """Hold an arrow key until the arm moves."""
+
+    def hold_key(page):
+        def press():
+            page.locator("#stick").focus()
+            page.keyboard.down("ArrowLeft")
+
+        press_until_moving(page, arm, press, lambda: page.keyboard.up("ArrowLeft"))
+
+    return hold_key
+
+
+@pytest.fixture
+def moving(enabled, hold_key):
     """A page that holds a key, and so moves the arm."""
-    enabled.locator("#stick").focus()
-    enabled.keyboard.down("ArrowLeft")
-    arm.wait(lambda: arm.state["phase"] == "moving")
+    hold_key(enabled)
     return enabled
 
 
@@ -56,7 +68,7 @@ def test_settings_have_a_stop_of_their_own(enabled, arm):
     enabled.mouse.up()
 
 
-def test_the_wheel_is_handed_over(page, arm, open_page, press_enable):
+def test_the_wheel_is_handed_over(page, arm, open_page, press_enable, hold_key):
     other = open_page()
     other.get_by_role("button", name="Ask to drive").click()
     page.get_by_text("asks to drive").wait_for()
@@ -64,7 +76,6 @@ def test_the_wheel_is_handed_over(page, arm, open_page, press_enable):
     other.get_by_text("You are driving").wait_for()
     page.get_by_text("is driving; you are watching").wait_for()
     press_enable(other, arm)
-    other.locator("#stick").focus()
-    other.keyboard.down("ArrowLeft")
-    arm.wait(lambda: arm.state["phase"] == "moving")
+    hold_key(other)
     other.keyboard.up("ArrowLeft")
+    assert "pressed Stop" not in arm.state["why"]

@@ -50,7 +50,7 @@ export class Connection extends EventTarget {
    * @returns {boolean} whether it went out.
    */
   send(type, fields = {}) {
-    if (!this.open) return false;
+    if (!this.open || this._socket.readyState !== WebSocket.OPEN) return false;
     this._socket.send(JSON.stringify({ type, ...fields }));
     return true;
   }

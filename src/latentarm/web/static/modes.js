@@ -5,6 +5,9 @@ const MODE_LABELS = { latent: "Learned motions", assisted: "Learned, with help",
 /** @type {Record<string, string>} */
 const AXES_LABELS = { "x-y": "Across", "z-yaw": "Height, turn", "roll-pitch": "Tilt" };
 
+/** How long the server may take to change the mode, ms. */
+const ANSWER_MS = 300;
+
 /**
  * @param {{mode: HTMLElement, axes: HTMLElement}} parts the two fieldsets
  * @param {import("./connection.js").Connection} connection
@@ -13,7 +16,10 @@ export function attachModes(parts, connection) {
   let modes = /** @type {string[]} */ ([]);
   let axes = /** @type {string[]} */ ([]);
 
+  let askedAt = -Infinity;
+
   const ask = (/** @type {string} */ mode, /** @type {number} */ pair) => {
+    askedAt = performance.now();
     connection.send("mode", mode === "end_effector" ? { mode, axes: pair } : { mode });
   };
   connection.addEventListener("welcome", () => {
@@ -23,6 +29,8 @@ export function attachModes(parts, connection) {
     fill(parts.axes, "axes", axes.map((label) => AXES_LABELS[label] ?? label), (index) => ask("end_effector", index));
   });
   connection.addEventListener("state", () => {
+    // What was just chosen stays chosen until the server has had time to say otherwise.
+    if (performance.now() - askedAt < ANSWER_MS) return;
     const { mode, axes: pair, you } = connection.state;
     check(parts.mode, modes.indexOf(mode), you);
     check(parts.axes, pair, you);

@@ -7,6 +7,9 @@
 import { DIRECTIONS } from "./dpad.js";
 import { isInteractive } from "./keyboard.js";
 
+/** After a motion that ended by itself, a press is still meant for the motion, ms. */
+const LATE_PRESS_MS = 800;
+
 /** @typedef {{id: string, label: string, act?: () => void}} Choice */
 
 /**
@@ -22,6 +25,7 @@ export function attachScanning(parts, inputs, settings, actions) {
   let timer = 0;
   /** @type {string | null} */
   let moving = null;
+  let endedAt = -Infinity;
 
   const on = () => settings.values.panel === "switch";
   const paint = () => {
@@ -55,6 +59,7 @@ export function attachScanning(parts, inputs, settings, actions) {
       rest();
       return;
     }
+    if (performance.now() - endedAt < LATE_PRESS_MS) return;
     const choice = choices[lit];
     const direction = DIRECTIONS[/** @type {import("./dpad.js").Direction} */ (choice.id)];
     if (direction) {
@@ -109,7 +114,10 @@ export function attachScanning(parts, inputs, settings, actions) {
     act();
   }, { capture: true });
 
-  inputs.addEventListener("dropped", rest);
+  inputs.addEventListener("dropped", () => {
+    if (moving !== null) endedAt = performance.now();
+    rest();
+  });
   settings.addEventListener("change", explain);
   setInterval(refill, 100);
   refill();

@@ -22,8 +22,10 @@ export function attachSettingsDialog(dialog, opener, settings) {
       if (field.type === "checkbox") field.checked = Boolean(value);
       else if (field.type === "radio") field.checked = field.value === value;
       else if (document.activeElement !== field || field.type === "range") field.value = String(value);
-      const text = TEXTS[field.name]?.(Number(value));
-      if (text) form.elements[`${field.name}Text`].textContent = text;
+    }
+    for (const text of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-shows]"))) {
+      const name = /** @type {keyof typeof TEXTS} */ (text.dataset.shows);
+      text.textContent = TEXTS[name](Number(settings.values[/** @type {"stepS"} */ (name)]));
     }
     const people = /** @type {HTMLElement} */ (form.querySelector("datalist"));
     people.replaceChildren(...settings.people.map((value) => Object.assign(document.createElement("option"), { value })));
