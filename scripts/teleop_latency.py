@@ -27,6 +27,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from latentarm.control.journal import JournalEpisode, read_journal
+from latentarm.types import BoolArray, FloatArray
 from latentarm.web.addresses import TeleopConfig, listen
 from latentarm.web.server import build_app, gated, server_config
 from latentarm.web.setting import Spec, load_setting
@@ -206,19 +207,25 @@ def deadlines(run: Path | None, pages: int, for_s: float) -> dict[str, float]:
     return {"pages": pages, "ticks": ticks, "met_share": 1.0 - late}
 
 
-def fault_times(run: Path | None, fault: str, tries: int) -> list[tuple[float, float]]:
-    """Times from a fault to zero command and to rest, s, one pair for each try."""
-    faults_s: list[float] = []
-    episodes: list[JournalEpisode] = []
-    while len(faults_s) < tries:
+def fault_times(run: Path | None, fault: str, tries: int) -> tuple[list[tuple[float, float]], int]:
+    """Times from a fault to zero command and to rest, s, one pair for each try; and how many tries were void.
+
+    A try is void where the arm had stopped for another reason just before the fault.
+    """
+    found: list[tuple[float, float]] = []
+    void = 0
+    while len(found) < tries:
+        # Only a killed server cannot be used again.
+        at_once = 1 if fault == "server killed" else tries - len(found)
         with tempfile.TemporaryDirectory() as out:
             with Server(run, Path(out)) as server:
-                # Only a killed server cannot be used again.
-                for _ in range(1 if fault == "server killed" else tries):
-                    faults_s.append(one_fault(server, fault))
+                faults_s = [one_fault(server, fault) for _ in range(at_once)]
             (journal,) = Path(out).glob("*.sqlite")
-            episodes.extend(read_journal(journal))
-    return [after(episode, fault_s) for episode, fault_s in zip(episodes, faults_s, strict=True)]
+            episodes = read_journal(journal)
+        times = [after(episode, fault_s) for episode, fault_s in zip(episodes, faults_s, strict=True)]
+        found += [one for one in times if one is not None]
+        void += times.count(None)
+    return found, void
 
 
 def one_fault(server: Server, fault: str) -> float:
@@ -247,26 +254,27 @@ def one_fault(server: Server, fault: str) -> float:
     return fault_s
 
 
-def after(episode: JournalEpisode, fault_s: float) -> tuple[float, float]:
-    """From the fault to the first command of zero, and to the first below 0.01 rad/s."""
+def after(episode: JournalEpisode, fault_s: float) -> tuple[float, float] | None:
+    """From the fault to the first command of zero, and to one below 0.01 rad/s; None where it is void."""
     times = np.array([record.time_s for record in episode.records])
     speeds = np.array([np.abs(record.command.velocity).max() for record in episode.records])
-    if speeds[times <= fault_s][-1] < STILL_RAD_S or speeds[-1] > 0.0:
-        raise RuntimeError("the arm was not moving at the fault, or never stopped")
-    last_moving = times[speeds > 0.0][-1]
-    last_fast = times[speeds > STILL_RAD_S][-1]
-    return tuple(float(times[times > one][0] - fault_s) for one in (last_moving, last_fast))  # type: ignore[return-value]
+    if speeds[times <= fault_s][-1] < STILL_RAD_S:
+        return None
+    if speeds[-1] > 0.0:
+        raise RuntimeError(f"the arm never stopped after the fault in the episode {episode.header.task!r}")
+    return first_after(times, speeds > 0.0) - fault_s, first_after(times, speeds > STILL_RAD_S) - fault_s
+
+
+def first_after(times: FloatArray, moving: BoolArray) -> float:
+    """When the first sample after the last that moved was taken, s."""
+    return float(times[np.flatnonzero(moving)[-1] + 1])
 
 
 def spread(times: list[float]) -> dict[str, float]:
     """Median, p95 and worst, ms."""
-    median, p95, worst = 1000.0 * np.percentile(times, [50, 95, 100])
-    return {
-        "n": len(times),
-        "median_ms": round(median, 1),
-        "p95_ms": round(p95, 1),
-        "worst_ms": round(worst, 1),
-    }
+    shares = {"median_ms": 50, "p95_ms": 95, "worst_ms": 100}
+    figures = {name: round(1000.0 * float(np.percentile(times, share)), 1) for name, share in shares.items()}
+    return {"n": len(times), **figures}
 
 
 def main() -> None:
@@ -292,8 +300,8 @@ def main() -> None:
             tell(f"deadlines, {pages} pages", deadlines(chosen.run, pages, chosen.seconds))
     for fault in ("inputs cease", "socket closed", "event loop blocked", "server killed"):
         if chosen.tries:
-            times = fault_times(chosen.run, fault, chosen.tries)
-            tell(f"{fault}, to zero command", spread([zero for zero, _ in times]))
+            times, void = fault_times(chosen.run, fault, chosen.tries)
+            tell(f"{fault}, to zero command", spread([zero for zero, _ in times]) | {"void": void})
             tell(f"{fault}, to rest", spread([rest for _, rest in times]))
 
 
