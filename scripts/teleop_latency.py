@@ -34,6 +34,7 @@ from latentarm.web.setting import Spec, load_setting
 from latentarm.web.supervisor import ControlProcess
 
 STILL_RAD_S = 0.01
+FAULTS = ("inputs cease", "socket closed", "event loop blocked", "server killed")
 INPUT_PERIOD_S = 0.02
 
 
@@ -126,9 +127,13 @@ def serve(spec: Spec, sender: Any) -> None:
     app = gated(build_app(load_setting(spec), control), config, port, None, lambda: None)
     server = uvicorn.Server(server_config(app, config))
 
+    def block() -> None:
+        sender.send(time.monotonic())
+        time.sleep(0.3)
+
     async def run() -> None:
         loop = asyncio.get_running_loop()
-        loop.add_signal_handler(signal.SIGUSR1, time.sleep, 0.3)
+        loop.add_signal_handler(signal.SIGUSR1, block)
         sender.send((port, control.pid))
         await server.serve(sockets=[listening])
 
@@ -145,6 +150,7 @@ class Server:
         self.out = out
         self.process = context.Process(target=serve, args=(Spec(run, out=out), sender))
         self.process.start()
+        self.receiver = receiver
         self.port, self.control_pid = receiver.recv()
 
     def __enter__(self) -> "Server":
@@ -241,6 +247,7 @@ def one_fault(server: Server, fault: str) -> float:
                 page.socket.close()
             case "event loop blocked":
                 os.kill(server.process.pid or 0, signal.SIGUSR1)
+                fault_s = server.receiver.recv()
             case "server killed":
                 server.process.kill()
             case _:
@@ -284,6 +291,7 @@ def main() -> None:
     parser.add_argument("--inputs", type=int, default=500)
     parser.add_argument("--tries", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=30.0, help="of driving, for the deadlines")
+    parser.add_argument("--faults", nargs="*", choices=FAULTS, default=FAULTS)
     parser.add_argument("--out", type=Path, default=Path("teleop-latency.json"))
     chosen = parser.parse_args()
     results: dict[str, Any] = {"cores": os.cpu_count(), "load": os.getloadavg()}
@@ -298,7 +306,7 @@ def main() -> None:
     if chosen.seconds:
         for pages in (1, 10):
             tell(f"deadlines, {pages} pages", deadlines(chosen.run, pages, chosen.seconds))
-    for fault in ("inputs cease", "socket closed", "event loop blocked", "server killed"):
+    for fault in chosen.faults:
         if chosen.tries:
             times, void = fault_times(chosen.run, fault, chosen.tries)
             tell(f"{fault}, to zero command", spread([zero for zero, _ in times]) | {"void": void})

@@ -410,6 +410,7 @@ def teleop(
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
     seed: Seed = 0,
     out: Annotated[Path, arg(metavar="DIR", help="Folder for what is recorded.")] = Path("teleop"),
+    json: Json = False,
 ) -> int:
     """Drive a simulated arm from a web page: stick, buttons, keyboard, gamepad or switches.
 
@@ -419,8 +420,16 @@ def teleop(
     from latentarm.web.server import serve
     from latentarm.web.setting import Spec
 
-    spec = Spec(run, profile, seed, out)
-    serve(TeleopConfig(spec, host, port, certfile, keyfile), lambda sentence: print(sentence, flush=True))
+    def say(sentence: str) -> None:
+        _say(sentence, json)
+        sys.stdout.flush()  # whoever reads us through a pipe waits for the address
+
+    def ready(address: str) -> None:
+        if json:
+            print(json_format.dumps({"address": address}), flush=True)
+
+    config = TeleopConfig(Spec(run, profile, seed, out), host, port, certfile, keyfile)
+    serve(config, say, ready)
     return 0
 
 

@@ -23,6 +23,7 @@ COMMANDS = [
     "evaluate",
     "align",
     "drive",
+    "teleop",
     "reproduce",
     "bench",
     "robots",

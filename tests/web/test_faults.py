@@ -18,6 +18,10 @@ ZERO_WITHIN_S = 0.15
 REST_WITHIN_S = 0.4
 STILL_RAD_S = 0.01
 
+ON_ITS_WAY_S = 0.1
+"""What the last input may take from a page's thread to the control process on a busy machine. That zero comes
+within 150 ms of its arrival is held in simulated time, to the tick."""
+
 
 @pytest.fixture
 def recorded(trained, tmp_path):
@@ -61,7 +65,7 @@ def test_a_page_that_falls_silent(recorded):
         time.sleep(0.8)
         assert page.state["phase"] == "disengaged"
     zero_s, rest_s = times(fault_s)
-    assert zero_s <= ZERO_WITHIN_S + 0.02  # its last input may have been 20 ms on its way
+    assert zero_s <= ZERO_WITHIN_S + ON_ITS_WAY_S
     assert rest_s <= REST_WITHIN_S
 
 
@@ -69,13 +73,18 @@ def test_a_blocked_event_loop(recorded):
     site, times = recorded
     with site.page() as page:
         set_going(page)
-        site.loop.call_soon_threadsafe(time.sleep, 0.3)
-        fault_s = time.monotonic()
+        began = []
+
+        def block():
+            began.append(time.monotonic())
+            time.sleep(0.3)
+
+        site.loop.call_soon_threadsafe(block)
         time.sleep(1.0)
         # The inputs that had waited do not start it again.
         assert page.state["phase"] in ("disengaged", "neutral_needed")
-    zero_s, rest_s = times(fault_s)
-    assert zero_s <= ZERO_WITHIN_S + 0.02
+    zero_s, rest_s = times(began[0])
+    assert zero_s <= ZERO_WITHIN_S + ON_ITS_WAY_S
     assert rest_s <= REST_WITHIN_S
 
 

@@ -32,12 +32,15 @@ _FRAMEWORK_FRAME_LIMIT: Final = 1 << 16
 _MOST_CONNECTIONS: Final = 256
 
 
-def serve(config: TeleopConfig, say: Callable[[str], None]) -> None:
+def serve(
+    config: TeleopConfig, say: Callable[[str], None], ready: Callable[[str], None] = lambda address: None
+) -> None:
     """Serve the page until Ctrl-C.
 
     Args:
         config: what was asked for.
         say: tells the person who started it.
+        ready: called once with the address to open first: the page's, or a link that works once.
 
     Raises:
         UserError: the run or profile is not to be had, the address is taken, or a file for TLS is broken.
@@ -49,22 +52,24 @@ def serve(config: TeleopConfig, say: Callable[[str], None]) -> None:
     base = origin(config.scheme, config.host, port)
     keys = None if config.loopback else Keys()
 
+    def link() -> str:
+        return f"{base}/" if keys is None else f"{base}{ENTRY}?key={keys.new_link()}"
+
     def invite() -> None:
-        if keys is not None:
-            say(f"For the next person, a link that works once: {base}{ENTRY}?key={keys.new_link()}")
+        say(f"For the next person, a link that works once: {link()}")
 
     control = ControlProcess(config.spec)
     try:
         app = build_app(setting, control)
         _add_pages(app)
         gate = gated(app, config, port, keys, invite)
-        if keys is None:
-            say(f"The page is at {base}/ (end with Ctrl-C).")
-        else:
-            say(f"The page is at {base}/, for people with a link (end with Ctrl-C).")
+        first = link()
+        say(f"The page is at {first} (end with Ctrl-C).")
+        if keys is not None:
+            say("This link works once; when it is used the next one is printed.")
             if config.scheme == "http":
                 say("Without --certfile and --keyfile the network can read and change what is sent.")
-            invite()
+        ready(first)
         if config.spec.run is None:
             say(
                 "Without a run the page has end-effector control alone; `latentarm demo` or `latentarm train`"
