@@ -21,8 +21,8 @@ export class Ghosts {
     this._ghosts = /** @type {Direction[]} */ (Object.keys(LOOKS)).map((direction) => {
       const material = new THREE.MeshBasicMaterial({ transparent: true, depthTest: false });
       const body = new THREE.Mesh(new THREE.BufferGeometry(), material);
-      const head = new THREE.Mesh(new THREE.ConeGeometry(0.016, 0.034, 16), material);
-      const beads = new THREE.InstancedMesh(new THREE.SphereGeometry(0.0075, 10, 8), material, BEADS);
+      const head = new THREE.Mesh(new THREE.ConeGeometry(0.016, 0.034, 10), material);
+      const beads = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(0.0075, 1), material, BEADS);
       beads.frustumCulled = body.frustumCulled = false;
       for (const object of [body, head, beads]) {
         object.renderOrder = 2;

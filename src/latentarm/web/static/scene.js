@@ -177,7 +177,7 @@ export class ArmScene {
     });
     this._rings = this.goals.map((/** @type {any} */ goal) => {
       const ring = new THREE.Mesh(
-        new THREE.TorusGeometry(1, 0.07, 8, 40),
+        new THREE.TorusGeometry(1, 0.07, 5, 36),
         new THREE.MeshBasicMaterial({ transparent: true }),
       );
       ring.position.set(...goal.position);
@@ -197,7 +197,7 @@ export class ArmScene {
   }
 
   _addTrail() {
-    const bead = new THREE.SphereGeometry(0.004, 6, 4);
+    const bead = new THREE.OctahedronGeometry(0.0045);
     this._trail = new THREE.InstancedMesh(bead, new THREE.MeshBasicMaterial(), TRAIL_POINTS);
     this._trail.frustumCulled = false;
     this.scene.add(this._trail);

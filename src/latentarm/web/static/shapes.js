@@ -63,7 +63,7 @@ function geometryOf({ type, size, mesh }, meshes) {
     case "ellipsoid":
       return new THREE.SphereGeometry(1, 24, 16).scale(a, b, c);
     case "capsule":
-      return new THREE.CapsuleGeometry(a, 2 * b, 8, 24).rotateX(Math.PI / 2);
+      return new THREE.CapsuleGeometry(a, 2 * b, 6, 18).rotateX(Math.PI / 2);
     case "cylinder":
       return new THREE.CylinderGeometry(a, a, 2 * b, 28).rotateX(Math.PI / 2);
     case "box":
