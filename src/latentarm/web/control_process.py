@@ -74,7 +74,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
 
 def _ask_for_priority() -> None:
     """Come before ordinary processes, where the system allows it: a busy computer makes us late."""
-    with suppress(OSError):
+    with suppress(OSError, AttributeError):  # not allowed, or a system that has no such thing
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
