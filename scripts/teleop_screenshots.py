@@ -6,6 +6,7 @@ The run is driven by a script for them: a simulated person. For example:
 """
 
 import argparse
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,12 +15,12 @@ from playwright.sync_api import Page
 from teleop_page import chromium, enable, served
 
 DESK = {"width": 1280, "height": 800}
+SETTLE_MS = 800
 PHONE = {"width": 390, "height": 844}
 
 
 def driving(page: Page) -> None:
     """With help, under way to a goal; the stick stays pushed."""
-    page.get_by_role("radio", name="Learned, with help").check()
     enable(page)
     stick = page.locator("#stick")
     stick.scroll_into_view_if_needed()
@@ -76,14 +77,18 @@ def main() -> None:
                     page = context.new_page()
                     page.goto(address)
                     page.locator(".label").first.wait_for(state="attached")
-                    page.wait_for_timeout(800)
+                    page.wait_for_timeout(SETTLE_MS)
+                    page.get_by_role("radio", name="Learned, with help").check()
+                    page.get_by_role("button", name="Arm back to start").click()
+                    page.evaluate("scrollTo(0, 0)")
+                    page.wait_for_timeout(SETTLE_MS)
                     act(page)
                     page.wait_for_timeout(600)
                     page.screenshot(path=given.out / f"teleop-{name}-{size_name}-{scheme}.png")
                     page.mouse.up()
                     context.close()
-                    # The next page finds nobody at the wheel.
-                    browser.new_page().close()
+                    # So that the next page finds nobody at the wheel.
+                    time.sleep(0.3)
 
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ export class Drawing {
     if (shown === this._shown) return;
     this._shown = shown;
     this._tick = state.tick;
-    this._scene.take(state, !this._still.matches);
+    this._scene.take(state, this._views.smooth && !this._still.matches);
     this._scene.believe(state.belief);
     const likeliest = state.belief ? state.belief.indexOf(Math.max(...state.belief)) : -1;
     this._scene.bound(wanted.showBound ? state.bound_m : null, likeliest);

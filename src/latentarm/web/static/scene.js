@@ -9,6 +9,7 @@ const TRAIL_POINTS = 600;
 const TRAIL_STEP_M = 0.008;
 /** States come about this far apart, ms; poses glide for no longer. */
 const LONGEST_GLIDE_MS = 60;
+const FRAME_MS = 16;
 
 export class ArmScene {
   /** @param {any} description what /scene.json holds @param {Map<number, any>} meshes */
@@ -64,7 +65,9 @@ export class ArmScene {
     }));
     this._toolFrom = this._to === null ? new THREE.Vector3(...state.tool) : this.tool.clone();
     this._glideMs = gliding && this._to !== null ? Math.min(now - this._heardAt, LONGEST_GLIDE_MS) : 0;
-    this._heardAt = this._began = now;
+    this._heardAt = now;
+    // The next frame is seen a little later than it is begun: it already shows some of the motion.
+    this._began = now - FRAME_MS;
     this._to = state.bodies;
     this._toolTo = new THREE.Vector3(...state.tool);
     this._extendTrail(this._toolTo);
@@ -73,7 +76,7 @@ export class ArmScene {
   /** Show the moment. @param {number} now ms @returns {boolean} whether poses are still gliding. */
   advance(now) {
     if (this._to === null) return false;
-    const share = this._glideMs > 0 ? Math.min((now - this._began) / this._glideMs, 1) : 1;
+    const share = this._glideMs > 0 ? clamp((now - this._began) / this._glideMs) : 1;
     this._bodies.forEach((/** @type {any} */ body, /** @type {number} */ index) => {
       const pose = /** @type {number[][]} */ (this._to)[index];
       if (!pose) return;
@@ -213,4 +216,9 @@ export class ArmScene {
     this._trailNext = (this._trailNext + 1) % TRAIL_POINTS;
     this._trail.count = Math.max(this._trail.count, this._trailNext);
   }
+}
+
+/** @param {number} share */
+function clamp(share) {
+  return Math.min(Math.max(share, 0), 1);
 }

@@ -5,8 +5,8 @@ import { THREE } from "nicegui-scene";
 const FOV_DEG = 32;
 /** Room around the outermost points: the arm is thick, and labels stand beside goals. */
 const MARGIN_M = 0.13;
-/** Slower frames than this, ms, on average, and the drawing gets coarser. */
-const SLOW_MS = 40;
+/** So many more frames that had to wait than frames that were drawn, and the drawing gets coarser. */
+const MOST_HELD = 40;
 const COARSEST = 0.5;
 /** Without a graphics processor, pixels are dear from the start. */
 const SOFTWARE_SHARE = 0.7;
@@ -30,13 +30,14 @@ export class Views {
     this._canvas = canvas;
     this._scene = scene;
     const software = drawsInSoftware();
+    /** Whether there is time for frames between two states. */
+    this.smooth = !software;
     this._renderer = new THREE.WebGLRenderer({ canvas, antialias: !software, alpha: true, powerPreference: "low-power" });
     this._renderer.setScissorTest(true);
     this._ratio = Math.min(devicePixelRatio, 2) * (software ? SOFTWARE_SHARE : 1);
     /** @type {any} Passed by the graphics processor when the last frame is done. */
     this._fence = null;
-    this._frameMs = 16;
-    this._drawn = 0;
+    this._held = 0;
     this._pending = 0;
     /** @type {"facing" | "behind"} */
     this.seat = "facing";
@@ -120,9 +121,10 @@ export class Views {
     this._pending = 0;
     // A frame on top of an unfinished one would hold up the page, and inputs with it.
     if (!this._finished()) {
-      this.invalidate();
+      this._hold();
       return;
     }
+    this._held = Math.max(this._held - 1, 0);
     const gliding = this._scene.advance(now);
     for (const call of this.beforeFrame) call();
     const canvas = this._canvas.getBoundingClientRect();
@@ -138,7 +140,6 @@ export class Views {
     this._fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     for (const call of this.afterFrame) call();
-    this._pace(now, gliding);
     if (gliding) this.invalidate();
   }
 
@@ -151,17 +152,15 @@ export class Views {
     return true;
   }
 
-  /** Coarser where the machine cannot keep up: a page that lags is a page that stops the arm. @param {number} now @param {boolean} gliding */
-  _pace(now, gliding) {
-    const took = now - this._drawn;
-    this._drawn = now;
-    if (!gliding || took > 500) return;
-    this._frameMs += 0.05 * (took - this._frameMs);
-    if (this._frameMs > SLOW_MS && this._ratio > COARSEST) {
+  /** Draw with the next frame instead; coarser, where that happens too often. */
+  _hold() {
+    this._held += 1;
+    if (this._held > MOST_HELD && this._ratio > COARSEST) {
       this._ratio = Math.max(this._ratio * 0.75, COARSEST);
-      this._frameMs = 16;
+      this._held = 0;
       this.layOut();
     }
+    this.invalidate();
   }
 }
 
