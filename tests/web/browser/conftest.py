@@ -184,7 +184,7 @@ def open_page(chromium: Browser, address: str, arm: Arm) -> Iterator[Callable[..
         if script:
             page.add_init_script(script)
         page.goto(address)
-        page.locator("#status[data-phase=disengaged], #status[data-phase=neutral_needed]").wait_for()
+        page.locator("#status:not([data-phase=connecting], [data-phase=lost])").wait_for()
         # The drawing is loaded last.
         page.locator(".label").first.wait_for(state="attached")
         return page

@@ -103,3 +103,18 @@ def test_a_latched_press_goes_on_until_the_next(person, arm, press_enable, press
     assert json.loads(person.evaluate("sent.at(-1)"))["latched"] is True
     left.click()
     arm.is_let_go()
+
+
+def test_two_switches_go_on_and_choose(person, arm):
+    settings(person).get_by_label("Two switches").check()
+    person.get_by_role("button", name="Done").click()
+    person.get_by_role("radio", name="Switch").check()
+    arm.wait(lambda: not arm.enabled)
+    lit = person.locator("#scan li[aria-current=true]")
+    lit.get_by_text("Enable").wait_for()
+    person.wait_for_timeout(1500)
+    assert lit.inner_text() == "Enable"
+    person.get_by_role("button", name="Next").click()
+    lit.get_by_text("Other mode").wait_for()
+    person.get_by_role("button", name="Switch", exact=True).click()
+    arm.wait(lambda: arm.state["mode"] == "end_effector")

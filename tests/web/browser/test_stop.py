@@ -79,3 +79,13 @@ def test_the_wheel_is_handed_over(page, arm, open_page, press_enable, hold_key):
     hold_key(other)
     other.keyboard.up("ArrowLeft")
     assert "pressed Stop" not in arm.state["why"]
+
+
+def test_a_stop_right_after_enable_wins(page, arm):
+    page.evaluate(
+        """() => {
+          document.getElementById("enable").click();
+          window.dispatchEvent(new KeyboardEvent("keydown", { code: "Escape" }));
+        }"""
+    )
+    assert not arm.comes_to(lambda: arm.enabled, 1.0)

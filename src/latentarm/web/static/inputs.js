@@ -23,7 +23,7 @@ export class Inputs extends EventTarget {
     this._connection = connection;
     this._shaped = shaped;
     this.neutral();
-    this._timer = 0;
+    this._timer = this._enabling = 0;
     this._wasEngaged = false;
     this._askedAt = -Infinity;
     connection.addEventListener("state", () => this._onState());
@@ -87,7 +87,8 @@ export class Inputs extends EventTarget {
     this._wasEngaged = false;
     if (!this.flowing) this._timer = setInterval(() => this._tick(), PERIOD_MS);
     this._send(this.source ?? "pointer");
-    setTimeout(() => this._connection.send("enable"), NEUTRAL_FIRST_MS);
+    clearTimeout(this._enabling);
+    this._enabling = setTimeout(() => this._connection.send("enable"), NEUTRAL_FIRST_MS);
   }
 
   /**
@@ -111,6 +112,8 @@ export class Inputs extends EventTarget {
   }
 
   _end() {
+    // An Enable that has not gone out yet must not come after a Stop.
+    clearTimeout(this._enabling);
     clearInterval(this._timer);
     this._timer = 0;
   }

@@ -11,8 +11,8 @@ import { attachModes } from "./modes.js";
 import { personal, listGhosts } from "./paths.js";
 import { attachRecording } from "./recording.js";
 import { attachScanning } from "./scanning.js";
-import { attachSeat } from "./seat.js";
-import { Settings } from "./settings.js";
+import { attachSeat, seatFirst } from "./seat.js";
+import { NO_PROFILE, Settings } from "./settings.js";
 import { attachSettingsDialog } from "./settings_dialog.js";
 import { attachStatus } from "./status.js";
 import { attachStick } from "./stick.js";
@@ -21,8 +21,6 @@ import { attachTheme } from "./theme.js";
 
 /** Words beside the views change no more often than this, ms. */
 const WORDS_MS = 250;
-/** How long the server may take to give a free seat, ms. */
-const SEAT_MS = 1000;
 
 /** @param {string} id @returns {any} */
 const part = (id) => document.getElementById(id);
@@ -45,25 +43,15 @@ function shaped(x, y) {
 const inputs = new Inputs(connection, shaped);
 const status = attachStatus({ line: part("status"), text: part("status-text") }, connection);
 inputs.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
-const stop = attachStop(connection, () => inputs.drop());
+const seat = seatFirst(connection);
+const stop = attachStop(connection, () => {
+  seat.forget();
+  inputs.drop();
+});
 
 /** The seat first, if it is free, and then the arm: one press for both. */
 const enable = () => {
-  if (connection.engaged || !connection.open) return;
-  if (connection.driving) {
-    inputs.enable();
-    return;
-  }
-  const free = connection.state?.driver === null;
-  connection.send("ask_to_drive");
-  if (!free) return;
-  const until = performance.now() + SEAT_MS;
-  const seated = () => {
-    if (!connection.driving && performance.now() < until) return;
-    connection.removeEventListener("state", seated);
-    if (connection.driving) inputs.enable();
-  };
-  connection.addEventListener("state", seated);
+  if (!connection.engaged) seat.ask(() => inputs.enable());
 };
 part("enable").addEventListener("click", enable);
 
@@ -167,13 +155,15 @@ applySettings();
 
 let profileAsked = "";
 
-/** The person's alignment, once they drive and the arm stands still; asked for once. */
+/** The person's alignment, once they drive and the arm stands still; asked for once. Without a wish the server's stays. */
 function chooseProfile() {
   const { state, welcome } = connection;
-  const wanted = welcome?.profiles.includes(settings.values.profile) ? settings.values.profile : "";
-  if (!connection.driving || connection.engaged || wanted === (state.profile ?? "") || wanted === profileAsked) return;
-  profileAsked = wanted;
-  connection.send("profile", { name: wanted || null });
+  const { profile } = settings.values;
+  const known = profile === NO_PROFILE || welcome?.profiles.includes(profile);
+  if (!known || !connection.driving || connection.engaged || profile === profileAsked) return;
+  profileAsked = profile;
+  const name = profile === NO_PROFILE ? null : profile;
+  if (name !== state.profile) connection.send("profile", { name });
 }
 
 connection.addEventListener("welcome", () => {

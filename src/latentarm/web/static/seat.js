@@ -1,5 +1,41 @@
 /** Who drives, who watches, and how the one becomes the other. */
 
+/** How long the server may take to give a free seat, ms. */
+const SEAT_MS = 1000;
+
+/**
+ * What is to be done once this page drives: at once, or soon where nobody drives; not where somebody else does.
+ *
+ * @param {import("./connection.js").Connection} connection
+ */
+export function seatFirst(connection) {
+  let until = -Infinity;
+  /** @type {() => void} */
+  let then = () => {};
+  connection.addEventListener("state", () => {
+    if (performance.now() > until || !connection.driving) return;
+    until = -Infinity;
+    then();
+  });
+  return {
+    /** @param {() => void} act */
+    ask(act) {
+      if (connection.driving) {
+        act();
+        return;
+      }
+      if (connection.state?.driver === null) {
+        then = act;
+        until = performance.now() + SEAT_MS;
+      }
+      connection.send("ask_to_drive");
+    },
+    forget() {
+      until = -Infinity;
+    },
+  };
+}
+
 /**
  * @param {{text: HTMLElement, ask: HTMLButtonElement, handOver: HTMLButtonElement, release: HTMLButtonElement}} parts
  * @param {import("./connection.js").Connection} connection

@@ -23,6 +23,9 @@ export const DEFAULTS = Object.freeze({
   theme: "auto",
 });
 
+/** Instead of a profile's name: no alignment, also where the server was started with one. */
+export const NO_PROFILE = "-";
+
 const LIMITS = { sensitivity: [0.1, 1], deadZone: [0, 0.5], stepS: [0.2, 2], dwellS: [0.4, 5] };
 const PERSON_KEY = "latentarm.person";
 const SETTINGS_KEY = "latentarm.settings.";

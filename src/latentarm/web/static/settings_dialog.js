@@ -1,5 +1,7 @@
 /** The settings' dialog: every change counts at once. */
 
+import { NO_PROFILE } from "./settings.js";
+
 const TEXTS = /** @type {Record<string, (value: number) => string>} */ ({
   sensitivity: (value) => `${Math.round(100 * value)} %`,
   deadZone: (value) => `${Math.round(100 * value)} %`,
@@ -53,9 +55,9 @@ export function attachSettingsDialog(dialog, opener, settings) {
   });
   /** @param {string[]} names people whose alignment can be chosen */
   const offer = (names) => {
-    const choices = ["", ...names].map((value) =>
-      Object.assign(document.createElement("option"), { value, textContent: value || "none" }));
-    /** @type {any} */ (form.elements).profile.replaceChildren(...choices);
+    const choices = [["", "as the server was started"], [NO_PROFILE, "none"], ...names.map((name) => [name, name])];
+    /** @type {any} */ (form.elements).profile.replaceChildren(...choices.map(([value, textContent]) =>
+      Object.assign(document.createElement("option"), { value, textContent })));
     show();
   };
   form.querySelector("#settings-reset")?.addEventListener("click", () => settings.reset());
