@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Final, final
+from typing import Final, Protocol, final
 
 import numpy as np
 
@@ -12,6 +12,14 @@ from latentarm.kinematics.chain import Chain
 from latentarm.types import FloatArray
 
 AXES: Final = "xyz"
+
+
+class Preference(Protocol):
+    """What a simulated person would do to have motions made."""
+
+    def inputs(self, motions: Motions) -> FloatArray:
+        """The inputs (N, d) by which they would ask for N motions."""
+        ...
 
 
 @final
