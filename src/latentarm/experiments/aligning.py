@@ -10,9 +10,7 @@ from latentarm.alignment.affine import fit_affine
 from latentarm.alignment.contract import identity
 from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.profile import Profile, model_fingerprint, new_profile_folder, save_profile
-from latentarm.alignment.queries import (
-    StoppingRule,
-)
+from latentarm.alignment.queries import StoppingRule
 from latentarm.alignment.training import FitConfig
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
