@@ -28,6 +28,29 @@ class Curves:
 
 
 @dataclass(frozen=True)
+class Drives:
+    """Drives to the goals of the demo's table by a simulated person with an expectation of their own.
+
+    Attributes:
+        models: kinds that are driven with.
+        seeds: models of each kind; they take turns.
+        episodes: demonstrations, of which a fifth trains no model: alignments are judged on it.
+        epochs: passes over the training pairs, at most.
+        answers: that an alignment is learned from, asked for as `latentarm align` does.
+        to_each_goal: drives to each goal, in each condition.
+        limit_s: a drive that lasts longer has failed, s.
+    """
+
+    models: tuple[str, ...] = ("cvae", "isometric")
+    seeds: int = 3
+    episodes: int = 60
+    epochs: int = 16
+    answers: int = 10
+    to_each_goal: int = 20
+    limit_s: float = 30.0
+
+
+@dataclass(frozen=True)
 class Preset:
     """Sizes of the study; where the paper gives a number, this is it.
 
@@ -49,8 +72,7 @@ class Preset:
         steps: of Adam, for each alignment.
         ideal_steps: the same for Ideal Align.
         curves: how error falls with the number of answers.
-        drives: drives for each goal and condition.
-        drive_models: models that are driven with.
+        drives: drives to the goals of the demo.
     """
 
     name: str
@@ -69,8 +91,7 @@ class Preset:
     steps: int = 400
     ideal_steps: int = 1500
     curves: Curves = field(default_factory=Curves)
-    drives: int = 20
-    drive_models: int = 3
+    drives: Drives = field(default_factory=Drives)
 
 
 PRESETS: Final[dict[str, Preset]] = {
@@ -87,7 +108,8 @@ PRESETS: Final[dict[str, Preset]] = {
         steps=100,
         ideal_steps=200,
         curves=Curves(models=("cae",), noises=(0.0,), answers=(1, 3, 5), ensemble_steps=40, candidates=30),
-        drives=1,
-        drive_models=1,
+        drives=Drives(
+            models=("cvae",), seeds=1, episodes=12, epochs=2, answers=4, to_each_goal=1, limit_s=3.0
+        ),
     ),
 }
