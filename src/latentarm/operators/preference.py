@@ -61,7 +61,7 @@ class ToolAxes:
 @final
 @dataclass(frozen=True, eq=False)
 class HeightAndTilt:
-    """A simulated person for whom one axis of the stick is up, and the other tilts the tool about the base's x.
+    """A simulated person for whom one axis of the stick is up, and the other tilts about the base's x axis.
 
     They pay no heed to where else the tool goes or turns.
 

@@ -44,9 +44,7 @@ class ReachAndPour(PouringTask):
         carry = at_height(_way_to_bowl(reach.position[-1, :2], rng))
         place = carry.position[-1, :2]
         rest = np.repeat([[HEIGHT_M, 0.0]], round(PAUSE_S * RATE_HZ), axis=0)
-        course = wander_from(
-            rest[-1], POUR_S, np.array(LOWEST), np.array(HIGHEST), np.array(FASTEST), rng
-        )
+        course = wander_from(rest[-1], POUR_S, np.array(LOWEST), np.array(HIGHEST), np.array(FASTEST), rng)
         pour = over(place, np.concatenate([rest, course[1:]]))
         return reach.then(carry.position, carry.tilt).then(pour.position, pour.tilt)
 

@@ -1,8 +1,8 @@
 """What the three tasks have in common: a Panda whose hand is led along poses by a simulated person.
 
-The paper says which two degrees of freedom each task has and leaves the rest open. Chosen here: in the plane the
-hand points down, at one height; over the bowl it stays where it is, goes up and down and tilts about the base's
-x axis. Demonstrations wander smoothly through all of that, so that everywhere every direction is shown.
+The paper says which two degrees of freedom each task has and leaves the rest open. Chosen here: in the plane
+the hand points down, at one height; over the bowl it stays where it is, goes up and down and tilts about the
+base's x axis. Demonstrations wander smoothly, so that every direction is shown everywhere.
 """
 
 from abc import ABC, abstractmethod

@@ -26,7 +26,7 @@ FREQUENCIES_HZ: Final = (0.1, 0.35)
 """Slowest and fastest of them."""
 
 LOUDNESS: Final = 1.2
-"""SD of their sum at full speed, in that of the sines: most of the time a course is slower than the fastest."""
+"""Sum of the waves at which a course is as fast as may be; where it is more, the speed is cut."""
 
 
 @final
