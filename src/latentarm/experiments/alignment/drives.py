@@ -134,7 +134,9 @@ def drive(setup: Setup, model_seed: int, goal: int, manner: str, rng: np.random.
     """
     task, records = setup.task, list[StepRecord]()
     trace = simulate(setup, goal, manner, rng, records.append)
-    reached_s = next((record.time_s for record in records if _there(task, goal, record)), None)
+    # A drive that ends at the goal has no record there.
+    at_the_end = trace.figures.time_s if trace.figures.success else None
+    reached_s = next((record.time_s for record in records if _there(task, goal, record)), at_the_end)
     until = trace.time_s <= (np.inf if reached_s is None else reached_s)
     return Driven(
         goal=goal,

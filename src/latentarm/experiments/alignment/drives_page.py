@@ -171,6 +171,8 @@ def _reading(result: DrivesResult) -> str:
   person steers by, and so far across them. The former a better alignment could mend. The latter nobody
   steers: two directions of the tool do not say where it is across them, nor how it is turned. That is left
   to the decoder, which follows the demonstrations only roughly.
+- A stick that is turned and mirrored is one that is mirrored in a line, and along that line it is as before;
+  the axes of z, too, come as they may. So No Align can come to a goal by luck.
 - Ideal Align says what few answers cost; what it lacks of *{KNOWS}*, what not knowing the arm costs.
 - Stabbing and scooping end within {1000 * REACHED_DISTANCE:g} mm of a pose below the goal. That is harder for
   the same reasons, in a scoop the tool turns, too, and the help is towards the goal above the food.
