@@ -13,6 +13,7 @@ from latentarm.alignment.queries import (
     disagreement,
     disagreement_share,
     next_motion,
+    novelty,
 )
 from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
 from latentarm.errors import UserError
@@ -27,8 +28,8 @@ CANDIDATES: Final = 100
 UNLABELLED: Final = 1000
 """Contexts in which the priors shall hold."""
 
-AT_RANDOM: Final = 3
-"""Questions before there is enough to disagree about."""
+TOO_FEW: Final = 3
+"""Answers below which alignments agree or disagree by chance."""
 
 ENSEMBLE: Final = 5
 """Alignments that disagree, and of which the best is kept in the end."""
@@ -96,7 +97,7 @@ def shown(
 
 
 def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRule) -> Answers:
-    """Ask at random first, then where an ensemble disagrees most, until enough is known.
+    """Ask about the longest motion, then about the least like all before, until an ensemble agrees.
 
     Args:
         scene: what is asked about.
@@ -114,16 +115,15 @@ def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRu
     asked: list[int] = []
     answered: dict[int, FloatArray] = {}
     history: list[float] = []
-    apart = -np.arange(len(motions), dtype=np.float64)  # in the order of their drawing
     while len(answered) < count and len(asked) < len(motions):
-        row = next_motion(apart, asked)
+        row = next_motion(novelty(chain, motions, asked), asked)
         asked.append(row)
         motion = motions[np.array([row])]
         u = person.answer(Question(len(answered) + 1, count, motion, chain, reach_m, scene.model.latent_dim))
         if u is None:
             continue
         answered[row] = u
-        if AT_RANDOM <= len(answered) < count:
+        if TOO_FEW <= len(answered) < count:
             so_far = _answers(motions, answered)
             ensemble = scene.learn(bootstrap(so_far, ENSEMBLE, scene.rng), QUICK).alignments
             apart = disagreement(ensemble, scene.model.decoder(scene.seed_index), chain, motions)

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Final
 
+from latentarm.experiments.questions import ENSEMBLE, QUICK
+
 
 @dataclass(frozen=True)
 class Curves:
@@ -12,19 +14,19 @@ class Curves:
         models: whose decoders.
         noises: coefficients of variation of the answers.
         answers: numbers of answers at which the error is taken, rising.
-        at_random: first questions, before there is enough to disagree about.
-        ensemble: alignments that disagree.
-        ensemble_steps: of Adam, for each ensemble.
         candidates: motions that may be asked about.
+        ensemble: alignments whose disagreement is looked at.
+        ensemble_steps: of Adam, for each ensemble.
+        disagreement_up_to: answers up to which questions are also chosen by disagreement.
     """
 
-    models: tuple[str, ...] = ("cae", "isometric")
+    models: tuple[str, ...] = ("cae",)
     noises: tuple[float, ...] = (0.0, 0.1)
     answers: tuple[int, ...] = (1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30)
-    at_random: int = 3
-    ensemble: int = 5
-    ensemble_steps: int = 150
     candidates: int = 100
+    ensemble: int = ENSEMBLE
+    ensemble_steps: int = QUICK.steps
+    disagreement_up_to: int = 10
 
 
 @dataclass(frozen=True)
@@ -78,8 +80,8 @@ class Preset:
     name: str
     episodes: int = 40
     test_episodes: int = 10
-    epochs: int = 200
-    batch_size: int = 64
+    epochs: int = 60
+    batch_size: int = 256
     hidden: tuple[int, ...] = (64, 64)
     state_noise_rad: float = 0.01
     noises: tuple[float, ...] = (0.0, 0.1, 0.5)
@@ -107,7 +109,9 @@ PRESETS: Final[dict[str, Preset]] = {
         runs=3,
         steps=100,
         ideal_steps=200,
-        curves=Curves(models=("cae",), noises=(0.0,), answers=(1, 3, 5), ensemble_steps=40, candidates=30),
+        curves=Curves(
+            noises=(0.0,), answers=(1, 3, 5), candidates=30, ensemble_steps=40, disagreement_up_to=5
+        ),
         drives=Drives(
             models=("cvae",), seeds=1, episodes=12, epochs=2, answers=4, to_each_goal=1, limit_s=3.0
         ),
