@@ -111,9 +111,9 @@ def _setup(preset: Preset) -> str:
     priors, noises = Priors(), listed(f"{noise:g}" for noise in preset.noises)
     decoder = look_of(PAPER_MODEL).label
     return f"""A Panda's hand is moved by a stick of two axes through a decoder of two latent dimensions. What
-a person means by the stick is learned from few answers: for each motion that they are shown, the input by which
-they would ask for it. In **Plane** they mean x and y; in **Pour** up and down, and a tilt about the base's x
-axis; in **Reach & Pour** the former until the hand is at the bowl, and the latter there.
+a person means by the stick is learned from few answers: for each motion that they are shown, the input by
+which they would ask for it. In **Plane** they mean x and y; in **Pour** up and down, and a tilt about the
+base's x axis; in **Reach & Pour** the former until the hand is at the bowl, and the latter there.
 
 - {preset.episodes} demonstrations train each decoder, {preset.test_episodes} others judge it: hands that
   wander smoothly at up to {SPEED_M_S:g} m/s and {TURN_RAD_S:g} rad/s, at {RATE_HZ:g} Hz; the bowl is at

@@ -100,17 +100,17 @@ PRESETS: Final[dict[str, Preset]] = {
     "paper": Preset("paper"),
     "smoke": Preset(
         "smoke",
-        episodes=8,
+        episodes=6,
         test_episodes=3,
-        epochs=20,
+        epochs=6,
         noises=(0.0, 0.5),
         ideal_answers=200,
         test_motions=100,
         runs=3,
-        steps=100,
-        ideal_steps=200,
+        steps=40,
+        ideal_steps=100,
         curves=Curves(
-            noises=(0.0,), answers=(1, 3, 5), candidates=30, ensemble_steps=40, disagreement_up_to=5
+            noises=(0.0,), answers=(1, 3, 5), candidates=30, ensemble_steps=20, disagreement_up_to=5
         ),
         drives=Drives(
             models=("cvae",), seeds=1, episodes=12, epochs=2, answers=4, to_each_goal=1, limit_s=3.0

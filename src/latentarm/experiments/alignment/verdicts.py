@@ -49,16 +49,24 @@ def _said(tests: Sequence[Comparison]) -> str:
     failing = [one for one in tests if not one.holds]
     if not failing:
         return "supported"
-    noises: dict[str, list[str]] = {}
+    # Those that fail alike are named together: first by noise, then by what they are compared with.
+    noises: dict[tuple[str, str, str], list[str]] = {}
     for one in failing:
-        noises.setdefault(_relation(one), []).append(f"{one.noise:g}")
-    reasons = "; ".join(f"{relation} (noise {listed(where)})" for relation, where in noises.items())
+        against = one.against if one.times == 1 else f"{one.times:g} times {one.against}"
+        noises.setdefault((one.condition, _relation(one), against), []).append(f"{one.noise:g}")
+    others: dict[tuple[str, str, str], list[str]] = {}
+    for (condition, relation, against), where in noises.items():
+        others.setdefault((condition, relation, listed(where)), []).append(against)
+    conditions: dict[tuple[str, str, str], list[str]] = {}
+    for (condition, relation, where), against in others.items():
+        conditions.setdefault((relation, listed(against), where), []).append(condition)
+    reasons = "; ".join(
+        f"{listed(names)} {relation} {against} (noise {where})"
+        for (relation, against, where), names in conditions.items()
+    )
     return f"not supported: {reasons}"
 
 
 def _relation(one: Comparison) -> str:
-    """``All Priors not clearly below Manual Align``; that what has no statistic could not be tested."""
-    against = one.against if one.times == 1 else f"{one.times:g} times {one.against}"
-    if one.p is None:
-        return f"{one.condition} could not be tested against {against}"
-    return f"{one.condition} not clearly below {against}"
+    """That what has no statistic could not be tested."""
+    return "could not be tested against" if one.p is None else "not clearly below"

@@ -7,7 +7,7 @@ import numpy as np
 
 from latentarm.experiments.alignment.cell import CellResult
 from latentarm.experiments.alignment.conditions import CONDITIONS, IDEAL
-from latentarm.experiments.studies.panels import title
+from latentarm.experiments.studies.panels import plain_ticks, title
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
 
 if TYPE_CHECKING:
@@ -52,9 +52,10 @@ def conditions_figure(
     for axes in panels[-1]:
         axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
         axes.set_xlabel("coefficient of variation of the answers", fontsize=FONT_SIZE)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
+    (line, *bars), (limit, *names) = panels[0, 0].get_legend_handles_labels()
+    labels = [*names, limit]
     figure.legend(
-        handles,
+        [*bars, line],
         labels,
         loc="outside lower center",
         ncols=(len(labels) + 1) // 2,
@@ -108,4 +109,4 @@ def _log_axis(axes: "Axes", results: Sequence[CellResult]) -> None:
     ]
     axes.set_yscale("log")
     axes.set_ylim(min(means + [result.limit for result in results]) / ROOM, max(means + spreads) * ROOM)
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    plain_ticks(axes)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 from latentarm.experiments.alignment.curves import AT_RANDOM, BY_NOVELTY, CHOICES, CurveResult
 from latentarm.experiments.alignment.targets import RANDOM_ANSWERS
-from latentarm.experiments.studies.panels import title
+from latentarm.experiments.studies.panels import plain_ticks, title
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
 from latentarm.types import FloatArray
 
@@ -101,7 +101,7 @@ def _draw(axes: "Axes", curve: CurveResult) -> None:
         zorder=8,
     )
     axes.set_yscale("log")
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    plain_ticks(axes)
     axes.set_xlim(left=0.0)
     tidy(axes)
 
