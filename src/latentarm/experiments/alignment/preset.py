@@ -105,10 +105,11 @@ PRESETS: Final[dict[str, Preset]] = {
         epochs=6,
         noises=(0.0, 0.5),
         ideal_answers=200,
+        unlabelled=300,
         test_motions=100,
         runs=3,
-        steps=40,
-        ideal_steps=100,
+        steps=25,
+        ideal_steps=60,
         curves=Curves(
             noises=(0.0,), answers=(1, 3, 5), candidates=30, ensemble_steps=20, disagreement_up_to=5
         ),
