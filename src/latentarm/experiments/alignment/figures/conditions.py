@@ -7,6 +7,7 @@ import numpy as np
 
 from latentarm.experiments.alignment.cell import CellResult
 from latentarm.experiments.alignment.conditions import CONDITIONS, IDEAL
+from latentarm.experiments.alignment.rows import LIMIT
 from latentarm.experiments.studies.panels import plain_ticks, title
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
 
@@ -51,7 +52,7 @@ def conditions_figure(
         line[0].set_ylabel("relative error", fontsize=FONT_SIZE)
     for axes in panels[-1]:
         axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
-        axes.set_xlabel("coefficient of variation of the answers", fontsize=FONT_SIZE)
+        axes.set_xlabel("coefficient of variation of answers", fontsize=FONT_SIZE)
     (line, *bars), (limit, *names) = panels[0, 0].get_legend_handles_labels()
     labels = [*names, limit]
     figure.legend(
@@ -91,7 +92,7 @@ def _draw(axes: "Axes", results: Sequence[CellResult]) -> None:
         color="black",
         linestyle=":",
         linewidth=0.9,
-        label="the decoder's own limit",
+        label=LIMIT,
         zorder=3,
     )
     tidy(axes)
