@@ -2,6 +2,8 @@
 
 from time import perf_counter
 
+from threadpoolctl import threadpool_limits
+
 from latentarm.alignment.training import FitConfig
 from latentarm.experiments.alignment.conditions import ALL_PRIORS, LEARNED
 from latentarm.experiments.alignment.decoder import LearnedDecoder
@@ -64,7 +66,7 @@ def timings(measured: Measured) -> dict[str, object]:
 
 
 def time_alignment(learned: LearnedDecoder) -> dict[str, object]:
-    """How long it takes to learn one alignment with all priors, alone and all runs in one fit, s."""
+    """How long one alignment with all priors takes, alone and with all runs in one fit, s; on one thread."""
     preset, scene = learned.cell.preset, scene_of(learned)
     answers = [
         scene.ask(preset.answers, 0.0, Stream.QUESTIONS, Stream.ANSWERS, run) for run in range(preset.runs)
@@ -73,7 +75,8 @@ def time_alignment(learned: LearnedDecoder) -> dict[str, object]:
     took_s: list[float] = []
     for runs in (range(1), range(preset.runs)):
         began = perf_counter()
-        scene.learn([answers[run] for run in runs], config, runs)
+        with threadpool_limits(limits=1):
+            scene.learn([answers[run] for run in runs], config, runs)
         took_s.append(perf_counter() - began)
     return {
         "task": learned.cell.task,
