@@ -21,7 +21,7 @@ class Curves:
     """
 
     models: tuple[str, ...] = ("cae",)
-    noises: tuple[float, ...] = (0.0, 0.1)
+    noises: tuple[float, ...] = (0.0,)
     answers: tuple[int, ...] = (1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30)
     candidates: int = 100
     ensemble: int = ENSEMBLE
