@@ -458,6 +458,38 @@ def shared_autonomy(
     return 0
 
 
+@studies.command
+def alignment(
+    preset: PresetName = "paper",
+    task: Annotated[
+        Literal["all", "plane", "pour", "reach_and_pour", "table_top"],
+        arg(help="One of the paper's tasks, drives at the demo's table, or all of it."),
+    ] = "all",
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")] = Path(
+        "reproduced/alignment"
+    ),
+    seed: Seed = 0,
+    jobs: Jobs = -1,
+    backend: Backend = "joblib",
+    json: Json = False,
+) -> int:
+    """Learn from few answers what simulated people mean by their stick (section 8.3), on a simulated Panda.
+
+    For example: latentarm reproduce alignment --preset smoke --task plane
+    """
+    from latentarm.experiments.alignment.preset import PRESETS
+    from latentarm.experiments.alignment.run import TASKS, AlignmentConfig, run_alignment
+    from latentarm.experiments.alignment.summary import summary_tables
+
+    tasks = TASKS if task == "all" else (task,)
+    bars = not json and sys.stderr.isatty()
+    config = AlignmentConfig(out, PRESETS[preset], tasks, seed, jobs, backend, quiet=json, bars=bars)
+    rows = run_alignment(config)
+    _show(rows, json, *summary_tables(rows, config.preset))
+    _say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
+    return 0
+
+
 @app.command
 def bench(
     repeats: Annotated[int, arg(help="Timed online steps.")] = 20_000,

@@ -13,6 +13,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.metrics.drives import Drive, measure_drive
 from latentarm.operators.boltzmann import BoltzmannConfig, BoltzmannOperator
+from latentarm.operators.foresight import Foresight
 from latentarm.robots.simulated import SimulatedArm
 from latentarm.tasks.task import Task
 from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
@@ -35,6 +36,7 @@ class Setup:
         operator: how the simulated operator thinks.
         time_limit_s: a drive that lasts longer has failed.
         rule: how inputs change the belief; without help too, for a decoder may look at it.
+        foresight: where the simulated operator expects an input to lead; they know the arm where None.
     """
 
     task: Task
@@ -43,6 +45,7 @@ class Setup:
     operator: BoltzmannConfig
     time_limit_s: float
     rule: Rule = BoltzmannBelief
+    foresight: Foresight | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +95,7 @@ def simulate(
     start = task.sample_start(goal, rng)
     arm = SimulatedArm(task.robot, start, dt_s)
     step = _step(setup, dt_s)
-    operator = BoltzmannOperator(task.robot, setup.operator, period_s=dt_s)
+    operator = BoltzmannOperator(task.robot, setup.operator, period_s=dt_s, foresight=setup.foresight)
     remaining = list(task.waypoints(goal, manner))
     step.reset(start)
     records = [step(Input(np.zeros(controller.input_dim)), 0.0, start, 0.0)]

@@ -30,6 +30,7 @@ UNITS: dict[str, str] = {
     "path_over_straight": "1",
     "final_distance": "m",
     "relative_alignment_error": "1",
+    "answers": "1",
     "final_state_error": "1",
     "final_tool_error": "1",
     "arrival_rate": "1",

@@ -37,6 +37,7 @@ NAMES: dict[str, str] = {
     "path_over_straight": "path, over the straight way",
     "final_distance": "final distance",
     "relative_alignment_error": "relative alignment error",
+    "answers": "answers until asking stops",
     "final_distance_percent_of_vae": "final distance, of the VAE's",
     "final_state_error": "final state error",
     "final_tool_error": "final tool error",
