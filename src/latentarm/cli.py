@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from latentarm.types import Row
 
-ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "isometric"]
+ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "isometric", "homogeneous"]
 
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
 Seed = Annotated[int, arg(help="Seed of everything random.")]

@@ -37,6 +37,7 @@ LOOKS: dict[str, Look] = {
     "cae_zero": Look("cAE, zero penalty", "#56B4E9", "P", "-."),
     "scl": Look("SCL", "#D55E00", "X", "-."),
     "isometric": Look("isometric", "#000000", "*", (0.0, (6.0, 1.5, 1.5, 1.5, 1.5, 1.5))),
+    "homogeneous": Look("homogeneous", "#882255", "h", (0.0, (4.0, 1.0, 1.0, 1.0))),
     "latent": Look("latent actions", "#0072B2", "o", "-"),
     "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),
     "end_effector": Look("mode switching", "#7f7f7f", "s", ":"),
