@@ -167,20 +167,33 @@ class BoltzmannOperator(Operator):
             Every option and its probability.
         """
         inputs = self._grid(controller.input_dim)
+        cost = self.costs(context, controller, target)
         modes = range(len(controller.modes))
-        actions = np.stack(
-            [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
-        )
-        actions[:, 0] = 0.0  # the arm of a person who lets go stands still, whatever phi(0, c) is
-        # One call over all modes: (M, K, n).
-        reached = self._chain.forward(context.state + self._config.horizon_s * actions)
-        angle = self._config.rotation_weight * angle_between(reached.rotation, target.rotation)
-        cost = ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
         best_other = min((float(cost[m].min()) for m in modes if m != mode), default=np.inf)
         switch_cost = (np.sqrt(best_other) + self._config.switch_cost) ** 2
         beta = self._config.beta + self._config.beta_per_s * time_s
         probability = boltzmann(np.append(cost[mode], switch_cost), beta)
         return Options(inputs, probability[:-1], float(probability[-1]))
+
+    @property
+    def holding(self) -> bool:
+        """Whether the next call of `act` holds an input, or waits for a mode, without deciding."""
+        return self._held_calls > 0
+
+    def costs(self, context: Context, controller: Controller, target: Pose) -> FloatArray:
+        """Squared distances (M, K), m², that K inputs leave in each of M modes; the first is none."""
+        inputs = self._grid(controller.input_dim)
+        actions = np.stack(
+            [
+                controller.action(controller.latent(inputs, context, mode), context, mode)
+                for mode in range(len(controller.modes))
+            ]
+        )
+        actions[:, 0] = 0.0  # the arm of a person who lets go stands still, whatever phi(0, c) is
+        # One call over all modes: (M, K, n).
+        reached = self._chain.forward(context.state + self._config.horizon_s * actions)
+        angle = self._config.rotation_weight * angle_between(reached.rotation, target.rotation)
+        return ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
 
     def _grid(self, input_dim: int) -> FloatArray:
         """The inputs that are considered, (K, d), the first of them zero."""

@@ -45,7 +45,7 @@ class Fold:
         return self.others if len(self.others) < FEW else self.others[len(self.stopping) :]
 
     def with_only(self, demonstrations: int) -> "Fold":
-        """The same fold with only the first of the other episodes, those that stop the training among them."""
+        """The same fold with only the first of the others, those that stop the training among them."""
         return replace(self, others=self.others[:demonstrations])
 
 

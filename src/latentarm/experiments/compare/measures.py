@@ -29,8 +29,8 @@ MEASURES: Final[dict[str, str]] = {
     " moved it, ‖φ(z, s)‖; both means over held-out pairs.",
     "reversal": "z for one sample, then −z for one: what is left, ‖s₂ − s₀‖ over ‖s₁ − s₀‖; both means over"
     " held-out pairs. 0 is a motion undone, 1 leaves as much to go back as the motion was long.",
-    "r2_local_axis_0": "R² of one line, over 25 held-out states and 21 values in [−1, 1] of this axis alone, of"
-    " the tool's signed way in a sample against z; each state has its own forward, where its +z leads.",
+    "r2_local_axis_0": "R² of one line, over 25 held-out states and 21 values in [−1, 1] of this axis alone,"
+    " of the tool's signed way in a sample against z; each state has its own forward, where its +z leads.",
     "r2_local_axis_1": "as for axis 1.",
     "r2_axis_0": "the same with one forward for all states, as the paper has it.",
     "r2_axis_1": "as for axis 1.",
@@ -39,10 +39,10 @@ MEASURES: Final[dict[str, str]] = {
     "controllability_m": "a greedy solver with z in [−1, 1], looking one sample ahead, has 6 s to bring the"
     " tool where it was in the same held-out episode 3 s later; least distance.",
     "controllability_state_error": "‖s − s_goal‖ over all joints at that moment.",
-    "planned_reach_m": "the same asked of a solver that plans all 6 s at once, in pieces of half a second, for"
-    " some of the pairs and seeds; never worse than greedy on the same pairs.",
-    "motion_turn": "the stick, pushed all the way, is led around in 36 turns of 10°: by what angle the arm's"
-    " joint velocity turns, in that of the stick. A linear isometry has 1.",
+    "planned_reach_m": "the same asked of a solver that plans all 6 s at once, in pieces of half a second,"
+    " for some of the pairs and seeds; never worse than greedy on the same pairs.",
+    "motion_turn": "the stick, pushed all the way, is led around in 36 turns of 10°: by what angle the"
+    " arm's joint velocity turns, in that of the stick. A linear isometry has 1.",
     "motion_turn_p95": "95th percentile over held-out states and turns: how jumpy the decoder is.",
     "tool_turn": "the same of the tool's velocity.",
     "tool_turn_p95": "95th percentile of these.",
