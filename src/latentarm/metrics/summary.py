@@ -34,6 +34,8 @@ UNITS: dict[str, str] = {
     "path_length": "m",
     "path_over_straight": "1",
     "undone_share": "1",
+    "demonstrated_undone_share": "1",
+    "progress": "1",
     "final_distance": "m",
     "relative_alignment_error": "1",
     "final_state_error": "1",

@@ -41,6 +41,8 @@ NAMES: dict[str, str] = {
     "path_length_percent_of_vae": "path length, of the VAE's",
     "path_over_straight": "path, over the straight way",
     "undone_share": "share of the path undone",
+    "demonstrated_undone_share": "the same of the demonstration",
+    "progress": "share of the waypoints reached",
     "final_distance": "final distance",
     "relative_alignment_error": "relative alignment error",
     "final_distance_percent_of_vae": "final distance, of the VAE's",

@@ -61,12 +61,12 @@ class PlanningConfig:
 class PlanningOperator(Operator):
     """Steers as `BoltzmannOperator` does, and plans where that gets stuck.
 
-    Stuck is where neither an input nor another mode brings the tool nearer by ``stuck_m`` (for another mode,
-    after the cost of switching). Then the person imagines plans of 1, 2, ... pieces in the present mode, all
-    bettered together by damped Gauss-Newton steps on where they end, and takes the shortest that arrives, or
-    the one that ends nearest. Its first piece is given, and planned anew after it, until the plan is through.
-    Where no plan leads nearer either, they take one step as it comes. They imagine by the controller itself:
-    no person is as good at that, but all controllers get the same one.
+    Stuck is where neither an input nor another mode brings the tool nearer by ``stuck_m``. Then the person
+    imagines plans of 1, 2, ... pieces in the present mode, all bettered together by damped Gauss-Newton steps
+    on where they end, and takes the shortest that arrives, or the one that ends nearest. Its first piece is
+    given, and planned anew after it, until the plan is through. Where no plan leads nearer either, they take
+    one step as it comes. They imagine by the controller itself: no person is as good at that, but all
+    controllers get the same one.
 
     Args:
         robot: the arm, for its forward kinematics.
@@ -110,19 +110,13 @@ class PlanningOperator(Operator):
             return self._one_step.act(context, controller, mode, target, rng)
         following = len(self._rest_of_plan) > 0
         left = np.sqrt(self._one_step.costs(context, controller, target))  # (M, K), the first at rest
-        if following or not self._gets_nearer(left, mode):
+        if following or left[mode, 0] - left.min() <= self._planning.stuck_m:
             plan, leaves = self._plan(context, controller, mode, target, rng)
             if following or left[mode, 0] - leaves > self._planning.stuck_m:
                 self._held, self._rest_of_plan = plan[0], plan[1:]
                 self._held_calls = self._hold_calls - 1
                 return Input(self._held)
         return self._one_step.act(context, controller, mode, target, rng)
-
-    def _gets_nearer(self, left: FloatArray, mode: int) -> bool:
-        """Whether one step or a switch is progress; left (M, K), m, by mode and input, the first at rest."""
-        best = left.min(axis=1)
-        best[np.arange(len(best)) != mode] += self._config.switch_cost
-        return bool(left[mode, 0] - best.min() > self._planning.stuck_m)
 
     def _plan(
         self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator

@@ -3,7 +3,6 @@
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import IntEnum
 from time import perf_counter
 from typing import Any, Final
 
@@ -11,9 +10,11 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.demonstrations.split import select_episodes
+from latentarm.experiments.compare.datasets import Dataset
 from latentarm.experiments.compare.folds import Fold
 from latentarm.experiments.compare.measures import measure_model
 from latentarm.experiments.compare.preset import Preset
+from latentarm.experiments.compare.streams import Stream
 from latentarm.experiments.studies.streams import integer, sequence
 from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import Decoder
@@ -21,33 +22,10 @@ from latentarm.models.model import LatentActionModel
 from latentarm.models.scaling import CollapseWarning
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, FloatArray
+from latentarm.types import FloatArray
 
 SEEDLESS: Final = "pca"
 """Nothing in it is random, so it is fitted once, not once per seed."""
-
-
-class Stream(IntEnum):
-    """What randomness is for: each use has a stream of its own, the same for every model and noise."""
-
-    FOLDS = 0
-    NETWORKS = 1
-    TRAINING_NOISE = 2
-    TEST_NOISE = 3
-    DRIVES = 4
-
-
-@dataclass(frozen=True, eq=False)
-class Dataset:
-    """Demonstrations and what they are called.
-
-    Attributes:
-        name: of the folder.
-        demonstrations: all episodes.
-    """
-
-    name: str
-    demonstrations: Demonstrations
 
 
 @dataclass(frozen=True)
@@ -137,7 +115,7 @@ def measure_cell(cell: Cell) -> CellResult:
             cell.fold.held_out,
             robot,
             cell.preset,
-            np.random.default_rng(stream(cell, Stream.TEST_NOISE)),
+            np.random.default_rng(_stream(cell, Stream.TEST_NOISE)),
         )
     return CellResult(
         place=cell.place,
@@ -149,7 +127,7 @@ def measure_cell(cell: Cell) -> CellResult:
     )
 
 
-def stream(cell: Cell, use: Stream) -> np.random.SeedSequence:
+def _stream(cell: Cell, use: Stream) -> np.random.SeedSequence:
     """Where one use of randomness begins in a cell."""
     return sequence(cell.seed, cell.dataset.name, use, cell.fold.index)
 
@@ -158,9 +136,9 @@ def _fit(cell: Cell, robot: Robot) -> LatentActionModel:
     fold, preset = cell.fold, cell.preset
     parameters: dict[str, Any] = {
         "state_noise_rad": cell.noise_rad,
-        "data_seed": integer(stream(cell, Stream.TRAINING_NOISE)),
+        "data_seed": integer(_stream(cell, Stream.TRAINING_NOISE)),
         "seeds": 1 if cell.model == SEEDLESS else preset.seeds,
-        "seed": integer(stream(cell, Stream.NETWORKS)),
+        "seed": integer(_stream(cell, Stream.NETWORKS)),
         "batch_size": preset.batch_size,
     }
     if preset.epochs is not None:
