@@ -143,14 +143,14 @@ def _drives(content: Content) -> str:
 A **simulated** operator drives the way of held-out episodes in simulation, through poses every 0.25 m (a
 radian counts as 0.2 m) that must each be met within 30 mm and 20°, with {names}: always
 through the same loop and safety filters. One model per fold, trained under
-{condition(content.preset.noises_rad[0])}; no drive lasts longer than {content.preset.drive_limit_s:g} s, and one
-that lasts so long has failed. Time, input and path are over all drives, failed ones too.
+{condition(content.preset.noises_rad[0])}. A drive that is not done after {content.preset.drive_limit_s:g} s
+has failed; time, input and path are over all drives, failed ones too.
 
 The operator of equation 24 looks one step ahead and gets stuck within a few poses of latent actions. So here,
 with every controller, they plan up to 4 s ahead where no single input brings the tool 4 mm nearer, by
 imagining the controller exactly. That is more than a person can do: it says what the latent actions allow.
 
-*Undone* is the share of the tool's path that is later gone back over, within {1e3 * NEAR_M:g} mm and more than
-120° against it; the demonstrations go back over some of their own way too.
+*Undone* is the share of the tool's path that is later gone back over, within {1e3 * NEAR_M:g} mm and more
+than 120° against it; the demonstrations go back over some of their own way too.
 
 {tables}"""

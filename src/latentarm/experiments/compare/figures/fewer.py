@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
+from latentarm.experiments.compare.figures.scale import logarithmic_with_zero
 from latentarm.experiments.compare.rows import condition, with_demonstrations
 from latentarm.experiments.studies.panels import title
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
@@ -37,16 +38,16 @@ def fewer_figure(
     levels = ", ".join(f"{noise_rad:g} rad" for noise_rad in noises_rad)
     figure.suptitle(
         f"Fewer training demonstrations, mean ± SD over seeds; noise on states {levels}"
-        f"{' (further ones open and dashed)' if len(noises_rad) > 1 else ''}",
+        f"{' (the latter open and dashed)' if len(noises_rad) > 1 else ''}",
         fontsize=FONT_SIZE,
     )
     panels = figure.subplots(len(MEASURES), len(datasets), sharex=True, sharey="row", squeeze=False)
     for line, (measure, (label, scale)) in zip(panels, MEASURES.items(), strict=True):
         for axes, dataset in zip(line, datasets, strict=True):
             _draw(axes, rows, dataset, noises_rad, counts, measure, scale)
-            axes.set_ylim(bottom=0.0)
             tidy(axes)
         line[0].set_ylabel(label, fontsize=FONT_SIZE)
+        logarithmic_with_zero(line[0])
     for axes, dataset in zip(panels[0], datasets, strict=True):
         title(axes, dataset)
     for axes in panels[-1]:
@@ -83,7 +84,11 @@ def _draw(
             axes.errorbar(
                 [at + 0.06 * (place - (len(models) - 1) / 2) for at, _ in known],
                 [scale * (row.mean or 0.0) for _, row in known],
-                yerr=[scale * (row.sd or 0.0) for _, row in known],
+                # What lies below zero cannot be: the lower half of a bar is cut there.
+                yerr=[
+                    [scale * min(row.sd or 0.0, 0.9 * (row.mean or 0.0)) for _, row in known],
+                    [scale * (row.sd or 0.0) for _, row in known],
+                ],
                 color=look.colour,
                 marker=look.marker,
                 fillstyle="none" if level else "full",

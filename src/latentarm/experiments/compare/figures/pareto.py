@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
+from latentarm.experiments.compare.figures.scale import logarithmic_with_zero
 from latentarm.experiments.compare.rows import condition
 from latentarm.experiments.studies.panels import title
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
@@ -17,10 +18,10 @@ FILLS: Final = ("full", "none", "bottom", "top", "left", "right")
 """Of the markers, by noise."""
 
 AGAINST: Final = {
-    "reversal": ("left after z, then −z (%)", 100.0, 1.0),
-    "controllability_m": ("greedy reach (mm)", 1e3, 3.0),
+    "reversal": ("left after z, then −z (%)", 100.0),
+    "controllability_m": ("greedy reach (mm)", 1e3),
 }
-"""Measure -> its axis' label, what it is multiplied by, and below which value the axis is linear."""
+"""Measure -> its axis' label, and what it is multiplied by."""
 
 
 def pareto_figure(rows: Sequence[Row], datasets: Sequence[str], noises_rad: Sequence[float]) -> "Figure":
@@ -44,9 +45,9 @@ def pareto_figure(rows: Sequence[Row], datasets: Sequence[str], noises_rad: Sequ
         for axes, dataset in zip(line, datasets, strict=True):
             for noise_rad, fill in zip(noises_rad, FILLS, strict=False):
                 _draw(axes, rows, dataset, noise_rad, measure, fill)
-            _scale(axes, measure)
             tidy(axes)
         line[0].set_ylabel(AGAINST[measure][0], fontsize=FONT_SIZE)
+        logarithmic_with_zero(line[0])
     for axes, dataset in zip(panels[0], datasets, strict=True):
         title(axes, dataset)
     for axes in panels[-1]:
@@ -82,10 +83,3 @@ def _draw(axes: "Axes", rows: Sequence[Row], dataset: str, noise_rad: float, mea
             elinewidth=0.8,
             label=look.label if fill == FILLS[0] else None,
         )
-
-
-def _scale(axes: "Axes", measure: str) -> None:
-    """Logarithmic, and linear near zero: some models undo all of a motion."""
-    axes.set_yscale("symlog", linthresh=AGAINST[measure][2])
-    axes.set_ylim(bottom=0.0)
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
