@@ -176,14 +176,24 @@ class BoltzmannOperator(Operator):
             Every option and its probability.
         """
         inputs = self._grid(controller.input_dim)
-        reached = self._foresight(inputs, context, controller, self._config.horizon_s)
-        angle = self._config.rotation_weight * angle_between(reached.rotation, target.rotation)
-        cost = ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
+        cost = self.costs(context, controller, target)
         others = (float(best) for other, best in enumerate(cost.min(axis=-1)) if other != mode)
         switch_cost = (np.sqrt(min(others, default=np.inf)) + self._config.switch_cost) ** 2
         beta = self._config.beta + self._config.beta_per_s * time_s
         probability = boltzmann(np.append(cost[mode], switch_cost), beta)
         return Options(inputs, probability[:-1], float(probability[-1]))
+
+    @property
+    def holding(self) -> bool:
+        """Whether the next call of `act` holds an input, or waits for a mode, without deciding."""
+        return self._held_calls > 0
+
+    def costs(self, context: Context, controller: Controller, target: Pose) -> FloatArray:
+        """Squared distances (M, K), m², that K inputs leave in each of M modes; the first is none."""
+        inputs = self._grid(controller.input_dim)
+        reached = self._foresight(inputs, context, controller, self._config.horizon_s)
+        angle = self._config.rotation_weight * angle_between(reached.rotation, target.rotation)
+        return ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
 
     def _grid(self, input_dim: int) -> FloatArray:
         """The inputs that are considered, (K, d), the first of them zero."""
