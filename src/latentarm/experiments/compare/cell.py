@@ -140,6 +140,7 @@ def _fit(cell: Cell, robot: Robot) -> LatentActionModel:
         "seeds": 1 if cell.model == SEEDLESS else preset.seeds,
         "seed": integer(_stream(cell, Stream.NETWORKS)),
         "batch_size": preset.batch_size,
+        "hidden": preset.hidden,
     }
     if preset.epochs is not None:
         parameters["epochs"] = preset.epochs

@@ -87,7 +87,8 @@ def _introduction(content: Content) -> str:
   episodes some stop the training early (two of {MANY} or more, one of {FEW} or more), and the rest train. The
   folds are the same for every model.
 - Models of each kind in each fold: {preset.seeds}; PCA has no seeds. d = 2; batches of {preset.batch_size},
-  else every model's own parameters, with {epochs} at most.
+  hidden layers of {" and ".join(map(str, preset.hidden))} units, else every model's own parameters, with
+  {epochs} at most.
 - Noise is on the states that the decoder sees, in training and for the noisy error; actions come from the
   states before it.
 - {CORNER}: the mean over folds is taken for each seed, and its mean and SD are

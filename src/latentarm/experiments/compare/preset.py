@@ -7,7 +7,7 @@ from latentarm.errors import UserError
 from latentarm.experiments.checks import check_count
 from latentarm.models.catalogue import MODELS
 
-OURS: Final = next(name for name in ("homogeneous", "isometric") if name in MODELS)
+OURS: Final = "homogeneous"
 """The model that is held against the targets where none is named."""
 
 REFERENCE: Final = "cae"
@@ -26,6 +26,7 @@ class Preset:
         seeds: models of each kind in each fold.
         epochs: passes over the training pairs, at most; the model's own number where None.
         batch_size: pairs per step: faster for every model than its own, and no worse.
+        hidden: units of each hidden layer, for every model.
         reach_pairs: pairs of start and goal per fold for the greedy operator.
         planned_pairs: of these, how many the operator who plans is asked; 0 asks none.
         planned_seeds: of the seeds, for how many.
@@ -43,6 +44,7 @@ class Preset:
     seeds: int = 5
     epochs: int | None = None
     batch_size: int = 128
+    hidden: tuple[int, ...] = (64, 64)
     reach_pairs: int = 40
     planned_pairs: int = 12
     planned_seeds: int = 2
