@@ -21,6 +21,7 @@ COMMANDS = [
     "inspect",
     "train",
     "evaluate",
+    "compare",
     "align",
     "drive",
     "reproduce",
