@@ -85,6 +85,7 @@ def test_drives_are_told_from_measurements_and_called_simulated(done: tuple[list
     assert "![Error against reversal and reach](pareto.png)" in page
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_in_two_processes(
     done: tuple[list[Row], Path], table: Path, tiny: Preset, tmp_path: Path
 ) -> None:
