@@ -23,6 +23,7 @@ COMMANDS = [
     "inspect",
     "train",
     "evaluate",
+    "compare",
     "align",
     "drive",
     "reproduce",
