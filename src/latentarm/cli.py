@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from latentarm.types import Row
 
-ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "isometric"]
+ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "isometric", "homogeneous"]
 
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
 Seed = Annotated[int, arg(help="Seed of everything random.")]
@@ -273,6 +273,69 @@ def evaluate(
 
 
 @app.command
+def compare(
+    demonstrations: Annotated[
+        tuple[Path, ...], arg(metavar="DST ...", help="Folders of native datasets, all of one robot.")
+    ],
+    models: Annotated[
+        tuple[str, ...] | None, arg(metavar="MODEL ...", help="Names of models; by default all there are.")
+    ] = None,
+    noise: Annotated[
+        tuple[float, ...] | None,
+        arg(metavar="RAD ...", help="SDs of noise on the states, rad; 0.01 and 0.1 by default."),
+    ] = None,
+    seeds: Annotated[int | None, arg(help="Models of each kind in each fold; 5 by default.")] = None,
+    folds: Annotated[int | None, arg(help="Parts of each dataset, each held out once; 5 by default.")] = None,
+    reach_pairs: Annotated[
+        int | None, arg(help="Starts and goals per fold for the greedy operator; 40 by default.")
+    ] = None,
+    ours: Annotated[
+        str | None, arg(metavar="MODEL", help="The model that is held against the targets, and driven.")
+    ] = None,
+    preset: Annotated[
+        Literal["paper", "smoke"], arg(help="Whole sizes, or small ones that only show that it runs.")
+    ] = "paper",
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")] = Path(
+        "compared"
+    ),
+    seed: Seed = 0,
+    jobs: Jobs = -1,
+    backend: Backend = "joblib",
+    json: Json = False,
+) -> int:
+    """Compare all models on recorded demonstrations: every episode held out once, one table for each dataset.
+
+    For example: latentarm compare --demonstrations pour pick --noise 0.01 0.1
+    """
+    from dataclasses import replace
+
+    from rich.console import Console
+
+    from latentarm.experiments.compare.preset import OURS, PRESETS
+    from latentarm.experiments.compare.run import CompareConfig, run_compare
+    from latentarm.experiments.compare.tables import terminal_tables
+
+    usual = PRESETS[preset]
+    sizes = replace(
+        usual,
+        models=usual.models if models is None else models,
+        noises_rad=usual.noises_rad if noise is None else noise,
+        seeds=usual.seeds if seeds is None else seeds,
+        folds=usual.folds if folds is None else folds,
+        reach_pairs=usual.reach_pairs if reach_pairs is None else reach_pairs,
+    )
+    bars = not json and sys.stderr.isatty()
+    config = CompareConfig(
+        demonstrations, out, sizes, ours or OURS, seed, jobs, backend, quiet=json, bars=bars
+    )
+    rows = run_compare(config)
+    names = [path.resolve().name for path in demonstrations]
+    _show(rows, json, *terminal_tables(rows, names, sizes.noises_rad, Console().width))
+    _say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
+    return 0
+
+
+@app.command
 def align(
     run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")],
     name: Annotated[str, arg(metavar="NAME", help="Of the person; `drive --profile` takes it.")],
@@ -498,6 +561,38 @@ def shared_autonomy(
     config = SharedAutonomyConfig(out, PRESETS[preset], tasks, seed, jobs, backend, quiet=json, bars=bars)
     rows = run_shared_autonomy(config)
     _show(rows, json, *summary_tables(rows))
+    _say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
+    return 0
+
+
+@studies.command
+def alignment(
+    preset: PresetName = "paper",
+    task: Annotated[
+        Literal["all", "plane", "pour", "reach_and_pour", "table_top"],
+        arg(help="One of the paper's tasks, drives at the demo's table, or all of it."),
+    ] = "all",
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")] = Path(
+        "reproduced/alignment"
+    ),
+    seed: Seed = 0,
+    jobs: Jobs = -1,
+    backend: Backend = "joblib",
+    json: Json = False,
+) -> int:
+    """Learn from few answers what simulated people mean by their stick (section 8.3), on a simulated Panda.
+
+    For example: latentarm reproduce alignment --preset smoke --task plane
+    """
+    from latentarm.experiments.alignment.preset import PRESETS
+    from latentarm.experiments.alignment.run import TASKS, AlignmentConfig, run_alignment
+    from latentarm.experiments.alignment.summary import summary_tables
+
+    tasks = TASKS if task == "all" else (task,)
+    bars = not json and sys.stderr.isatty()
+    config = AlignmentConfig(out, PRESETS[preset], tasks, seed, jobs, backend, quiet=json, bars=bars)
+    rows = run_alignment(config)
+    _show(rows, json, *summary_tables(rows, config.preset))
     _say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
     return 0
 

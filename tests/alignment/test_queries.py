@@ -16,6 +16,7 @@ from latentarm.alignment.queries import (
     disagreement,
     disagreement_share,
     next_motion,
+    novelty,
 )
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode
@@ -63,6 +64,29 @@ def test_nothing_is_asked_twice():
         assert asked[-1] == expected
     with pytest.raises(UserError, match="All 3 motions"):
         next_motion(apart, asked)
+
+
+def test_what_is_alike_or_opposite_is_not_new(slides):
+    """Slides: poses are states, and the length of a motion is that of its way."""
+    start = np.zeros((5, 3))
+    start[4] = [0.4, 0.0, 0.0]
+    way = np.array([[0.1, 0, 0], [0.1, 0, 0], [-0.1, 0, 0], [0, 0.3, 0], [0.1, 0, 0]])
+    motions = Motions(start, start + way, 0.5)
+    longest = novelty(slides.chain, motions, [])
+    assert next_motion(longest, []) == 3
+    np.testing.assert_allclose(longest / longest[0], [1, 1, 1, 3, 1])
+    beside = novelty(slides.chain, motions, [0])
+    np.testing.assert_allclose(beside[:3], 0, atol=1e-12)
+    assert beside[3] > 0
+    assert beside[4] > 0
+    # The nearest of all that were asked about counts.
+    np.testing.assert_allclose(novelty(slides.chain, motions, [0, 3, 4]), 0, atol=1e-12)
+
+
+def test_motions_from_one_place_are_told_apart_by_their_way(slides):
+    start = np.zeros((2, 3))
+    motions = Motions(start, np.array([[0.1, 0, 0], [0, 0.1, 0]]), 0.5)
+    assert novelty(slides.chain, motions, [0])[1] == pytest.approx(np.sqrt(2))
 
 
 def test_a_bootstrap_repeats_what_was_answered(answered):

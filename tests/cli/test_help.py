@@ -1,7 +1,7 @@
 import json
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib.metadata import entry_points
 
 import pytest
@@ -9,6 +9,8 @@ import pytest
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.cli import main
+from latentarm.experiments.alignment import preset as alignment_preset
+from latentarm.experiments.alignment import run as alignment
 from latentarm.experiments.backends import BACKENDS
 from latentarm.experiments.properties.preset import PRESETS
 from latentarm.experiments.shared_autonomy import preset as shared_autonomy
@@ -21,6 +23,7 @@ COMMANDS = [
     "inspect",
     "train",
     "evaluate",
+    "compare",
     "align",
     "drive",
     "teleop",
@@ -28,7 +31,7 @@ COMMANDS = [
     "bench",
     "robots",
 ]
-STUDIES = ["properties", "shared-autonomy"]
+STUDIES = ["properties", "shared-autonomy", "alignment"]
 HEAVY = {"torch", "mujoco", "matplotlib", "scipy", "pyarrow", "sklearn", "joblib", "pandas"}
 Run = Callable[..., tuple[int, str, str]]
 
@@ -58,10 +61,14 @@ def test_the_list_of_studies(run: Run) -> None:
 
 @pytest.mark.parametrize(
     ("study", "tasks", "presets"),
-    [("properties", MOTIONS, PRESETS), ("shared-autonomy", TASKS, shared_autonomy.PRESETS)],
+    [
+        ("properties", MOTIONS, PRESETS),
+        ("shared-autonomy", TASKS, shared_autonomy.PRESETS),
+        ("alignment", alignment.TASKS, alignment_preset.PRESETS),
+    ],
 )
 def test_a_study_offers_what_there_is(
-    run: Run, study: str, tasks: dict[str, object], presets: dict[str, object]
+    run: Run, study: str, tasks: Iterable[str], presets: dict[str, object]
 ) -> None:
     _, out, _ = run("reproduce", study, "--help")
     for names in (["all", *tasks], presets, BACKENDS):

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from latentarm.experiments.alignment import preset as alignment
 from latentarm.experiments.properties.preset import PRESETS, Preset
 from latentarm.experiments.shared_autonomy import preset as shared_autonomy
 from latentarm.experiments.shared_autonomy.cell import TASKS
@@ -70,3 +71,27 @@ def test_one_task_of_shared_autonomy_for_machines(
     written = read_results(Path("reproduced/shared-autonomy/results.json"))
     assert json.loads(out) == [row.as_json() for row in written]
     assert "results.md" in err
+
+
+def test_the_alignment_of_one_task_for_machines(
+    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    small = alignment.PRESETS["smoke"]
+    curves = replace(small.curves, ensemble_steps=2, candidates=6)
+    tiny = replace(small, epochs=1, runs=2, steps=2, ideal_steps=2, ideal_answers=20, curves=curves)
+    monkeypatch.setitem(alignment.PRESETS, "smoke", tiny)
+    words = ("--preset", "smoke", "--task", "plane", "--jobs", 1, "--json")
+    code, out, err = run("reproduce", "alignment", *words)
+    assert code == 0
+    written = read_results(Path("reproduced/alignment/results.json"))
+    assert json.loads(out) == [row.as_json() for row in written]
+    assert "reproduced/alignment/results.md" in err
+
+
+@pytest.mark.slow
+def test_the_smallest_study_of_alignment_runs_from_end_to_end(run: Run, workplace: Path) -> None:
+    code, out, err = run("reproduce", "alignment", "--preset", "smoke", "--jobs", 2)
+    assert code == 0
+    for words in ("Plane, cAE, simulated", "Ideal Align", "Drives at the table, cVAE, simulated"):
+        assert words in out
+    assert "Decoders: 9 cells" in err

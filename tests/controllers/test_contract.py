@@ -51,3 +51,17 @@ def test_steering_leaves_the_context_alone(steered):
     controller.action(np.ones(2), context, 0)
     assert np.array_equal(context.state, robot.home)
     assert np.array_equal(context.belief, BELIEF)
+
+
+def test_imagined_states_are_steered_as_each_alone(steered):
+    controller, robot = steered
+    rng = np.random.default_rng(0)
+    u = rng.uniform(-1, 1, (3, 4, controller.input_dim))
+    states = rng.uniform(robot.limits.lower, robot.limits.upper, (3, 4, robot.dof))
+    for mode in range(len(controller.modes)):
+        here = Context(states, BELIEF)
+        action = controller.action(controller.latent(u, here, mode), here, mode)
+        alone = Context(states[1, 2], BELIEF)
+        assert action[1, 2] == pytest.approx(
+            controller.action(controller.latent(u[1, 2], alone, mode), alone, mode), abs=1e-12
+        )

@@ -79,12 +79,16 @@ def test_commands_of_the_study_run(line: str, tmp_path: Path, monkeypatch: pytes
 
 @pytest.mark.slow
 @pytest.mark.skipif(not SHARED.exists(), reason="the recorded demonstrations are not beside this clone")
-def test_commands_of_the_results_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("page", ["results.md", "models.md"])
+def test_commands_on_recorded_demonstrations_run(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
-    run = [line for line in commands(ROOT / "docs" / "results.md") if line.startswith("latentarm ")]
+    run = [line for line in commands(ROOT / "docs" / page) if line.startswith("latentarm ")]
     assert run
     for line in run:
-        assert main(shlex.split(line.replace("../shared", str(SHARED.parent)))[1:]) in (0, 1), line
+        small = line.replace("../shared", str(SHARED.parent)).replace("--preset paper", "--preset smoke")
+        assert main(shlex.split(small)[1:]) in (0, 1), line
 
 
 def test_architecture_names_every_package() -> None:

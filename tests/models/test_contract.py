@@ -162,9 +162,8 @@ def test_unit_inputs_span_what_was_demonstrated(name, model, demonstrations):
     pairs = make_pairs(demonstrations, 2, 0.0, "state", np.random.default_rng(0))
     trained_on = ~np.isin(pairs.episode, model.held_out_episodes_)
     used = np.abs(model.encode(pairs.context[trained_on], pairs.action[trained_on]))
-    if (
-        name == "isometric"
-    ):  # the same in every direction: the longest latent action, not each axis, reaches 1
+    if name in ("isometric", "homogeneous"):
+        # The same in every direction: the longest latent action, not each axis, reaches 1.
         longest = np.quantile(np.linalg.norm(used, axis=-1), 0.99, axis=1)
         assert ((longest > 0.6) & (longest < 1.2)).all()
     else:

@@ -16,8 +16,9 @@ from latentarm.models.batches import Batch
 from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import load_decoder
 from latentarm.models.isometric import Isometric, _geometry
+from latentarm.models.layout import ISOMETRIC_DAMPING_M2
 from latentarm.models.networks import group_layers
-from latentarm.models.tool_contexts import DAMPING_M2, ROTATION_WEIGHT_M, ToolContexts
+from latentarm.models.tool_contexts import ROTATION_WEIGHT_M, ToolContexts
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.planar import planar
 from latentarm.tasks.planar.catalogue import MOTIONS
@@ -54,7 +55,7 @@ def metric(chain, state):
     weight = np.diag([1.0] * 3 + [ROTATION_WEIGHT_M**2] * 3)
     jacobians = [chain.jacobian(state, tool) for tool in range(len(chain.tools))]
     tools = sum(jacobian.T @ weight @ jacobian for jacobian in jacobians) / len(jacobians)
-    return tools + DAMPING_M2 * np.eye(chain.dof)
+    return tools + ISOMETRIC_DAMPING_M2 * np.eye(chain.dof)
 
 
 def saturation(model):
@@ -138,7 +139,7 @@ def test_the_loss_is_the_distance_to_what_was_decoded_plus_the_price_of_bending(
     observed = torch.from_numpy(trained.contexts.apply(context)).expand(2, -1, -1)
     wanted = torch.from_numpy(trained.actions.apply(action)).expand(2, -1, -1)
     networks = group_layers({name: torch.from_numpy(value) for name, value in trained.tensors.items()})
-    loss = model._loss(networks, Batch(observed, wanted, torch.zeros(2, 20, 0), observed[:, :0]))
+    loss = model._loss(networks, Batch(observed, wanted, *[torch.zeros(2, 20, 0)] * 3))
     rebuilt = trained.actions.apply(model.decode(model.encode(context, action), context))
     error = np.square(rebuilt - wanted.numpy()).sum(axis=(1, 2)) / 20
     geometry = _geometry(networks, observed, 2)
@@ -159,7 +160,7 @@ def test_the_gradient_is_that_of_the_whole_loss_though_none_flows_through_the_se
 
     def loss(values):
         return model._loss(
-            group_layers({**tensors, name: values}), Batch(observed, wanted, wanted[..., :0], observed[:, :0])
+            group_layers({**tensors, name: values}), Batch(observed, wanted, *[wanted[..., :0]] * 3)
         )
 
     leaf = tensors[name].clone().requires_grad_()
@@ -199,8 +200,8 @@ def test_two_arms_count_both_tools(samples):
 def test_an_observation_is_what_its_chain_says(demonstrations):
     arm = planar(4)
     context = demonstrations.episodes[0].state[:7]
-    contexts = ToolContexts.fitted(arm.chain, context)
-    again = ToolContexts.of_tensors(contexts.tensors())
+    contexts = ToolContexts.fitted(arm.chain, context, ISOMETRIC_DAMPING_M2)
+    again = ToolContexts.of_tensors(contexts.tensors(), ISOMETRIC_DAMPING_M2)
     np.testing.assert_array_equal(again.apply(context), contexts.apply(context))
     sizes = contexts.sizes
     jacobian = contexts.apply(context)[:, sizes.jacobian].reshape(7, 6, 4)
@@ -223,9 +224,14 @@ def test_it_needs_to_know_the_arm(demonstrations):
 
 
 def test_a_model_of_another_metric_is_refused(demonstrations):
-    contexts = ToolContexts.fitted(planar(4).chain, demonstrations.episodes[0].state)
+    contexts = ToolContexts.fitted(planar(4).chain, demonstrations.episodes[0].state, ISOMETRIC_DAMPING_M2)
     with pytest.raises(UserError, match="train it again"):
-        ToolContexts.of_tensors({**contexts.tensors(), "metric.scale": np.array([0.1, DAMPING_M2])})
+        ToolContexts.of_tensors(
+            {**contexts.tensors(), "metric.scale": np.array([0.1, ISOMETRIC_DAMPING_M2])},
+            ISOMETRIC_DAMPING_M2,
+        )
+    with pytest.raises(UserError, match="train it again"):
+        ToolContexts.of_tensors(contexts.tensors(), 2 * ISOMETRIC_DAMPING_M2)
 
 
 @pytest.mark.parametrize(

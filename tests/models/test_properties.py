@@ -37,7 +37,7 @@ def relative_error(model, pairs):
     return np.square(rebuilt - pairs.action).sum((1, 2)) / np.square(pairs.action).sum()
 
 
-@pytest.mark.parametrize("name", ["cae", "cvae", "cae_zero", "scl", "isometric"])
+@pytest.mark.parametrize("name", ["cae", "cvae", "cae_zero", "scl", "isometric", "homogeneous"])
 def test_conditioned_models_rebuild_unseen_actions_far_better_than_pca(trained, unseen, name):
     assert relative_error(trained[name], unseen).max() < 0.5 * relative_error(trained["pca"], unseen).max()
 

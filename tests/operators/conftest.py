@@ -44,3 +44,9 @@ def two_modes(planar):
 @pytest.fixture(scope="session", params=[1, 2, 3])
 def any_axes(request, planar):
     return Columns([0.5 * np.eye(planar.dof)[: request.param]])
+
+
+@pytest.fixture(scope="session")
+def wrist():
+    """Two joints of a Panda's wrist: nothing that anybody would expect of a stick."""
+    return Columns([0.5 * np.eye(7)[[4, 6]]])

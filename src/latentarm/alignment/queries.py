@@ -1,4 +1,8 @@
-"""Which motion to ask about next, and when to stop: where an ensemble of alignments disagrees."""
+"""Which motion to ask about next, and when to stop.
+
+Next comes what is least like all that was asked about; asking stops when an ensemble of alignments agrees. In
+the study of section 8.3 this teaches more than to ask where the ensemble disagrees most (docs/alignment.md).
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +18,9 @@ from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.decoder import Decoder
 from latentarm.types import FloatArray
+
+PLACE_WEIGHT: Final = 0.5
+"""What the place of a motion counts beside its direction, where motions are compared."""
 
 INPUTS_TRIED: Final = 200
 """Inputs, at most, that are tried to find the one that an alignment would want for a motion."""
@@ -63,15 +70,42 @@ def disagreement(
     return np.sqrt(np.square(crossed - own[:, None]).sum(-1).mean(axis=(0, 1)))
 
 
-def next_motion(apart: FloatArray, asked: Sequence[int]) -> int:
-    """The motion that disagreement (N,) is largest about, of those not yet asked about.
+def novelty(chain: Chain, motions: Motions, asked: Sequence[int]) -> FloatArray:
+    """How unlike all that was asked about each motion is.
+
+    Motions are alike where they begin in like poses and lead the same way, or the opposite way: what pushes
+    back is known from what pushes. To ask about the least alike, again and again, is the greedy k-centre
+    choice (Gonzalez 1985; as active learning, Sener & Savarese 2018).
+
+    Args:
+        chain: the arm.
+        motions: N.
+        asked: rows of those that were asked about.
+
+    Returns:
+        (N,), without units: the distance to the nearest one; while none was asked about, the length.
+    """
+    place = pose_vectors(chain, motions.start)
+    way = pose_vectors(chain, motions.end) - place
+    place = PLACE_WEIGHT * _scaled(place - place.mean(axis=0))
+    way = _scaled(way)
+    if not asked:
+        return np.linalg.norm(way, axis=-1)
+    there = np.square(place[:, None] - place[asked]).sum(axis=-1)
+    alike = np.square(way[:, None] - way[asked]).sum(axis=-1)
+    opposite = np.square(way[:, None] + way[asked]).sum(axis=-1)
+    return np.sqrt(there + np.minimum(alike, opposite)).min(axis=1)
+
+
+def next_motion(worth: FloatArray, asked: Sequence[int]) -> int:
+    """The motion that is worth most (N,), of those not yet asked about.
 
     Raises:
         UserError: all have been asked about.
     """
-    if len(set(asked)) >= len(apart):
-        raise UserError(f"All {len(apart)} motions have been asked about.")
-    left = apart.copy()
+    if len(set(asked)) >= len(worth):
+        raise UserError(f"All {len(worth)} motions have been asked about.")
+    left = worth.copy()
     left[list(asked)] = -np.inf
     return int(left.argmax())
 
@@ -117,6 +151,12 @@ class StoppingRule:
 def disagreement_share(apart: FloatArray, chain: Chain, motions: Motions) -> float:
     """Disagreement (N,) about motions as a share of their length, both root mean square."""
     return float(np.sqrt(np.square(apart).mean() / np.square(lengths(chain, motions)).mean()))
+
+
+def _scaled(vectors: FloatArray) -> FloatArray:
+    """Vectors (N, p) in the root mean square of their lengths; zeros stay what they are."""
+    scale = np.sqrt(np.square(vectors).sum(axis=-1).mean())
+    return vectors / scale if scale > 0 else vectors
 
 
 def _grid(axes: int) -> FloatArray:

@@ -100,5 +100,9 @@ class EndEffectorController(Controller):
         first, second = _AXES[mode]
         directions = np.zeros((2, 6))
         directions[0, first], directions[1, second] = self._scale[first], self._scale[second]
-        directions[:, 3:] = directions[:, 3:] @ pose.rotation.T
-        return z @ (directions @ (left * self._damping.inverse(singular)) @ right)
+        # Turns are asked for in the tool's frame.
+        turns = directions[:, 3:] @ pose.rotation.mT
+        shifts = np.broadcast_to(directions[:, :3], turns.shape)
+        twists = np.concatenate([shifts, turns], axis=-1)
+        inverse = self._damping.inverse(singular)[..., None, :]
+        return np.vecmat(z, twists @ (left * inverse) @ right)

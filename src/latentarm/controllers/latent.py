@@ -47,15 +47,16 @@ class LatentController(Controller):
         return self._decoder.decode(z, self._vector(context))
 
     def _vector(self, context: Context) -> FloatArray:
-        """The context as the decoder was trained on it, (c,)."""
+        """The context as the decoder was trained on it, (..., c)."""
         if self._decoder.context == "state":
             vector = context.state
         else:
-            vector = np.concatenate([context.state, context.belief])
+            belief = np.broadcast_to(context.belief, (*context.state.shape[:-1], len(context.belief)))
+            vector = np.concatenate([context.state, belief], axis=-1)
         if vector.shape[-1] != self._decoder.context_dim:
             raise UserError(
                 f"The model's context has {self._decoder.context_dim} entries, but the arm gives "
-                f"{len(context.state)} joint positions and {len(context.belief)} goals: "
+                f"{context.state.shape[-1]} joint positions and {len(context.belief)} goals: "
                 "use a model trained for this arm and these goals."
             )
         return vector

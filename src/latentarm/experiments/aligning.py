@@ -2,56 +2,32 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, final
+from typing import Final
 
 import numpy as np
 
 from latentarm.alignment.affine import fit_affine
-from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import identity
-from latentarm.alignment.demonstrated import demonstrated_motions, noticeable
 from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.profile import Profile, model_fingerprint, new_profile_folder, save_profile
-from latentarm.alignment.queries import (
-    StoppingRule,
-    bootstrap,
-    disagreement,
-    disagreement_share,
-    next_motion,
-)
-from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
+from latentarm.alignment.queries import StoppingRule
+from latentarm.alignment.training import FitConfig
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
-from latentarm.experiments.asking import Person, PersonAtTerminal, Question, Say, SimulatedPerson
+from latentarm.experiments.asking import Person, PersonAtTerminal, Say, SimulatedPerson
 from latentarm.experiments.checks import check_count, check_seed
+from latentarm.experiments.questions import ENSEMBLE, Scene, ask, shown
 from latentarm.experiments.stick_line import read_line
 from latentarm.experiments.training import prepared
-from latentarm.kinematics.chain import Chain
 from latentarm.metrics.results import as_document
 from latentarm.metrics.summary import unit_of
 from latentarm.models.catalogue import load_model
-from latentarm.models.model import LatentActionModel
 from latentarm.operators.preference import AXES, ToolAxes
-from latentarm.runs.folder import Run, read_run, robot_of
-from latentarm.types import Demonstrations, FloatArray, Row
+from latentarm.runs.folder import read_run, robot_of
+from latentarm.types import Row
 
 ALIGN_STREAM: Final = 3
 """Keeps these draws apart from everything else that is drawn from the same seed."""
-
-CANDIDATES: Final = 100
-"""Motions that may be asked about."""
-
-UNLABELLED: Final = 1000
-"""Contexts in which the priors shall hold."""
-
-AT_RANDOM: Final = 3
-"""Questions before there is enough to disagree about."""
-
-ENSEMBLE: Final = 5
-"""Alignments that disagree, and of which the best becomes the profile in the end."""
-
-QUICK: Final = FitConfig(steps=150)
-"""How an ensemble is learned between two questions, while a person waits."""
 
 FASTEST: Final = 0.99
 """Share of the motions that the simulated person can ask for without pushing beyond 1."""
@@ -113,10 +89,13 @@ def align_run(config: AlignConfig, say: Say) -> list[Row]:
             f"{config.run} was trained for {decoder.action_dim} joints; its robot has {chain.dof}."
         )
     rng = np.random.default_rng([ALIGN_STREAM, config.seed])
-    motions, unlabelled = _shown(run, prepared(run.dataset(config.dataset), run.context), chain, rng)
-    scene = _Scene(model, config.seed_index, chain, motions, unlabelled, rng, config.progress)
+    demonstrations = prepared(run.dataset(config.dataset), run.context)
+    training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
+    context = "state_belief" if run.context == "state_belief" else "state"
+    motions, unlabelled = shown(select_episodes(demonstrations, training), context, chain, rng)
+    scene = Scene(model, config.seed_index, chain, motions, unlabelled, rng, config.progress)
     person = _person(config, scene, say)
-    answers = _ask(scene, person, config.answers, say)
+    answers = ask(scene, person, config.answers, say, StoppingRule())
     say(f"Learning from {len(answers)} answers of a {person.kind} ...")
     alignment = scene.learn([answers] * ENSEMBLE, FitConfig()).best
     alignments = {
@@ -154,96 +133,7 @@ def align_run(config: AlignConfig, say: Say) -> list[Row]:
     return rows
 
 
-@final
-@dataclass(frozen=True, eq=False)
-class _Scene:
-    """What does not change while a person is asked.
-
-    Attributes:
-        model: the trained model.
-        seed_index: which of its seeds decodes.
-        chain: the arm.
-        motions: that may be asked about.
-        unlabelled: (M, c).
-        rng: of the ensembles.
-        progress: whether learning shows a bar.
-    """
-
-    model: LatentActionModel
-    seed_index: int
-    chain: Chain
-    motions: Motions
-    unlabelled: FloatArray
-    rng: np.random.Generator
-    progress: bool
-
-    def learn(self, answers: list[Answers], config: FitConfig) -> FittedAlignments:
-        """An alignment for each entry, from seeds 0, 1, ..."""
-        return fit_alignments(
-            self.model,
-            self.chain,
-            answers,
-            self.unlabelled,
-            config,
-            seed_index=self.seed_index,
-            progress=self.progress,
-        )
-
-
-def _ask(scene: _Scene, person: Person, count: int, say: Say) -> Answers:
-    """Ask at random first, then where an ensemble disagrees most, until enough is known.
-
-    Raises:
-        UserError: nobody answers, or there is nothing left to ask.
-    """
-    motions, chain = scene.motions, scene.chain
-    places = [chain.forward(state).position for state in (motions.start, motions.end)]
-    reach_m = float(np.linalg.norm(places[1] - places[0], axis=-1).max())
-    asked: list[int] = []
-    answered: dict[int, FloatArray] = {}
-    history: list[float] = []
-    apart = -np.arange(len(motions), dtype=np.float64)  # in the order of their drawing
-    while len(answered) < count and len(asked) < len(motions):
-        row = next_motion(apart, asked)
-        asked.append(row)
-        motion = motions[np.array([row])]
-        u = person.answer(Question(len(answered) + 1, count, motion, chain, reach_m, scene.model.latent_dim))
-        if u is None:
-            continue
-        answered[row] = u
-        if AT_RANDOM <= len(answered) < count:
-            so_far = _answers(motions, answered)
-            ensemble = scene.learn(bootstrap(so_far, ENSEMBLE, scene.rng), QUICK).alignments
-            apart = disagreement(ensemble, scene.model.decoder(scene.seed_index), chain, motions)
-            history.append(disagreement_share(apart, chain, motions))
-            if StoppingRule().enough(history):
-                say(f"{len(answered)} answers of a {person.kind} are enough: more would change little.")
-                break
-    if not answered:
-        raise UserError("No question was answered, so there is nothing to learn: answer at least one.")
-    return _answers(motions, answered)
-
-
-def _answers(motions: Motions, answered: dict[int, FloatArray]) -> Answers:
-    return Answers(motions[np.array(list(answered))], np.stack(list(answered.values())))
-
-
-def _shown(
-    run: Run, demonstrations: Demonstrations, chain: Chain, rng: np.random.Generator
-) -> tuple[Motions, FloatArray]:
-    """Motions to ask about that a person can tell from standing still, and contexts without an answer.
-
-    Both come from the episodes that trained the model, so that the others can still judge it.
-    """
-    training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
-    shown = select_episodes(demonstrations, training)
-    context = "state_belief" if run.context == "state_belief" else "state"
-    many = demonstrated_motions(shown, CANDIDATES, rng, context=context)
-    unlabelled = demonstrated_motions(shown, UNLABELLED, rng, context=context).context
-    return many[np.flatnonzero(noticeable(many, chain))], unlabelled
-
-
-def _person(config: AlignConfig, scene: _Scene, say: Say) -> Person:
+def _person(config: AlignConfig, scene: Scene, say: Say) -> Person:
     """Whom to ask."""
     if not config.simulated:
         return PersonAtTerminal(say, read_line)

@@ -12,7 +12,7 @@ from latentarm.errors import UserError
 from latentarm.experiments.motion_text import draw, moved, said
 from latentarm.experiments.stick_line import parse
 from latentarm.kinematics.chain import Chain
-from latentarm.operators.preference import ToolAxes
+from latentarm.operators.preference import Preference
 from latentarm.types import FloatArray
 
 Say = Callable[[str], None]
@@ -67,7 +67,7 @@ class SimulatedPerson(Person):
         say: shows a line.
     """
 
-    def __init__(self, preference: ToolAxes, say: Say) -> None:
+    def __init__(self, preference: Preference, say: Say) -> None:
         self._preference = preference
         self._say = say
 

@@ -164,7 +164,7 @@ def drive_all(setups: Sequence[Setup], drives: int, seed: int, jobs: int) -> lis
     Returns:
         The drives, goal by goal.
     """
-    calls = _drives(setups[0], drives, seed)
+    calls = drive_plan(setups[0].task, drives, seed)
     traces = Parallel(n_jobs=jobs)(
         delayed(simulate)(setups[number % len(setups)], *call) for number, call in enumerate(calls)
     )
@@ -185,7 +185,7 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
     recorder = Recorder(journal)
     traces: list[Trace] = []
     try:
-        for goal, manner, rng in _drives(setup, config.drives, config.seed):
+        for goal, manner, rng in drive_plan(task, config.drives, config.seed):
             recorder.begin_episode(
                 EpisodeHeader(
                     robot=task.robot.name,
@@ -204,12 +204,21 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
     return traces
 
 
-def _drives(setup: Setup, drives: int, seed: int) -> list[tuple[int, str, np.random.Generator]]:
-    """Goal, manner and randomness of every drive."""
-    manners = setup.task.manners
+def drive_plan(task: Task, drives: int, seed: int) -> list[tuple[int, str, np.random.Generator]]:
+    """Goal, manner and randomness of every drive, goal by goal; the manners take turns.
+
+    Args:
+        task: whose goals are driven to.
+        drives: to each goal.
+        seed: of the starts and of the simulated operator.
+    """
     return [
-        (goal, manners[number % len(manners)], np.random.default_rng([DRIVE_STREAM, seed, goal, number]))
-        for goal in range(len(setup.task.goals))
+        (
+            goal,
+            task.manners[number % len(task.manners)],
+            np.random.default_rng([DRIVE_STREAM, seed, goal, number]),
+        )
+        for goal in range(len(task.goals))
         for number in range(drives)
     ]
 

@@ -11,8 +11,12 @@ from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
+from latentarm.errors import UserError
 from latentarm.metrics.drives import Drive, measure_drive
 from latentarm.operators.boltzmann import BoltzmannConfig, BoltzmannOperator
+from latentarm.operators.foresight import Foresight
+from latentarm.operators.operator import Operator
+from latentarm.operators.planning import PlanningConfig, PlanningOperator
 from latentarm.robots.simulated import SimulatedArm
 from latentarm.tasks.task import Task
 from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
@@ -35,6 +39,12 @@ class Setup:
         operator: how the simulated operator thinks.
         time_limit_s: a drive that lasts longer has failed.
         rule: how inputs change the belief; without help too, for a decoder may look at it.
+        foresight: where the simulated operator expects an input to lead; they know the arm where None.
+        planning: how far a simulated operator who knows the arm plans where one step leads no nearer; None
+            never plans.
+
+    Raises:
+        UserError: a person is to plan who does not know the arm.
     """
 
     task: Task
@@ -43,6 +53,12 @@ class Setup:
     operator: BoltzmannConfig
     time_limit_s: float
     rule: Rule = BoltzmannBelief
+    foresight: Foresight | None = None
+    planning: PlanningConfig | None = None
+
+    def __post_init__(self) -> None:
+        if self.foresight is not None and self.planning is not None:
+            raise UserError("Only a simulated person who knows the arm plans: give foresight or planning.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +68,7 @@ class Trace:
     Attributes:
         figures: what is measured of it.
         goal: index of the goal.
+        progress: share of the waypoints that were reached.
         time_s: (T,), s.
         position: (T, 3), the tool, m.
         input: (T, d).
@@ -61,6 +78,7 @@ class Trace:
 
     figures: Drive
     goal: int
+    progress: float
     time_s: FloatArray
     position: FloatArray
     input: FloatArray
@@ -92,7 +110,7 @@ def simulate(
     start = task.sample_start(goal, rng)
     arm = SimulatedArm(task.robot, start, dt_s)
     step = _step(setup, dt_s)
-    operator = BoltzmannOperator(task.robot, setup.operator, period_s=dt_s)
+    operator = _operator(setup, dt_s)
     remaining = list(task.waypoints(goal, manner))
     step.reset(start)
     records = [step(Input(np.zeros(controller.input_dim)), 0.0, start, 0.0)]
@@ -111,7 +129,13 @@ def simulate(
             watch(records[-1])
         arm.send(records[-1].command)
         arm.advance()
-    return _trace(records, setup, goal, manner, success=not remaining)
+    return _trace(records, setup, goal, manner, left=len(remaining))
+
+
+def _operator(setup: Setup, dt_s: float) -> Operator:
+    if setup.planning is None:
+        return BoltzmannOperator(setup.task.robot, setup.operator, period_s=dt_s, foresight=setup.foresight)
+    return PlanningOperator(setup.task.robot, setup.operator, setup.planning, period_s=dt_s)
 
 
 def _step(setup: Setup, dt_s: float) -> Step:
@@ -128,12 +152,13 @@ def _step(setup: Setup, dt_s: float) -> Step:
     )
 
 
-def _trace(records: list[StepRecord], setup: Setup, goal: int, manner: str, *, success: bool) -> Trace:
+def _trace(records: list[StepRecord], setup: Setup, goal: int, manner: str, *, left: int) -> Trace:
     chain = setup.task.robot.chain
-    target: Pose = setup.task.waypoints(goal, manner)[-1]
+    waypoints: tuple[Pose, ...] = setup.task.waypoints(goal, manner)
     return Trace(
-        figures=measure_drive(records, chain, target, success=success),
+        figures=measure_drive(records, chain, waypoints[-1], success=not left),
         goal=goal,
+        progress=1.0 - left / len(waypoints),
         time_s=np.array([record.time_s for record in records]),
         position=chain.forward(np.stack([record.state for record in records])).position,
         input=np.stack([record.input for record in records]),

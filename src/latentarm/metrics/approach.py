@@ -70,12 +70,14 @@ class Approach:
         context: (S, P, c), at that moment.
         path_m: (S, P), way of the tools until then, mean over tools, m.
         straight_m: (S, P), the same way as the crow flies, m.
+        latent: (S, P, T, d), what was chosen at each of the T steps; 0 after a drive has stalled.
     """
 
     distance_m: FloatArray
     context: FloatArray
     path_m: FloatArray
     straight_m: FloatArray
+    latent: FloatArray
 
 
 def approach(
@@ -99,8 +101,8 @@ def approach(
         tools: the T end-effectors.
     """
     drives = [_drive(_Problem(decoder, target, chain, tools, step_s, config), start) for decoder in decoders]
-    distance, context, path, straight = (np.stack(part) for part in zip(*drives, strict=True))
-    return Approach(distance_m=distance, context=context, path_m=path, straight_m=straight)
+    distance, context, path, straight, latent = (np.stack(part) for part in zip(*drives, strict=True))
+    return Approach(distance_m=distance, context=context, path_m=path, straight_m=straight, latent=latent)
 
 
 def tool_places(chain: PlacesTool, state: FloatArray, tools: Sequence[int]) -> FloatArray:
@@ -145,20 +147,23 @@ class _Problem:
         return np.concatenate([away, joint], axis=-1)
 
 
-def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """What `Approach` says of one seed: distance, context, path and straight way of P drives."""
+def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
+    """What `Approach` says of one seed: distance, context, path, straight way and choices of P drives."""
     config, target, dof = problem.config, problem.target.places, _dof(problem.decoder, start)
     first = tool_places(problem.chain, start[:, :dof], problem.tools)
     distance, nearest = mean_distance(first, target), start.copy()
     path, straight = np.zeros((2, len(start)))
+    steps = max(1, round(config.time_s / problem.step_s))
+    latent = np.zeros((len(start), steps, problem.decoder.latent_dim))
 
     # Of the drives that are still running: their indices, and what has become of them.
     running, waited, way = np.arange(len(start)), np.zeros(len(start)), np.zeros(len(start))
     mark, context, places = distance.copy(), start, first
     z = zero_latent(problem.decoder, start)
-    for step in range(max(1, round(config.time_s / problem.step_s))):
+    for step in range(steps):
         if step % config.hold == 0:
             z = _choose(problem.of(running), context, z)
+        latent[running, step] = z
         context = next_context(context, problem.decoder.decode(z, context), problem.step_s)
         before, places = places, tool_places(problem.chain, context[:, :dof], problem.tools)
         way = way + mean_distance(places, before)
@@ -175,7 +180,7 @@ def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, FloatArray
         context, places, z = context[on], places[on], z[on]
         if not len(running):
             break
-    return distance, nearest, path, straight
+    return distance, nearest, path, straight, latent
 
 
 def _dof(decoder: DecodesActions, context: FloatArray) -> int:

@@ -83,6 +83,19 @@ class EvaluationConfig:
     tool: int = 0
 
 
+@dataclass(frozen=True)
+class Figures:
+    """What was measured of a model, before any mean is taken.
+
+    Attributes:
+        per_seed: measure -> (S,).
+        start_distance_m: (P,), of the tools from the goals before any drive, m.
+    """
+
+    per_seed: Mapping[str, FloatArray]
+    start_distance_m: FloatArray
+
+
 def evaluate(
     model: TrainedModel,
     demonstrations: Demonstrations,
@@ -93,12 +106,11 @@ def evaluate(
     rng: np.random.Generator,
     config: EvaluationConfig | None = None,
 ) -> list[Row]:
-    """Measure a model on held-out episodes.
+    """Measure a model on held-out episodes: mean and SD over its seeds.
 
     Args:
         model: a fitted model of S seeds.
-        demonstrations: the dataset that it was trained on; PCA is fitted to all of it that is not held out,
-            so also to episodes that stopped the training early.
+        demonstrations: the dataset that it was trained on.
         held_out: indices of the episodes that it has not seen.
         robot: the arm that it moves.
         subject: what the rows say they are about.
@@ -107,6 +119,34 @@ def evaluate(
 
     Returns:
         One row per measure.
+
+    Raises:
+        UserError: no episode is held out, none is left for PCA, or the contexts lack a belief.
+    """
+    measured = measure(model, demonstrations, held_out, robot, rng=rng, config=config)
+    rows = [summarise(subject, name, values) for name, values in measured.per_seed.items()]
+    return [*rows, summarise(subject, "start_distance_m", measured.start_distance_m)]
+
+
+def measure(
+    model: TrainedModel,
+    demonstrations: Demonstrations,
+    held_out: Sequence[int],
+    robot: Robot,
+    *,
+    rng: np.random.Generator,
+    config: EvaluationConfig | None = None,
+) -> Figures:
+    """Measure every seed of a model on held-out episodes.
+
+    Args:
+        model: a fitted model of S seeds.
+        demonstrations: the dataset that it was trained on; PCA is fitted to all of it that is not held out,
+            so also to episodes that stopped the training early.
+        held_out: indices of the episodes that it has not seen.
+        robot: the arm that it moves.
+        rng: for the noise on held-out states.
+        config: how the measures are taken.
 
     Raises:
         UserError: no episode is held out, none is left for PCA, or the contexts lack a belief.
@@ -140,8 +180,7 @@ def evaluate(
     figures["drift"] = drift(decoders, z, context)
     figures["reversal"] = reversal(decoders, z, context, step_s)
 
-    rows = [summarise(subject, measure, values) for measure, values in figures.items()]
-    return [*rows, summarise(subject, "start_distance_m", reach.start_distance_m)]
+    return Figures(per_seed=figures, start_distance_m=reach.start_distance_m)
 
 
 @dataclass(frozen=True)

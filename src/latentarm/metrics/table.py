@@ -22,12 +22,17 @@ NAMES: dict[str, str] = {
     "controllability_m": "reaches goals to",
     "controllability_percent_of_pca": "reaches goals to, of PCA's",
     "controllability_state_error": "joint error then",
+    "planned_reach_m": "reaches goals to, planning",
     "start_distance_m": "distance at the start",
     "r2": "R², mean of axes",
     "r2_local": "local R², mean of axes",
     "disentanglement_deg": "angle between axes",
     "drift": "drift, of motion",
     "reversal": "left after z then -z",
+    "motion_turn": "joints' turn per stick's",
+    "motion_turn_p95": "joints' turn per stick's, 95 %",
+    "tool_turn": "tool's turn per stick's",
+    "tool_turn_p95": "tool's turn per stick's, 95 %",
     "success_rate": "success rate",
     "time_s": "time",
     "input_magnitude": "input magnitude",
@@ -35,8 +40,12 @@ NAMES: dict[str, str] = {
     "path_length": "path length",
     "path_length_percent_of_vae": "path length, of the VAE's",
     "path_over_straight": "path, over the straight way",
+    "undone_share": "share of the path undone",
+    "demonstrated_undone_share": "the same of the demonstration",
+    "progress": "share of the waypoints reached",
     "final_distance": "final distance",
     "relative_alignment_error": "relative alignment error",
+    "answers": "answers until asking stops",
     "final_distance_percent_of_vae": "final distance, of the VAE's",
     "final_state_error": "final state error",
     "final_tool_error": "final tool error",
@@ -93,18 +102,39 @@ def measure_name(row: Row) -> str:
 
 
 def rich_tables(rows: Sequence[Row], title: str = "", width: int = 100) -> RenderableType:
-    """Measures down, models or conditions across.
-
-    Where they are too many for the width, the spread goes under the mean; where that would not be
-    enough, the table is split.
+    """Measures down, models or conditions across; see `rich_figures`.
 
     Args:
         rows: figures; where they are of several tasks, the head names them.
         title: what the table shows.
         width: characters that a line may have.
     """
-    measures, series, figures = _arranged(rows)
-    room = width - max((len(measure) for measure in measures), default=0) - BORDER - 1
+    return rich_figures(*_arranged(rows), title=title, width=width)
+
+
+def rich_figures(
+    measures: Sequence[str],
+    series: Sequence[str],
+    figures: Mapping[tuple[str, str], str],
+    *,
+    corner: str = "mean ± SD",
+    title: str = "",
+    width: int = 100,
+) -> RenderableType:
+    """A terminal's table of figures by measure, down, and series, across.
+
+    Where they are too many for the width, the spread goes under the mean; where that would not be
+    enough, the table is split.
+
+    Args:
+        measures: names of the lines.
+        series: names of the columns.
+        figures: text by measure and series.
+        corner: what the figures are.
+        title: what the table shows.
+        width: characters that a line may have.
+    """
+    room = width - max((len(measure) for measure in (*measures, corner)), default=0) - BORDER - 1
     widths = _column_widths(measures, series, figures)
     stacked = {place: figure.replace(" ± ", "\n± ") for place, figure in figures.items()}
     stacked_widths = _column_widths(measures, series, stacked)
@@ -113,7 +143,7 @@ def rich_tables(rows: Sequence[Row], title: str = "", width: int = 100) -> Rende
     tables: list[RenderableType] = []
     for part in _fitting(widths, room):
         table = Table(title=None if tables else title, title_justify="left", box=SIMPLE_HEAD)
-        table.add_column("mean ± SD", no_wrap=True)
+        table.add_column(corner, no_wrap=True)
         for index in part:
             table.add_column(series[index], justify="right", min_width=widths[index] - BORDER)
         for measure in measures:

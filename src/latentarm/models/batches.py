@@ -29,12 +29,14 @@ class Batch(NamedTuple):
         noise: (S, B, k), standard normal for training and zero for judging; k = 0 where the encoder
             is deterministic.
         elsewhere: (S, E, c), contexts without demonstrated actions, for terms that need none.
+        later: (S, B, c), where the actions lead, for models that look there; otherwise (S, B, 0).
     """
 
     context: Tensor
     action: Tensor
     noise: Tensor
     elsewhere: Tensor
+    later: Tensor
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,9 @@ class TrainingData:
         held_out_context: (H, c), pairs of the held-out episodes.
         held_out_action: (H, m).
         elsewhere: (M, c), contexts without demonstrated actions; none where no term asks for them.
+        later: (N, c), contexts to which the training pairs' actions lead, for models that look there;
+            otherwise (N, 0).
+        held_out_later: (H, c) or (H, 0), the same of the held-out pairs.
     """
 
     context: FloatArray
@@ -54,6 +59,8 @@ class TrainingData:
     held_out_context: FloatArray
     held_out_action: FloatArray
     elsewhere: FloatArray
+    later: FloatArray
+    held_out_later: FloatArray
 
 
 def seed_generator(seed: int, stream: int) -> torch.Generator:
@@ -84,7 +91,7 @@ class Batches:
         self._seeds, self._noise_dim, self._device = tuple(seeds), noise_dim, device
         self._context, self._action = tensor(data.context), tensor(data.action)
         self._pairs = len(data.context)
-        self._elsewhere = tensor(data.elsewhere)
+        self._elsewhere, self._later = tensor(data.elsewhere), tensor(data.later)
         self._rows = min(ELSEWHERE, len(data.elsewhere))
         self.size = max(1, min(batch_size, self._pairs // FEWEST_STEPS))
         many, held_out = len(seeds), len(data.held_out_context)
@@ -93,6 +100,7 @@ class Batches:
             action=tensor(data.held_out_action).expand(many, -1, -1).contiguous(),
             noise=torch.zeros(many, held_out, noise_dim, device=device),
             elsewhere=self._elsewhere[:ELSEWHERE_JUDGED].expand(many, -1, -1).contiguous(),
+            later=tensor(data.held_out_later).expand(many, -1, -1).contiguous(),
         )
 
     def epoch(self, epoch: int) -> Iterator[Batch]:
@@ -121,4 +129,5 @@ class Batches:
                 action=self._action.index_select(0, chosen).view(many, size, -1),
                 noise=drawn,
                 elsewhere=self._elsewhere.index_select(0, place).view(many, self._rows, width),
+                later=self._later.index_select(0, chosen).view(many, size, self._later.shape[-1]),
             )

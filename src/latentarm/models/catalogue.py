@@ -6,6 +6,7 @@ from typing import Any, Final, cast
 
 from latentarm.errors import UserError
 from latentarm.models.autoencoders import AE, CAE, CVAE, VAE
+from latentarm.models.homogeneous import Homogeneous
 from latentarm.models.isometric import Isometric
 from latentarm.models.linear import SCL
 from latentarm.models.model import LatentActionModel
@@ -23,6 +24,7 @@ MODELS: Final[dict[str, type[LatentActionModel]]] = {
     "cae_zero": CAEZero,
     "scl": SCL,
     "isometric": Isometric,
+    "homogeneous": Homogeneous,
 }
 
 

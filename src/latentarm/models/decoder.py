@@ -6,11 +6,10 @@ from typing import Final, cast, final
 
 import numpy as np
 
-from latentarm.models.layout import DecoderForm
+from latentarm.models.layout import ORDERS, DecoderForm
 from latentarm.models.normaliser import Normaliser
 from latentarm.models.numpy_networks import Layer, halve_hidden, network_output, propagate
 from latentarm.models.saving import read_model
-from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.trained import TrainedModel
 from latentarm.types import FloatArray
 
@@ -153,11 +152,51 @@ class _Matrix(_Form):
 
 
 @final
+class _Homogeneous(_Form):
+    """‖z‖ R(c, z / ‖z‖) of the homogeneous model."""
+
+    def __init__(self, trained: TrainedModel, seed: int) -> None:
+        self._contexts = trained.tool_contexts
+        layers = _layers(trained, seed)
+        first = _scale_context(layers[0], trained)
+        (self._weight, self._bias), *self._rest = halve_hidden([first, *layers[1:]])
+        self._speed = float(trained.actions.scale[0])
+        self._latents, self._joints = trained.dimensions.latent, trained.dimensions.action
+
+    def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
+        jacobian = self._contexts.jacobian(context[..., : self._joints])
+        columns = self._columns(context, jacobian)
+        radius = np.sqrt(np.vecdot(z, z))[..., None]
+        led = np.matvec(columns, odd_degrees(z / np.maximum(radius, NORM_FLOOR)))
+        twist = np.matvec(jacobian, led)
+        size = np.vecdot(twist, twist) + self._contexts.damping * np.vecdot(led, led)
+        return self._speed * radius * led / np.sqrt(size + NORM_FLOOR)[..., None]
+
+    def _columns(self, context: FloatArray, jacobian: FloatArray) -> FloatArray:
+        """M_1(c) and the bends M_3(c), M_5(c), ..., (..., m, (1 + orders) d)."""
+        raw = propagate(context @ self._weight + self._bias, self._rest)
+        columns = raw.reshape(*raw.shape[:-1], -1, self._joints).swapaxes(-1, -2).copy()
+        columns[..., self._latents :] *= BEND_SIZE
+        twists = jacobian @ columns
+        for axis in range(self._latents):
+            column, twist = columns[..., axis], twists[..., axis]
+            size = np.vecdot(twist, twist) + self._contexts.damping * np.vecdot(column, column)
+            scale = 1 / np.sqrt(size + NORM_FLOOR)[..., None]
+            column *= scale
+            twist *= scale
+            after, after_twist = columns[..., axis + 1 :], twists[..., axis + 1 :]
+            along = np.vecmat(twist, after_twist) + self._contexts.damping * np.vecmat(column, after)
+            after -= column[..., None] * along[..., None, :]
+            after_twist -= twist[..., None] * along[..., None, :]
+        return columns
+
+
+@final
 class _Isometry(_Form):
     """g(r) R(c, r) z / r of the isometric model."""
 
     def __init__(self, trained: TrainedModel, seed: int) -> None:
-        self._contexts = ToolContexts.of_tensors(trained.tensors)
+        self._contexts = trained.tool_contexts
         self._twist = halve_hidden(_layers(trained, seed, "decoder"))
         self._posture = halve_hidden(_layers(trained, seed, "posture"))
         ((weight, bias),) = _layers(trained, seed, "gain")
@@ -215,6 +254,7 @@ _FORMS: Final[dict[DecoderForm, type[_Form]]] = {
     "latent_context": _LatentContext,
     "matrix": _Matrix,
     "isometry": _Isometry,
+    "homogeneous": _Homogeneous,
 }
 
 
@@ -227,6 +267,19 @@ def _orthonormal(columns: list[FloatArray]) -> list[FloatArray]:
             column = column - np.vecdot(column, other)[..., None] * other
         done.append(column / np.sqrt(np.vecdot(column, column) + NORM_FLOOR)[..., None])
     return done
+
+
+def odd_degrees(direction: FloatArray) -> FloatArray:
+    """Chebyshev polynomials ``T_n`` of each entry for n = 1 and `ORDERS`, (..., d) to (..., (1 + orders) d).
+
+    For d = 2 and a direction at the angle theta these are cos(n theta) and, but for the sign, sin(n theta).
+    """
+    twice = 4 * np.square(direction) - 2
+    before, degree, parts = direction, direction, [direction]
+    for _ in ORDERS:
+        before, degree = degree, twice * degree - before
+        parts.append(degree)
+    return np.concatenate(parts, axis=-1)
 
 
 def _layers(trained: TrainedModel, seed: int, network: str = "decoder") -> list[Layer]:

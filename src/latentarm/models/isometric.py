@@ -9,11 +9,11 @@ from torch import Tensor
 
 from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.decoder import BEND_SIZE, NORM_FLOOR
-from latentarm.models.layout import PLACE, TWIST, Dimensions
+from latentarm.models.layout import ISOMETRIC_DAMPING_M2, PLACE, TWIST, Dimensions
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.objectives import reconstruction_error
-from latentarm.models.tool_contexts import DAMPING_M2, ToolSizes
+from latentarm.models.tool_contexts import ToolSizes
 from latentarm.types import FloatArray
 
 STRAIGHT_START: Final = 2.0
@@ -151,7 +151,7 @@ def _geometry(networks: Networks, context: Tensor, latent_dim: int) -> _Geometry
     column_twist = jacobian @ columns
     straight, straight_twist = _orthonormal(columns[..., :latent_dim], column_twist[..., :latent_dim])
     bend, bend_twist = BEND_SIZE * columns[..., latent_dim:], BEND_SIZE * column_twist[..., latent_dim:]
-    along = _gram(straight_twist, bend_twist) + DAMPING_M2 * _gram(straight, bend)
+    along = _gram(straight_twist, bend_twist) + ISOMETRIC_DAMPING_M2 * _gram(straight, bend)
     for axis in range(latent_dim):
         part = along[..., axis, None, :]
         bend = bend - straight[..., axis, None] * part
@@ -186,7 +186,7 @@ def _orthonormal(columns: Tensor, twists: Tensor) -> tuple[Tensor, Tensor]:
 
 def _inner(first: Tensor, first_twist: Tensor, second: Tensor, second_twist: Tensor) -> Tensor:
     """``a^T G b`` of joint velocities (..., m) with weighted twists (..., 6 k): (..., 1)."""
-    return (first_twist * second_twist).sum(-1, keepdim=True) + DAMPING_M2 * (first * second).sum(
+    return (first_twist * second_twist).sum(-1, keepdim=True) + ISOMETRIC_DAMPING_M2 * (first * second).sum(
         -1, keepdim=True
     )
 
@@ -219,7 +219,7 @@ def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
     """
     straight, bend, bend_twist = geometry
     overlap, cross, spread = _gram(straight, straight), _gram(straight, bend), _gram(bend, bend)
-    bend_metric = _entries(_gram(bend_twist, bend_twist) + DAMPING_M2 * spread)
+    bend_metric = _entries(_gram(bend_twist, bend_twist) + ISOMETRIC_DAMPING_M2 * spread)
     overlap, cross, spread = _entries(overlap), _entries(cross + cross.mT), _entries(spread)
     on_straight, on_bend = _applied(straight.mT, action)[..., None], _applied(bend.mT, action)[..., None]
     axes = range(len(overlap))

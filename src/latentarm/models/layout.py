@@ -4,12 +4,18 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, Literal
 
-DecoderForm = Literal["linear", "latent", "latent_context", "matrix", "isometry"]
+DecoderForm = Literal["linear", "latent", "latent_context", "matrix", "isometry", "homogeneous"]
 EncoderForm = Literal["projection", "nearest", "deterministic", "gaussian"]
 Shape = tuple[int, ...]
 
 TWIST: Final = 6
 """Entries of a tool's twist: 3 of velocity, 3 of angular velocity."""
+
+ISOMETRIC_DAMPING_M2: Final = 1e-2
+HOMOGENEOUS_DAMPING_M2: Final = 1e-3
+
+ORDERS: Final = (3, 5, 7)
+"""Odd degrees by which the homogeneous model bends."""
 
 PLACE: Final = 9
 """Numbers that tell a network where a tool is: its position and the first two columns of its rotation."""
@@ -21,15 +27,19 @@ class Layout:
 
     Attributes:
         decoder: ``linear`` is phi(z) without hidden layers, ``latent`` is phi(z), ``latent_context`` is
-            phi(z, c), ``matrix`` is M(c) z, ``isometry`` is g(‖z‖) R(c, ‖z‖) z / ‖z‖ in the metric of the
-            tools.
+            phi(z, c), ``matrix`` is M(c) z, ``isometry`` is g(‖z‖) R(c, ‖z‖) z / ‖z‖ and ``homogeneous``
+            is ‖z‖ R(c, z / ‖z‖), both in the metric of the tools.
         encoder: ``projection`` onto the columns of the decoder or the ``nearest`` action that it can
             decode (neither has weights of its own), or a network of (c, a) whose output is z
             (``deterministic``) or (mu, log sigma^2) (``gaussian``).
+        damping_m2: what a joint's motion by 1 rad counts beside the square of a tool's motion by 1 m, in the
+            metric of the tools: enough to keep motions that no tool shows from being free. None where the
+            model does not look at the tools.
     """
 
     decoder: DecoderForm
     encoder: EncoderForm
+    damping_m2: float | None = None
 
 
 LAYOUTS: Final[dict[str, Layout]] = {
@@ -40,7 +50,8 @@ LAYOUTS: Final[dict[str, Layout]] = {
     "cvae": Layout("latent_context", "gaussian"),
     "cae_zero": Layout("latent_context", "deterministic"),
     "scl": Layout("matrix", "projection"),
-    "isometric": Layout("isometry", "nearest"),
+    "isometric": Layout("isometry", "nearest", ISOMETRIC_DAMPING_M2),
+    "homogeneous": Layout("homogeneous", "nearest", HOMOGENEOUS_DAMPING_M2),
 }
 """Every kind of model, by the name that it has on disk and on the command line."""
 
@@ -76,6 +87,7 @@ def network_sizes(layout: Layout, dimensions: Dimensions) -> dict[str, Shape]:
         "latent_context": (d + c, *hidden, m),
         "matrix": (c, *hidden, d * m),
         "isometry": (seen, *hidden, 2 * d * TWIST * dimensions.tools),
+        "homogeneous": (c, *hidden, (1 + len(ORDERS)) * d * m),
     }
     beside: dict[str, Shape] = (
         {"posture": (seen, *hidden, 2 * d * m), "gain": (1, 1)} if layout.decoder == "isometry" else {}
@@ -103,7 +115,7 @@ def tensor_shapes(layout: Layout, dimensions: Dimensions) -> dict[str, Shape]:
     """Shape of every tensor of a saved model: the learned ones, the normalisers and the latent scale."""
     return {
         **weight_shapes(layout, dimensions),
-        **(_tool_shapes(dimensions) if layout.decoder == "isometry" else {}),
+        **({} if layout.damping_m2 is None else _tool_shapes(dimensions)),
         "context.centre": (dimensions.context,),
         "context.scale": (dimensions.context,),
         "action.scale": (1,),

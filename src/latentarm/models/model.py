@@ -42,6 +42,9 @@ from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs
 ROWS_AT_ONCE: Final = 4096
 """Pairs encoded or decoded at a time, so that memory does not grow with the dataset."""
 
+AHEAD_S: Final = 0.1
+"""How far ahead those models look that do, s: as long as a short press of the stick."""
+
 Weights = Mapping[str, FloatArray]
 
 
@@ -85,6 +88,9 @@ class LatentActionModel(ABC):
 
     sees_tools: ClassVar[bool] = False
     """Whether the model looks at the arm's tools and their Jacobians, so that fitting needs a known arm."""
+
+    looks_ahead: ClassVar[bool] = False
+    """Whether the loss looks at the context that an action leads to within `AHEAD_S`."""
 
     latent_dim: int = 2
     context: Literal["state", "state_belief"] = "state"
@@ -327,7 +333,7 @@ class LatentActionModel(ABC):
                 f"A latent action of {dimensions.latent} dimensions is no smaller than the arm's "
                 f"{dimensions.action}: choose at most {dimensions.action}."
             )
-        contexts, actions = _normalisers(arm, context, action)
+        contexts, actions = _normalisers(arm, LAYOUTS[self.kind].damping_m2, context, action)
         shown = contexts.apply(context)
         elsewhere = shown[:0]
         if term is not None:
@@ -339,6 +345,8 @@ class LatentActionModel(ABC):
             held_out_context=contexts.apply(pairs.context[outside]),
             held_out_action=actions.apply(pairs.action[outside]),
             elsewhere=elsewhere,
+            later=self._later(contexts, context, action),
+            held_out_later=self._later(contexts, pairs.context[outside], pairs.action[outside]),
         )
         scaled = term and ScaledTerm(
             term,
@@ -381,6 +389,16 @@ class LatentActionModel(ABC):
             ),
         )
 
+    def _later(
+        self, contexts: Normaliser | ToolContexts, context: FloatArray, action: FloatArray
+    ) -> FloatArray:
+        """What is seen where actions (N, m) lead from contexts (N, c), (N, o); (N, 0) where nobody looks."""
+        if not self.looks_ahead:
+            return context[:, :0]
+        later = context.copy()
+        later[:, : action.shape[1]] += AHEAD_S * action
+        return contexts.apply(later)
+
     def _encode_rows(self, weights: Weights, context: FloatArray, action: FloatArray) -> FloatArray:
         return _in_rows(lambda rows: self._encode(weights, context[rows], action[rows]), len(context))
 
@@ -394,12 +412,12 @@ class LatentActionModel(ABC):
 
 
 def _normalisers(
-    arm: Chain | None, context: FloatArray, action: FloatArray
+    arm: Chain | None, damping_m2: float | None, context: FloatArray, action: FloatArray
 ) -> tuple[Normaliser | ToolContexts, Normaliser]:
     """What brings contexts and actions to size; in the metric of an arm's tools where there is one."""
-    if arm is None:
+    if arm is None or damping_m2 is None:
         return context_normaliser(context), action_normaliser(action)
-    contexts = ToolContexts.fitted(arm, context)
+    contexts = ToolContexts.fitted(arm, context, damping_m2)
     return contexts, contexts.action_normaliser(context, action)
 
 

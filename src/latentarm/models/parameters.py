@@ -22,7 +22,14 @@ WHOLE: Final = {
 """Whole-numbered parameters and the least that each may be."""
 
 POSITIVE: Final = ("learning_rate",)
-NOT_NEGATIVE: Final = ("state_noise_rad", "checkpoint_interval_s", "kl_weight", "zero_weight", "bend_weight")
+NOT_NEGATIVE: Final = (
+    "state_noise_rad",
+    "checkpoint_interval_s",
+    "kl_weight",
+    "zero_weight",
+    "bend_weight",
+    "smoothness_weight",
+)
 CHOICES: Final = {
     "context": ("state", "state_belief"),
     "actions": ("displacement", "recorded"),

@@ -19,10 +19,6 @@ ROTATION_WEIGHT_M: Final = 0.05
 """What a turn of a tool by 1 rad counts beside a motion by 1 m. Low, so that directions of z are told apart
 by where they move the tools; not zero, so that turning a tool in place counts too."""
 
-DAMPING_M2: Final = 1e-2
-"""What a joint's motion by 1 rad counts beside the square of a tool's motion by 1 m: enough to keep motions
-that no tool shows from being free."""
-
 
 @final
 @dataclass(frozen=True)
@@ -84,19 +80,19 @@ class ToolContexts:
     damping: float
 
     @staticmethod
-    def fitted(chain: Chain, context: FloatArray) -> "ToolContexts":
-        """The map whose normalisers suit contexts (N, c)."""
+    def fitted(chain: Chain, context: FloatArray, damping: float) -> "ToolContexts":
+        """The map whose normalisers suit contexts (N, c), in the metric of a damping, m^2/rad^2."""
         return ToolContexts(
             chain=chain,
             contexts=context_normaliser(context),
             places=context_normaliser(_places(chain, context[:, : chain.dof])[0]),
             rotation_weight=ROTATION_WEIGHT_M,
-            damping=DAMPING_M2,
+            damping=damping,
         )
 
     @staticmethod
-    def of_tensors(tensors: Mapping[str, FloatArray]) -> "ToolContexts":
-        """The map that `tensors` gave.
+    def of_tensors(tensors: Mapping[str, FloatArray], damping: float) -> "ToolContexts":
+        """The map that `tensors` gave, in the metric of a damping, m^2/rad^2.
 
         Raises:
             UserError: it measures in another metric than this version.
@@ -116,19 +112,19 @@ class ToolContexts:
                 )
             ),
         )
-        rotation_weight, damping = tensors["metric.scale"]
-        if (rotation_weight, damping) != (ROTATION_WEIGHT_M, DAMPING_M2):
+        weight, damped = tensors["metric.scale"]
+        if (weight, damped) != (ROTATION_WEIGHT_M, damping):
             raise UserError(
-                f"The model measures motion with a rotation weight of {rotation_weight:g} m/rad and a "
-                f"damping of {damping:g} m^2/rad^2, this version with {ROTATION_WEIGHT_M:g} and "
-                f"{DAMPING_M2:g}: train it again."
+                f"The model measures motion with a rotation weight of {weight:g} m/rad and a damping of "
+                f"{damped:g} m^2/rad^2, this version with {ROTATION_WEIGHT_M:g} and {damping:g}: "
+                "train it again."
             )
         return ToolContexts(
             chain=chain,
             contexts=Normaliser(tensors["context.centre"], tensors["context.scale"]),
             places=Normaliser(tensors["place.centre"], tensors["place.scale"]),
-            rotation_weight=float(rotation_weight),
-            damping=float(damping),
+            rotation_weight=ROTATION_WEIGHT_M,
+            damping=damping,
         )
 
     def tensors(self) -> dict[str, FloatArray]:
@@ -164,7 +160,7 @@ class ToolContexts:
         """
         sizes = self.sizes
         places, jacobian = _places(self.chain, context[..., : sizes.joints])
-        jacobian = jacobian * self.twist_weight[:, None]
+        jacobian *= self.twist_weight[:, None]
         metric = jacobian.mT @ jacobian + self.damping * np.eye(sizes.joints)
         lift = np.asarray(np.linalg.solve(metric, jacobian.mT), dtype=np.float64)
         lead = context.shape[:-1]
@@ -177,6 +173,10 @@ class ToolContexts:
             ],
             axis=-1,
         )
+
+    def jacobian(self, state: FloatArray) -> FloatArray:
+        """``J_w`` alone at states (..., n): (..., 6 k, n)."""
+        return _places(self.chain, state)[1] * self.twist_weight[:, None]
 
     def action_normaliser(self, context: FloatArray, action: FloatArray) -> Normaliser:
         """One scale for all joints, so that the fastest tools, outliers aside, have the speed 1.

@@ -61,9 +61,20 @@ class TrainedModel:
     @property
     def contexts(self) -> Normaliser | ToolContexts:
         """The map from contexts (..., c) to what the networks see."""
-        if self.layout.decoder == "isometry":
-            return ToolContexts.of_tensors(self.tensors)
+        if self.layout.damping_m2 is not None:
+            return self.tool_contexts
         return Normaliser(self.tensors["context.centre"], self.tensors["context.scale"])
+
+    @property
+    def tool_contexts(self) -> ToolContexts:
+        """`contexts` of a model that looks at the tools.
+
+        Raises:
+            UserError: it does not.
+        """
+        if self.layout.damping_m2 is None:
+            raise UserError(f"A {self.kind} model does not look at the arm's tools.")
+        return ToolContexts.of_tensors(self.tensors, self.layout.damping_m2)
 
     @property
     def actions(self) -> Normaliser:

@@ -8,6 +8,7 @@ import numpy as np
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.kinematics.rotations import angle_between
+from latentarm.operators.foresight import Foresight, KnowsTheArm
 from latentarm.operators.operator import Operator
 from latentarm.operators.rationality import boltzmann
 from latentarm.robots.robot import Robot
@@ -96,7 +97,8 @@ class BoltzmannOperator(Operator):
         p(u) ∝ exp(-beta(t) ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
 
     over a grid of inputs: none, at which the arm stands still whatever the decoder makes of zero, and
-    every direction at every magnitude. Distance between poses is
+    every direction at every magnitude. Who does not know Psi and phi has a foresight of their own in
+    their place. Distance between poses is
     ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks one step ahead only, as in the paper:
     they can get stuck where no single input brings the tool closer. ``beta(t)`` counts from `reset`, by
     calls of `act`.
@@ -109,15 +111,22 @@ class BoltzmannOperator(Operator):
         robot: the arm, for its forward kinematics.
         config: how the simulated person thinks.
         period_s: time between calls of `act`, s.
+        foresight: where the person expects an input to lead; they know the arm and its decoder where None.
 
     Raises:
         UserError: the period is not positive and finite.
     """
 
-    def __init__(self, robot: Robot, config: BoltzmannConfig | None = None, period_s: float = 0.05) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        config: BoltzmannConfig | None = None,
+        period_s: float = 0.05,
+        foresight: Foresight | None = None,
+    ) -> None:
         if not 0 < period_s < np.inf:
             raise UserError(f"The time between inputs must be positive and finite, not {period_s} s.")
-        self._chain = robot.chain
+        self._foresight = KnowsTheArm(robot.chain) if foresight is None else foresight
         self._config = config or BoltzmannConfig()
         self._period_s = period_s
         self._hold_calls = max(round(self._config.decision_s / period_s), 1)
@@ -167,20 +176,24 @@ class BoltzmannOperator(Operator):
             Every option and its probability.
         """
         inputs = self._grid(controller.input_dim)
-        modes = range(len(controller.modes))
-        actions = np.stack(
-            [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
-        )
-        actions[:, 0] = 0.0  # the arm of a person who lets go stands still, whatever phi(0, c) is
-        # One call over all modes: (M, K, n).
-        reached = self._chain.forward(context.state + self._config.horizon_s * actions)
-        angle = self._config.rotation_weight * angle_between(reached.rotation, target.rotation)
-        cost = ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
-        best_other = min((float(cost[m].min()) for m in modes if m != mode), default=np.inf)
-        switch_cost = (np.sqrt(best_other) + self._config.switch_cost) ** 2
+        cost = self.costs(context, controller, target)
+        others = (float(best) for other, best in enumerate(cost.min(axis=-1)) if other != mode)
+        switch_cost = (np.sqrt(min(others, default=np.inf)) + self._config.switch_cost) ** 2
         beta = self._config.beta + self._config.beta_per_s * time_s
         probability = boltzmann(np.append(cost[mode], switch_cost), beta)
         return Options(inputs, probability[:-1], float(probability[-1]))
+
+    @property
+    def holding(self) -> bool:
+        """Whether the next call of `act` holds an input, or waits for a mode, without deciding."""
+        return self._held_calls > 0
+
+    def costs(self, context: Context, controller: Controller, target: Pose) -> FloatArray:
+        """Squared distances (M, K), m², that K inputs leave in each of M modes; the first is none."""
+        inputs = self._grid(controller.input_dim)
+        reached = self._foresight(inputs, context, controller, self._config.horizon_s)
+        angle = self._config.rotation_weight * angle_between(reached.rotation, target.rotation)
+        return ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
 
     def _grid(self, input_dim: int) -> FloatArray:
         """The inputs that are considered, (K, d), the first of them zero."""

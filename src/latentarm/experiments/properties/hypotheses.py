@@ -15,21 +15,19 @@ the other its power. A model without spread over seeds (PCA has no seeds) is a f
 seeds are tested against.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, Literal, cast
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from latentarm.experiments.properties.paper import MODELS_OF_THE_PAPER
-from latentarm.experiments.studies.statistics import LEVEL, holm, spreads
+from latentarm.experiments.studies.statistics import LEVEL, Direction, compare_means, holm
 from latentarm.models.layout import LAYOUTS
 from latentarm.types import FloatArray
 
 if TYPE_CHECKING:
     from latentarm.experiments.properties.cell import CellResult
-
-Direction = Literal["less", "greater"]
 
 LINEAR: Final = 0.9
 """R^2 above which effects count as consistent and scalable. The paper calls 0.94 ± 0.04 "roughly linear", the
@@ -195,39 +193,8 @@ def _test(
         return replace(comparison, test="none: a seed has no figure")
     if not len(known) or not len(known_reference):
         return comparison
-    return _with_statistics(comparison, known, known_reference)
-
-
-def _with_statistics(comparison: Comparison, values: FloatArray, reference: FloatArray) -> Comparison:
-    """The comparison with its statistic, p and effect size.
-
-    Welch's test where both sides have spread; where one has none, it is a fixed figure to the other.
-    """
-    import pingouin  # takes a second, and only a finished study needs it
-
-    direction = comparison.direction
-    if not spreads(values) and not spreads(reference):
-        return replace(comparison, test="none: no spread on either side")
-    # The side with spread is the sample; where that is the reference, the question is turned round.
-    turned = not spreads(values)
-    sample, other = (reference, values) if turned else (values, reference)
-    welch = spreads(other)
-    tested_against = other if welch else float(other.mean())
-    asked = {"less": "greater", "greater": "less"}[direction] if turned else direction
-    ttest = cast(Callable[..., Any], pingouin.ttest)
-    effect = cast(Callable[..., float], pingouin.compute_effsize)
-    row = ttest(sample, tested_against, correction=True, alternative=asked).iloc[0]
-    # Positive means "as the hypothesis has it": two reversals cancel.
-    sign = (-1.0 if turned else 1.0) * (1.0 if direction == "greater" else -1.0)
-    g = sign * effect(sample, tested_against, eftype="hedges") if welch or len(sample) > 2 else None
-    return replace(
-        comparison,
-        test="Welch" if welch else "one-sample",
-        t=float(row["T"]) * (-1.0 if turned else 1.0),
-        dof=float(row["dof"]),
-        p=float(row["p_val"]),
-        hedges_g=g,
-    )
+    found = compare_means(known, known_reference, claim.direction)
+    return replace(comparison, **asdict(found))
 
 
 def _corrected(family: Sequence[Comparison]) -> list[Comparison]:

@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from latentarm.experiments.properties.hypotheses import Comparison, Direction
+from latentarm.experiments.properties.hypotheses import Comparison
 from latentarm.experiments.studies.pages import listed
+from latentarm.experiments.studies.statistics import Direction
 from latentarm.style import look_of
 
 LONGEST: Final = 140

@@ -1,7 +1,7 @@
 """What the panels of all figures have in common."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, tidy
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, FigureBase, SubFigure
+
+DECADES: Final = 100.0
+"""Ratio of the ends of a logarithmic axis from which powers of ten are numbers enough."""
 
 View = tuple[tuple[float, float], tuple[float, float]]
 """What a panel shows of the plane: x from and to, y from and to, m."""
@@ -51,6 +54,16 @@ def plane(axes: "Axes", view: View, ticks: int = 4) -> None:
     tidy(axes)
     axes.grid(False)
     axes.label_outer()
+
+
+def plain_ticks(axes: "Axes") -> None:
+    """Numbers such as 0.2 along a logarithmic y axis: powers of ten, in a short one 2 and 5 too."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    low, high = axes.get_ylim()
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0,) if high > DECADES * low else (1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def note(axes: "Axes", text: str, *, high: bool = False) -> None:

@@ -1,0 +1,1 @@
+"""`latentarm compare`: every model on recorded demonstrations, side by side."""

@@ -1,0 +1,140 @@
+"""Asking a person, question by question, what they mean by their input."""
+
+from dataclasses import dataclass
+from typing import Final, Literal, final
+
+import numpy as np
+
+from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.demonstrated import demonstrated_motions, noticeable
+from latentarm.alignment.queries import (
+    StoppingRule,
+    bootstrap,
+    disagreement,
+    disagreement_share,
+    next_motion,
+    novelty,
+)
+from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
+from latentarm.errors import UserError
+from latentarm.experiments.asking import Person, Question, Say
+from latentarm.kinematics.chain import Chain
+from latentarm.models.model import LatentActionModel
+from latentarm.types import Demonstrations, FloatArray
+
+CANDIDATES: Final = 100
+"""Motions that may be asked about."""
+
+UNLABELLED: Final = 1000
+"""Contexts in which the priors shall hold."""
+
+TOO_FEW: Final = 3
+"""Answers below which alignments agree or disagree by chance."""
+
+ENSEMBLE: Final = 5
+"""Alignments that disagree, and of which the best is kept in the end."""
+
+QUICK: Final = FitConfig(steps=150)
+"""How an ensemble is learned between two questions, while a person waits."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What does not change while a person is asked.
+
+    Attributes:
+        model: the trained model.
+        seed_index: which of its seeds decodes.
+        chain: the arm.
+        motions: that may be asked about.
+        unlabelled: (M, c).
+        rng: of the ensembles.
+        progress: whether learning shows a bar.
+    """
+
+    model: LatentActionModel
+    seed_index: int
+    chain: Chain
+    motions: Motions
+    unlabelled: FloatArray
+    rng: np.random.Generator
+    progress: bool
+
+    def learn(self, answers: list[Answers], config: FitConfig) -> FittedAlignments:
+        """An alignment for each entry, from seeds 0, 1, ..."""
+        return fit_alignments(
+            self.model,
+            self.chain,
+            answers,
+            self.unlabelled,
+            config,
+            seed_index=self.seed_index,
+            progress=self.progress,
+        )
+
+
+def shown(
+    demonstrations: Demonstrations,
+    context: Literal["state", "state_belief"],
+    chain: Chain,
+    rng: np.random.Generator,
+) -> tuple[Motions, FloatArray]:
+    """Motions to ask about that a person can tell from standing still, and contexts (M, c) without an answer.
+
+    Args:
+        demonstrations: those that trained the model, so that others can still judge it.
+        context: what the model's decoder sees.
+        chain: the arm.
+        rng: decides which.
+
+    Raises:
+        UserError: no demonstration moves for long enough, or a belief is asked for and missing.
+    """
+    many = demonstrated_motions(demonstrations, CANDIDATES, rng, context=context)
+    unlabelled = demonstrated_motions(demonstrations, UNLABELLED, rng, context=context).context
+    return many[np.flatnonzero(noticeable(many, chain))], unlabelled
+
+
+def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRule) -> Answers:
+    """Ask about the longest motion, then about the least like all before, until an ensemble agrees.
+
+    Args:
+        scene: what is asked about.
+        person: who answers.
+        count: questions to be answered, at most.
+        say: shows text to the person.
+        stopping: when fewer are enough.
+
+    Raises:
+        UserError: nobody answers, or there is nothing left to ask.
+    """
+    motions, chain = scene.motions, scene.chain
+    places = [chain.forward(state).position for state in (motions.start, motions.end)]
+    reach_m = float(np.linalg.norm(places[1] - places[0], axis=-1).max())
+    asked: list[int] = []
+    answered: dict[int, FloatArray] = {}
+    history: list[float] = []
+    while len(answered) < count and len(asked) < len(motions):
+        row = next_motion(novelty(chain, motions, asked), asked)
+        asked.append(row)
+        motion = motions[np.array([row])]
+        u = person.answer(Question(len(answered) + 1, count, motion, chain, reach_m, scene.model.latent_dim))
+        if u is None:
+            continue
+        answered[row] = u
+        if TOO_FEW <= len(answered) < count:
+            so_far = _answers(motions, answered)
+            ensemble = scene.learn(bootstrap(so_far, ENSEMBLE, scene.rng), QUICK).alignments
+            apart = disagreement(ensemble, scene.model.decoder(scene.seed_index), chain, motions)
+            history.append(disagreement_share(apart, chain, motions))
+            if stopping.enough(history):
+                say(f"{len(answered)} answers of a {person.kind} are enough: more would change little.")
+                break
+    if not answered:
+        raise UserError("No question was answered, so there is nothing to learn: answer at least one.")
+    return _answers(motions, answered)
+
+
+def _answers(motions: Motions, answered: dict[int, FloatArray]) -> Answers:
+    return Answers(motions[np.array(list(answered))], np.stack(list(answered.values())))

@@ -1,0 +1,38 @@
+"""Where a simulated person expects their inputs to lead."""
+
+from collections.abc import Callable
+from typing import final
+
+import numpy as np
+
+from latentarm.control.controller import Controller
+from latentarm.kinematics.chain import Chain
+from latentarm.types import Context, FloatArray, Pose
+
+Foresight = Callable[[FloatArray, Context, Controller, float], Pose]
+"""Inputs (K, d), the first of them zero, held in a context for a time, s, to poses (M, K) of the tool in the
+controller's M modes."""
+
+
+@final
+class KnowsTheArm:
+    """The ``Psi(s + phi(f(u, c), c) dt)`` of equation 24: they know exactly what each input does.
+
+    Args:
+        chain: the arm; its first tool is looked at.
+    """
+
+    def __init__(self, chain: Chain) -> None:
+        self._chain = chain
+
+    def __call__(
+        self, inputs: FloatArray, context: Context, controller: Controller, horizon_s: float
+    ) -> Pose:
+        """Where the controller takes the tool."""
+        modes = range(len(controller.modes))
+        actions = np.stack(
+            [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
+        )
+        actions[:, 0] = 0.0  # the arm of a person who lets go stands still, whatever phi(0, c) is
+        # One call over all modes: (M, K, n).
+        return self._chain.forward(context.state + horizon_s * actions)

@@ -1,0 +1,213 @@
+"""A simulated person who plans a few seconds ahead where one step leads no nearer."""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.control.controller import Controller
+from latentarm.errors import UserError
+from latentarm.kinematics.rotations import rotation_vector
+from latentarm.operators.boltzmann import BoltzmannConfig, BoltzmannOperator
+from latentarm.operators.operator import Operator
+from latentarm.robots.robot import Robot
+from latentarm.types import Context, FloatArray, Input, IntArray, Pose
+
+NEAR_REST: Final = 0.03
+"""Every input of the plan to begin with: exactly at rest, decoders of the input's length have no slope."""
+
+SOMEWHERE: Final = 0.7
+"""Inputs of another plan to begin with are drawn from ± this."""
+
+DIFFERENCE: Final = 1e-3
+"""Of an input, for slopes."""
+
+FIRST_DAMPING: Final = 1e-2
+CHANGE: Final = 5.0
+"""The damping is relative to the curvature; it shrinks by this after a step that helped, and grows after one
+that did not."""
+
+
+@final
+@dataclass(frozen=True)
+class PlanningConfig:
+    """How far ahead the simulated person plans.
+
+    Attributes:
+        pieces: a plan has so many at most; in each the input is held.
+        piece_s: length of a piece, s.
+        steps: of the imagined motion in a piece.
+        iterations: how often a plan is bettered.
+        stuck_m: one step that brings the tool nearer by less than this is no progress, m.
+        arrived_m: a plan that ends this near the target will do, m; a radian counts as `rotation_weight`.
+
+    Raises:
+        UserError: there would be no plan.
+    """
+
+    pieces: int = 8
+    piece_s: float = 0.5
+    steps: int = 2
+    iterations: int = 5
+    stuck_m: float = 0.004
+    arrived_m: float = 0.02
+
+    def __post_init__(self) -> None:
+        if min(self.pieces, self.steps) < 1 or self.iterations < 0 or not 0 < self.piece_s < np.inf:
+            raise UserError("A plan needs at least one piece of some length, and one step in each.")
+
+
+@final
+class PlanningOperator(Operator):
+    """Steers as `BoltzmannOperator` does, and plans where that gets stuck.
+
+    Stuck is where neither an input nor another mode brings the tool nearer by ``stuck_m``. Then the person
+    imagines plans of 1, 2, ... pieces in the present mode, all bettered together by damped Gauss-Newton steps
+    on where they end, and takes the shortest that arrives, or the one that ends nearest. Its first piece is
+    given, and planned anew after it, until the plan is through. Where no plan leads nearer either, they take
+    one step as it comes. They imagine by the controller itself: no person is as good at that, but all
+    controllers get the same one.
+
+    Args:
+        robot: the arm, for its forward kinematics.
+        config: how the simulated person thinks of one step.
+        planning: how far they plan.
+        period_s: time between calls of `act`, s.
+
+    Raises:
+        UserError: the period is not positive and finite.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        config: BoltzmannConfig | None = None,
+        planning: PlanningConfig | None = None,
+        period_s: float = 0.05,
+    ) -> None:
+        self._config = config or BoltzmannConfig()
+        self._planning = planning or PlanningConfig()
+        self._one_step = BoltzmannOperator(robot, self._config, period_s)
+        self._chain = robot.chain
+        self._hold_calls = max(round(self._planning.piece_s / period_s), 1)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the plan and what was held."""
+        self._one_step.reset()
+        self._rest_of_plan = np.zeros((0, 0))
+        self._held = np.zeros(0)
+        self._held_calls = 0
+
+    def act(
+        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
+    ) -> Input:
+        """Hold the piece of a plan, follow a plan, or take one step."""
+        if self._held_calls > 0:
+            self._held_calls -= 1
+            return Input(self._held)
+        if self._one_step.holding:
+            return self._one_step.act(context, controller, mode, target, rng)
+        following = len(self._rest_of_plan) > 0
+        left = np.sqrt(self._one_step.costs(context, controller, target))  # (M, K), the first at rest
+        if following or left[mode, 0] - left.min() <= self._planning.stuck_m:
+            plan, leaves = self._plan(context, controller, mode, target, rng)
+            if following or left[mode, 0] - leaves > self._planning.stuck_m:
+                self._held, self._rest_of_plan = plan[0], plan[1:]
+                self._held_calls = self._hold_calls - 1
+                return Input(self._held)
+        return self._one_step.act(context, controller, mode, target, rng)
+
+    def _plan(
+        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
+    ) -> tuple[FloatArray, float]:
+        """Inputs (L, d), one for each of the L pieces of the plan that is taken, and what it leaves, m."""
+        following = len(self._rest_of_plan) > 0
+        if following:
+            # No longer than what is left of it: every plan comes to its end.
+            starts = [self._rest_of_plan, np.full_like(self._rest_of_plan, NEAR_REST)]
+        else:
+            shape = (self._planning.pieces, controller.input_dim)
+            # A person who is stuck again tries something else.
+            starts = [np.full(shape, NEAR_REST), rng.uniform(-SOMEWHERE, SOMEWHERE, shape)]
+        pieces = len(starts[0])
+        length = np.repeat(np.arange(1, pieces + 1), len(starts))
+        plans = np.tile(np.stack(starts), (pieces, 1, 1))
+        plans, left = self._bettered(plans, length, context, controller, mode, target)
+        arrives = np.flatnonzero(left < self._planning.arrived_m)
+        taken = int(arrives[np.argmin(length[arrives])] if len(arrives) else np.argmin(left))
+        return plans[taken, : length[taken]], float(left[taken])
+
+    def _bettered(
+        self,
+        plans: FloatArray,
+        length: IntArray,
+        context: Context,
+        controller: Controller,
+        mode: int,
+        target: Pose,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Plans (P, L, d), of which the first ``length`` pieces count, bettered, and what is left (P,), m."""
+        shape, flat = plans.shape, plans.reshape(len(plans), -1)
+        damping = np.full(len(flat), FIRST_DAMPING)
+
+        def outcome(tried: FloatArray) -> tuple[FloatArray, FloatArray]:
+            """Residual (P, 6), m, and its slope (P, 6, L d)."""
+            inward = np.where(tried > 0, -DIFFERENCE, DIFFERENCE)
+            varied = np.concatenate(
+                [tried[:, None], tried[:, None] + inward[:, None] * np.eye(tried.shape[1])], axis=1
+            )
+            ends = self._imagined(
+                varied.reshape(*varied.shape[:2], *shape[1:]), length, context, controller, mode
+            )
+            residual = self._residual(ends, target)
+            slope = (residual[:, 1:] - residual[:, :1]) / inward[..., None]
+            return residual[:, 0], slope.mT
+
+        residual, slope = outcome(flat)
+        left = np.linalg.norm(residual, axis=-1)
+        for _ in range(self._planning.iterations):
+            tried = np.clip(flat + _step(flat, residual, slope, damping), -1.0, 1.0)
+            new_residual, new_slope = outcome(tried)
+            new_left = np.linalg.norm(new_residual, axis=-1)
+            better = new_left < left
+            flat = np.where(better[:, None], tried, flat)
+            residual = np.where(better[:, None], new_residual, residual)
+            slope = np.where(better[:, None, None], new_slope, slope)
+            left = np.where(better, new_left, left)
+            damping = np.where(better, damping / CHANGE, damping * CHANGE)
+        return flat.reshape(shape), left
+
+    def _imagined(
+        self, plans: FloatArray, length: IntArray, context: Context, controller: Controller, mode: int
+    ) -> FloatArray:
+        """States (P, V, n) at the end of plans (P, V, L, d) of so many pieces."""
+        step_s = self._planning.piece_s / self._planning.steps
+        state = np.broadcast_to(context.state, (*plans.shape[:2], len(context.state)))
+        ends: list[FloatArray] = []
+        for piece in range(plans.shape[2]):
+            u = plans[:, :, piece]
+            for _ in range(self._planning.steps):
+                here = Context(state=state, belief=context.belief)
+                state = state + step_s * controller.action(controller.latent(u, here, mode), here, mode)
+            ends.append(state)
+        return np.stack(ends)[length - 1, np.arange(len(plans))]
+
+    def _residual(self, state: FloatArray, target: Pose) -> FloatArray:
+        """How far, (..., 6), m, the tool is from the target, a radian counted as the config says."""
+        pose = self._chain.forward(state)
+        turned = rotation_vector(pose.rotation @ target.rotation.mT)
+        return np.concatenate(
+            [pose.position - target.position, self._config.rotation_weight * turned], axis=-1
+        )
+
+
+def _step(flat: FloatArray, residual: FloatArray, slope: FloatArray, damping: FloatArray) -> FloatArray:
+    """Damped Gauss-Newton step (P, L d) in the inputs that are free to move inside the box."""
+    gradient = np.einsum("pri,pr->pi", slope, residual)
+    held = ((flat >= 1.0) & (gradient < 0)) | ((flat <= -1.0) & (gradient > 0))
+    free = np.where(held[:, None], 0.0, slope)
+    gram = free @ free.mT
+    ridge = damping * np.trace(gram, axis1=1, axis2=2) + np.finfo(float).tiny
+    solved = np.linalg.solve(gram + ridge[:, None, None] * np.eye(gram.shape[-1]), residual[..., None])
+    return -(free.mT @ solved)[..., 0]
