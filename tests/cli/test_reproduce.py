@@ -11,6 +11,7 @@ from latentarm.experiments.shared_autonomy import preset as shared_autonomy
 from latentarm.experiments.shared_autonomy.cell import TASKS
 from latentarm.experiments.shared_autonomy.figures.draw import FIGURES
 from latentarm.metrics.results import read_results
+from latentarm.models.catalogue import MODELS
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -38,7 +39,7 @@ def test_the_properties_for_people_and_for_machines(
     assert code == 0
     assert "reach, simulated" in out
     assert "reproduced/properties/results.md" in out
-    assert "8 models on reach" in err
+    assert f"{len(MODELS)} models on reach" in err
     written = read_results(Path("reproduced/properties/results.json"))
 
     code, out, err = run(*PROPERTIES, "--json")
