@@ -14,6 +14,8 @@ from latentarm.web.setting import Spec
 
 from .conftest import served
 
+pytestmark = pytest.mark.slow  # on the real clock; test_cockpit.py holds the same in simulated time
+
 ZERO_WITHIN_S = 0.15
 REST_WITHIN_S = 0.4
 STILL_RAD_S = 0.01

@@ -35,6 +35,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if HERE in item.path.parents:
             item.add_marker(pytest.mark.browser)
+            # Minutes, and a machine that draws without a graphics processor: `make test-all`.
+            item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session")

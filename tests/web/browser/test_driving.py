@@ -20,8 +20,6 @@ window.pad = { index: 0, connected: true, axes: [0, 0], buttons: [{ pressed: fal
 navigator.getGamepads = () => (window.pad ? [window.pad] : [null]);
 """
 
-pytestmark = pytest.mark.slow
-
 
 class Pointer:
     """Drags the stick."""
