@@ -100,7 +100,7 @@ def demo(
 ) -> int:
     """Learn latent actions and drive a 7-DoF Panda to three goals, against mode switching.
 
-    For example: latentarm demo --out demo
+    In a terminal it ends with the page of `latentarm teleop`. For example: latentarm demo --out demo
     """
     from latentarm.experiments.demo import DemoConfig, run_demo
 
@@ -108,7 +108,11 @@ def demo(
     rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars))
     _show(rows, json)
     _say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
-    return 0
+    run = out / "runs" / "cvae"
+    if json or not (sys.stdin.isatty() and sys.stdout.isatty()):
+        _say(f"To drive the arm yourself: latentarm teleop {run}", json)
+        return 0
+    return teleop(run, port=0, out=out / "teleop")
 
 
 @app.command(name="import")
@@ -450,6 +454,46 @@ def drive(
     _show(rows, json)
     _say(f"drives.json and the figure are in {out}/.", json)
     return 0 if any(row.measure == "success_rate" and row.mean for row in rows) else 1
+
+
+@app.command
+def teleop(
+    run: Annotated[
+        Positional[Path | None],
+        arg(metavar="RUN", help="A trained run; without one, the end-effector is driven."),
+    ] = None,
+    host: Annotated[
+        str, arg(help="The address that people open; off this machine they need a link that works once.")
+    ] = "127.0.0.1",
+    port: Annotated[int, arg(help="0 takes any that is free.")] = 8460,
+    profile: Annotated[
+        str | None, arg(metavar="NAME", help="A person that `latentarm align` has asked; z = u without.")
+    ] = None,
+    certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
+    keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
+    seed: Seed = 0,
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for what is recorded.")] = Path("teleop"),
+    json: Json = False,
+) -> int:
+    """Drive a simulated arm from a web page: stick, buttons, keyboard, gamepad or switches.
+
+    Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
+    """
+    from latentarm.web.addresses import TeleopConfig
+    from latentarm.web.server import serve
+    from latentarm.web.setting import Spec
+
+    def say(sentence: str) -> None:
+        _say(sentence, json)
+        sys.stdout.flush()  # whoever reads us through a pipe waits for the address
+
+    def ready(address: str) -> None:
+        if json:
+            print(json_format.dumps({"address": address}), flush=True)
+
+    config = TeleopConfig(Spec(run, profile, seed, out), host, port, certfile, keyfile)
+    serve(config, say, ready)
+    return 0
 
 
 studies = app.command(

@@ -26,6 +26,7 @@ COMMANDS = [
     "compare",
     "align",
     "drive",
+    "teleop",
     "reproduce",
     "bench",
     "robots",

@@ -23,7 +23,7 @@ def test_what_is_no_limit_is_refused_by_name(name, bad):
         SafetyConfig(**{name: bad})
 
 
-@pytest.mark.parametrize("name", [name for name in FIGURES if name != "dead_zone"])
+@pytest.mark.parametrize("name", [name for name in FIGURES if name not in ("dead_zone", "input_grace_s")])
 def test_zero_is_no_limit(name):
     with pytest.raises(UserError, match=name):
         SafetyConfig(**{name: 0.0})
@@ -48,6 +48,7 @@ def test_defaults_are_the_ones_that_were_laid_down(arm):
         ({"joint_margin": 1.0, "joint_speed": 0.1}, None),
         ({"stop_fraction": 0.3}, "stop_fraction"),
         ({"input_timeout_s": 0.1}, "input_timeout_s"),
+        ({"input_timeout_s": 0.05, "input_grace_s": 0.11}, "input_grace_s"),
     ],
 )
 def test_limits_that_do_not_suit_the_robot_are_refused(arm, change, named):

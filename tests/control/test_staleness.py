@@ -61,3 +61,50 @@ def test_even_at_full_speed_of_every_joint(two_arms, scripted):
         velocity = step(Input(np.array([1.0, 0.0])), ticks * 0.01, q, 0.0).command.velocity
         q = q + velocity * 0.01
     assert ticks * 0.01 <= 0.150
+
+
+GRACE = SafetyConfig(input_timeout_s=0.05, input_grace_s=0.07)
+
+
+def pushed(step, q, gap_s, after_s=0.5):
+    """Velocities of an arm whose held stick falls silent for a while; and whether it is still enabled."""
+    step(Input(np.zeros(2)), 0.0, q, 0.0)
+    step.enable()
+    velocities = []
+    last_s = 0.0
+    for tick in range(1, round((1.0 + gap_s + after_s) / 0.01)):
+        now_s = tick * 0.01
+        if not 1.0 < now_s < 1.0 + gap_s:
+            last_s = now_s
+        velocities.append(step(Input(np.array([1.0, 0.0])), now_s - last_s, q, now_s).command.velocity)
+        q = q + velocities[-1] * 0.01
+    return np.array(velocities), step.stopped
+
+
+@pytest.mark.parametrize("gap_s", [0.02, 0.08, 0.12])
+def test_a_moment_without_inputs_slows_the_arm_down_and_no_more(arm, scripted, gap_s):
+    step = Step(arm, scripted(np.full((2, 7), 0.1)), GRACE)
+    velocities, stopped = pushed(step, arm.home, gap_s)
+    assert stopped is None
+    np.testing.assert_allclose(velocities[-1], velocities[99], atol=0.01)
+    assert (np.abs(np.diff(velocities, axis=0)) <= step._stack.bounds.stop_acceleration * 0.01 + 1e-9).all()
+    if gap_s > 0.06:
+        assert np.abs(velocities[100:]).max(axis=1).min() < 0.9 * np.abs(velocities[99]).max()
+
+
+def test_a_longer_one_stops_it_as_soon_as_without_grace(arm, scripted):
+    matrix = np.full((2, 7), 0.1)
+    with_grace, stopped = pushed(Step(arm, scripted(matrix), GRACE), arm.home, 0.14)
+    assert stopped is not None
+    assert not with_grace[-1].any()
+    without, _ = pushed(Step(arm, scripted(matrix), SafetyConfig(input_timeout_s=0.05)), arm.home, 0.14)
+    np.testing.assert_array_equal(with_grace[:112], without[:112])
+
+
+def test_an_arm_that_was_stopped_is_not_enabled_by_a_moment_without_inputs(arm, scripted):
+    step = Step(arm, scripted(np.full((2, 7), 0.1)), GRACE)
+    step(Input(np.zeros(2)), 0.0, arm.home, 0.0)
+    step.enable()
+    step.stop("Somebody pressed Stop.")
+    step(Input(np.zeros(2)), 0.08, arm.home, 0.01)
+    assert step.enable() is not None

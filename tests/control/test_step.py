@@ -242,3 +242,12 @@ class TestAlgorithm:
         step._controller.answer = lambda context: answer
         record = step(PUSH, 0.0, arm.home, 0.0)
         assert "controller" in record.command.stop.reason
+
+
+def test_a_mode_can_be_chosen_and_none_that_is_not_there(arm, scripted):
+    step = Step(arm, scripted(np.zeros((2, 7)), ("one", "two", "three")), SafetyConfig())
+    step.choose_mode(2)
+    assert step(Input(np.zeros(2)), 0.0, arm.home, 0.0).mode == 2
+    for mode in (-1, 3):
+        with pytest.raises(UserError, match="modes 0 to 2"):
+            step.choose_mode(mode)

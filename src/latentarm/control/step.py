@@ -24,6 +24,9 @@ _ABSURD = 2.0
 _ASTRAY = 2.0 * math.pi
 """Joints this far past their limits, rad, were never there: the reading is wrong."""
 
+_FALTERING = (Freshness().name,)
+"""What limits an arm whose inputs are missing for a moment."""
+
 
 @final
 class Step:
@@ -99,6 +102,11 @@ class Step:
         return self._stack.at_rest
 
     @property
+    def dead_zone(self) -> float:
+        """Length of an input up to which it is neutral."""
+        return self._config.dead_zone
+
+    @property
     def mode(self) -> int:
         """Index of the controller's mode."""
         return self._mode
@@ -138,6 +146,19 @@ class Step:
         """
         return self._engagement.enable()
 
+    def choose_mode(self, mode: int) -> None:
+        """Go on in another mode from the next step on; the motion under way is ramped over to it.
+
+        Args:
+            mode: index of the controller's mode.
+
+        Raises:
+            UserError: the controller has no such mode.
+        """
+        if not 0 <= mode < len(self._controller.modes):
+            raise UserError(f"The controller has modes 0 to {len(self._controller.modes) - 1}, not {mode}.")
+        self._mode = mode
+
     def stop(self, reason: str) -> None:
         """Stop the arm from the next step on.
 
@@ -172,6 +193,8 @@ class Step:
         if q is None:
             self.stop("The arm's joint positions are not numbers near its limits.")
             return self._record(time_s, self._no_motion, Passed(self._stack.stop()))
+        if self._falters(input_age_s):
+            return self._record(time_s, q, Passed(self._stack.stop(), _FALTERING))
         u = self._usable(given, input_age_s)
         if isinstance(u, Stop):
             self._engagement.stop(u)
@@ -184,6 +207,12 @@ class Step:
         if neutral and not self._shared.acts_at_rest:
             return self._record(time_s, q, self._passed(self._no_motion, q, input_age_s))
         return self._driven(u, input_age_s, q, time_s)
+
+    def _falters(self, age_s: float) -> bool:
+        """Whether fresh inputs are missing, but not yet for so long that the arm is disengaged."""
+        timeout_s = self._config.input_timeout_s
+        late = timeout_s < age_s <= timeout_s + self._config.input_grace_s
+        return late and self._engagement.stopped is None
 
     def _driven(self, u: FloatArray, input_age_s: float, q: FloatArray, time_s: float) -> StepRecord:
         """Lines 6 to 10 for an input that wants motion, or at rest for a robot that helps there too."""

@@ -16,15 +16,14 @@ from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.experiments.asking import Person, PersonAtTerminal, Say, SimulatedPerson
 from latentarm.experiments.checks import check_count, check_seed
-from latentarm.experiments.evaluating import robot_of
 from latentarm.experiments.questions import ENSEMBLE, Scene, ask, shown
-from latentarm.experiments.runs import read_run
 from latentarm.experiments.stick_line import read_line
 from latentarm.experiments.training import prepared
 from latentarm.metrics.results import as_document
 from latentarm.metrics.summary import unit_of
 from latentarm.models.catalogue import load_model
 from latentarm.operators.preference import AXES, ToolAxes
+from latentarm.runs.folder import read_run, robot_of
 from latentarm.types import Row
 
 ALIGN_STREAM: Final = 3

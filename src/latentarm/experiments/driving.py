@@ -8,39 +8,29 @@ from typing import Literal, cast
 import numpy as np
 from joblib import Parallel, delayed
 
-from latentarm.alignment.contract import identity
-from latentarm.alignment.profile import load_profile
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.control.controller import Controller
 from latentarm.control.export import export_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.controllers.latent import LatentController
 from latentarm.demonstrations.folders import check_vacant
-from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.experiments.checks import check_count, check_positive, check_seed
 from latentarm.experiments.drive_figures import draw_drives
-from latentarm.experiments.evaluating import robot_of
-from latentarm.experiments.runs import Run, read_run
 from latentarm.experiments.simulation import RATE_HZ, Setup, Trace, simulate
 from latentarm.metrics.drives import drive_rows
 from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject
-from latentarm.models.decoder import load_decoder
 from latentarm.operators.boltzmann import BoltzmannConfig
-from latentarm.robots.catalogue import load_robot
-from latentarm.tasks.reach import Reach
-from latentarm.tasks.replay import Replay
-from latentarm.tasks.table_top import TableTop
+from latentarm.runs.folder import read_run
+from latentarm.runs.setting import TaskName, latent_controller, task_of_run, task_without_run
 from latentarm.tasks.task import Task
-from latentarm.types import Demonstrations, Row
+from latentarm.types import Row
 
 ControllerName = Literal["latent", "latent_assist", "end_effector"]
 BeliefName = Literal["boltzmann", "distance", "maximum_entropy"]
 ArbitrationName = Literal["fixed", "confidence"]
-TaskName = Literal["table_top", "held_out", "reach"]
 
 DRIVE_STREAM = 2
 """Keeps the drives apart from everything else that is drawn from the same seed."""
@@ -125,9 +115,10 @@ def drive_run(config: DriveConfig) -> list[Row]:
     arbitration = _arbitration(config)
     run = None if config.run is None else read_run(config.run)
     demonstrations = None if run is None else run.dataset(config.dataset)
-    task = _task(config, run, demonstrations)
-    if run is not None and demonstrations is not None and run.context == "state_belief":
-        _check_goals(run, demonstrations, task)
+    if run is None or demonstrations is None:
+        task = task_without_run(config.task, config.robot, config.end_effector)
+    else:
+        task = task_of_run(run, demonstrations, config.task, config.robot, config.end_effector)
     setup = Setup(
         task=task,
         controller=_controller(config, task),
@@ -232,46 +223,6 @@ def drive_plan(task: Task, drives: int, seed: int) -> list[tuple[int, str, np.ra
     ]
 
 
-def _check_goals(run: Run, demonstrations: Demonstrations, task: Task) -> None:
-    """A decoder that sees a belief knows only the goals that it was trained with."""
-    trained = [goal.configuration for goal in demonstrations.goals]
-    here = [goal.configuration for goal in task.goals]
-    if len(trained) != len(here) or not np.allclose(trained, here, atol=1e-6):
-        raise UserError(
-            f"{run.folder} sees a belief over the goals of its dataset, and the task {task.name} has others:"
-            " drive it on the task that it was trained for."
-        )
-
-
-def _task(config: DriveConfig, run: Run | None, demonstrations: Demonstrations | None) -> Task:
-    """The task that is asked for, or that the run was trained for."""
-    name = config.task or _usual_task(config, demonstrations)
-    if name == "table_top":
-        if config.robot not in (None, "panda"):
-            raise UserError(
-                f"The table-top task is set for the Panda, not for {config.robot}: use --task reach."
-            )
-        return TableTop()
-    if config.robot is not None:
-        robot = load_robot(config.robot, config.end_effector)
-    else:
-        robot = load_robot("panda") if run is None else robot_of(run)
-    if name == "reach":
-        return Reach(robot)
-    if run is None or demonstrations is None:
-        raise UserError("Held-out episodes belong to a run: name one, as in `latentarm drive RUN`.")
-    return Replay(robot, select_episodes(demonstrations, run.held_out))
-
-
-def _usual_task(config: DriveConfig, demonstrations: Demonstrations | None) -> TaskName:
-    if demonstrations is None:
-        return "table_top" if config.robot in (None, "panda") else "reach"
-    goals = {goal.name for goal in demonstrations.goals}
-    if goals == {goal.name for goal in TableTop().goals}:
-        return "table_top"
-    return "held_out"
-
-
 def _arbitration(config: DriveConfig) -> FixedAlpha | ConfidenceAlpha | None:
     """How much the robot helps, where it does."""
     if config.controller != "latent_assist":
@@ -286,11 +237,4 @@ def _controller(config: DriveConfig, task: Task) -> Controller:
         return EndEffectorController(task.robot)
     if config.run is None:
         raise UserError("Latent actions need a trained run: name one, as in `latentarm drive RUN`.")
-    profile = None if config.profile is None else load_profile(config.run, config.profile)
-    decoder = load_decoder(config.run, 0 if profile is None else profile.seed_index)
-    if decoder.action_dim != task.robot.dof:
-        raise UserError(
-            f"{config.run} was trained for {decoder.action_dim} joints and the robot {task.robot.name} has"
-            f" {task.robot.dof}."
-        )
-    return LatentController(decoder, identity if profile is None else profile)
+    return latent_controller(config.run, config.profile, task.robot)

@@ -6,7 +6,6 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.experiments.checks import check_seed
-from latentarm.experiments.runs import Run, read_run
 from latentarm.experiments.training import prepared
 from latentarm.metrics.effects import axis_effects, axis_grid
 from latentarm.metrics.evaluation import EvaluationConfig, evaluate
@@ -17,8 +16,8 @@ from latentarm.metrics.samples import ContextKind, moving_episodes, spread_conte
 from latentarm.metrics.summary import Subject
 from latentarm.models.catalogue import load_model
 from latentarm.models.model import LatentActionModel
-from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
+from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.style import save_figure
 from latentarm.types import Demonstrations, Row
 
@@ -67,19 +66,6 @@ def evaluate_run(folder: Path, out: Path, seed: int, dataset: Path | None = None
     )
     _draw(run, model, demonstrations, robot, config, out)
     return rows
-
-
-def robot_of(run: Run) -> Robot:
-    """The robot that a run's dataset was recorded on.
-
-    Raises:
-        UserError: the dataset did not say, or that robot is not to be had here.
-    """
-    if not run.robot:
-        raise UserError(
-            f"{run.demonstrations} does not say which robot it is of: import it again with --robot."
-        )
-    return load_robot(run.robot, run.end_effector)
 
 
 def _draw(

@@ -17,11 +17,11 @@ from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.errors import UserError
 from latentarm.experiments.checks import check_seed
-from latentarm.experiments.runs import Run, fingerprint, git_commit, run_facts
 from latentarm.kinematics.chain import Chain
 from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.catalogue import ROBOTS, load_robot
+from latentarm.runs.folder import Run, fingerprint, git_commit, run_facts
 from latentarm.types import Demonstrations, Row
 
 CHECKPOINT = "training.safetensors"

@@ -106,6 +106,12 @@ class Bounds:
                 " lower joint_speed (link_speed where joints slide) or input_timeout_s, or raise"
                 " stop_fraction or the rate."
             )
+        if config.input_timeout_s + config.input_grace_s > STOPPED_WITHIN_S:
+            raise UserError(
+                f"The safety limits input_timeout_s and input_grace_s are"
+                f" {1000 * (config.input_timeout_s + config.input_grace_s):.0f} ms together, but an arm that"
+                f" had no fresh input for {1000 * STOPPED_WITHIN_S:.0f} ms must be enabled again: lower one."
+            )
         self.reach_s = self.hold_s + self.stop_s
         self.damping_per_s = float((self.acceleration / self.speed).min())
         self.nearest_m = config.clearance + BUFFER_M

@@ -59,6 +59,9 @@ class SafetyConfig:
         clearance: distance kept from obstacles and from the arm itself, m.
         input_timeout_s: how long the last fresh input counts, s. With the stopping ramp and one
             period of the loop it must fit into 0.15 s.
+        input_grace_s: for how much longer fresh inputs may be missing before the arm has to be enabled again,
+            s. In between it slows down just as for a stop, and goes on if inputs come back. With
+            input_timeout_s it must fit into 0.15 s.
         dead_zone: inputs no longer than this are zero, in [0, 0.5].
         command_periods: for how many periods of the loop one command lasts; past that the arm stops
             by itself. At least 1.5, so that an ordinary delay does not stop it.
@@ -77,6 +80,7 @@ class SafetyConfig:
     joint_margin: float = 0.1
     clearance: float = 0.02
     input_timeout_s: float = 0.04
+    input_grace_s: float = 0.0
     dead_zone: float = 0.02
     command_periods: float = 2.5
     workspace: Workspace | None = None
@@ -105,10 +109,11 @@ _RANGES: dict[str, tuple[float, float, str]] = {
     "joint_margin": (0.0, 1.0, "rad"),
     "clearance": (0.0, 0.5, "m"),
     "input_timeout_s": (0.0, 0.15, "s"),
+    "input_grace_s": (0.0, 0.15, "s"),
     "dead_zone": (0.0, 0.5, "of full input"),
     "command_periods": (1.5, 10.0, "periods"),
 }
-_MAY_TOUCH = ("dead_zone", "command_periods")
+_MAY_TOUCH = ("input_grace_s", "dead_zone", "command_periods")
 
 
 def _figure(name: str, value: object) -> float:

@@ -29,10 +29,10 @@ from latentarm.experiments.compare.preset import OURS, PRESETS, REFERENCE, Prese
 from latentarm.experiments.compare.rows import STUDY, condition, rows_of, rows_of_fewer, seeds_of
 from latentarm.experiments.compare.targets import verdicts
 from latentarm.experiments.grid import check_processes, run_grid
-from latentarm.experiments.runs import fingerprint
 from latentarm.experiments.studies.folder import Study, write_json
 from latentarm.metrics.results import write_results
 from latentarm.models.catalogue import MODELS
+from latentarm.runs.folder import fingerprint
 from latentarm.style import save_figure
 from latentarm.types import Row
 

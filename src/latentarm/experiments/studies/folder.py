@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final, cast
 
 from latentarm.errors import UserError
-from latentarm.experiments.runs import git_commit
 from latentarm.files import write_text
+from latentarm.runs.folder import git_commit
 
 CONFIG: Final = "config.json"
 """What was asked for; it is written first and tells a study's folders from others."""

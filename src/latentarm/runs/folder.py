@@ -12,6 +12,8 @@ import numpy as np
 
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.errors import UserError
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations
 
 
@@ -108,6 +110,19 @@ def read_run(folder: Path) -> Run:
             f"{folder / 'config.json'} does not describe a run ({error} is missing or damaged):"
             " train it anew with `latentarm train`."
         ) from error
+
+
+def robot_of(run: Run) -> Robot:
+    """The robot that a run's dataset was recorded on.
+
+    Raises:
+        UserError: the dataset did not say, or that robot is not to be had here.
+    """
+    if not run.robot:
+        raise UserError(
+            f"{run.demonstrations} does not say which robot it is of: import it again with --robot."
+        )
+    return load_robot(run.robot, run.end_effector)
 
 
 def git_commit() -> str | None:

@@ -1,0 +1,87 @@
+"""For the scripts that look at the teleoperation page: its server, and a Chromium in front of it."""
+
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+START_S = 60.0
+
+
+@contextmanager
+def served(run: Path | None) -> Iterator[str]:
+    """`latentarm teleop RUN` as long as the block lasts; the page's address."""
+    with tempfile.TemporaryDirectory() as folder:
+        said = Path(folder) / "said"
+        words = [] if run is None else [str(run)]
+        command = [sys.executable, "-m", "latentarm", "teleop", *words, "--port", "0", "--out", folder]
+        with said.open("w") as file:
+            server = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT)
+        try:
+            yield _address(server, said)
+        finally:
+            server.send_signal(signal.SIGINT)
+            server.wait(20)
+
+
+def _address(server: "subprocess.Popen[bytes]", said: Path) -> str:
+    end_s = time.monotonic() + START_S
+    while time.monotonic() < end_s and server.poll() is None:
+        found = re.search(r"http://[\d.]+:\d+", said.read_text())
+        if found and _answers(found.group()):
+            return found.group()
+        time.sleep(0.1)
+    raise SystemExit(said.read_text() or "The server did not start.")
+
+
+def _answers(address: str) -> bool:
+    host, port = address.removeprefix("http://").split(":")
+    try:
+        with socket.create_connection((host, int(port)), timeout=1.0):
+            return True
+    except OSError:
+        return False
+
+
+@contextmanager
+def chromium(software: bool = True) -> Iterator[Browser]:
+    """A Chromium of this machine, without a window.
+
+    Args:
+        software: draw without a graphics processor.
+    """
+    found = next((path for name in NAMES if (path := shutil.which(name))), None)
+    if found is None:
+        raise SystemExit(f"No Chromium is installed: looked for {', '.join(NAMES)}.")
+    # Chromium does not run sandboxed as root, which is what containers run as.
+    sandbox = ("--no-sandbox",) if os.getuid() == 0 else ()
+    drawing = SOFTWARE_GL if software else ()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=found, args=[*drawing, *sandbox])
+        yield browser
+        browser.close()
+
+
+def enable(page: Page) -> None:
+    """Press Enable until the arm is enabled: a busy computer may stop it again at once."""
+    ready = page.locator("#status[data-phase=ready], #status[data-phase=moving]")
+    for _ in range(10):
+        # By force: the button says that it is disabled where the arm has been enabled in the meantime.
+        page.locator("#enable").click(force=True)
+        for _ in range(10):
+            page.wait_for_timeout(100)
+            if ready.count():
+                return
+    raise SystemExit("The arm is never enabled: " + page.locator("#status-text").inner_text())

@@ -1,0 +1,95 @@
+"""Pictures of the teleoperation page, at the size of a desk and of a phone, light and dark.
+
+The run is driven by a script for them: a simulated person. For example:
+
+    python scripts/teleop_screenshots.py RUN --out docs/figures
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+from teleop_page import chromium, enable, served
+
+DESK = {"width": 1280, "height": 800}
+SETTLE_MS = 800
+PHONE = {"width": 390, "height": 844}
+
+
+def driving(page: Page) -> None:
+    """With help, under way to a goal; the stick stays pushed."""
+    enable(page)
+    stick = page.locator("#stick")
+    stick.scroll_into_view_if_needed()
+    page.evaluate("scrollTo(0, 0)")
+    box = stick.bounding_box()
+    if box is None:
+        raise SystemExit("The page has no stick.")
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.8 * box["height"], steps=3)
+    page.wait_for_timeout(1200)
+
+
+def buttons(page: Page) -> None:
+    """The direction buttons."""
+    page.get_by_role("radio", name="Buttons").check()
+
+
+def switch(page: Page) -> None:
+    """What one switch chooses from."""
+    page.get_by_role("radio", name="Switch").check()
+    enable(page)
+    page.wait_for_timeout(1500)
+
+
+def settings(page: Page) -> None:
+    """The settings."""
+    page.get_by_role("button", name="Settings").click()
+
+
+SHOTS: dict[str, Callable[[Page], None]] = {
+    "drive": driving,
+    "drive-buttons": buttons,
+    "drive-switch": switch,
+    "drive-settings": settings,
+}
+
+
+def main() -> None:
+    """Take all pictures."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("run", type=Path)
+    parser.add_argument("--out", type=Path, required=True)
+    given = parser.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
+    with served(given.run) as address, chromium() as browser:
+        for size_name, size in (("desk", DESK), ("phone", PHONE)):
+            for scheme in ("light", "dark"):
+                for name, act in SHOTS.items():
+                    # Twice as fine: the software renderer spares pixels.
+                    context = browser.new_context(
+                        viewport=size, color_scheme=scheme, device_scale_factor=2, reduced_motion="reduce"
+                    )
+                    page = context.new_page()
+                    page.goto(address)
+                    page.locator(".label").first.wait_for(state="attached")
+                    page.wait_for_timeout(SETTLE_MS)
+                    page.get_by_role("radio", name="Learned, with help").check()
+                    page.get_by_role("button", name="Arm back to start").click()
+                    page.evaluate("scrollTo(0, 0)")
+                    page.wait_for_timeout(SETTLE_MS)
+                    act(page)
+                    page.wait_for_timeout(600)
+                    page.screenshot(path=given.out / f"teleop-{name}-{size_name}-{scheme}.png")
+                    page.mouse.up()
+                    context.close()
+                    # So that the next page finds nobody at the wheel.
+                    time.sleep(0.3)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""Several ways to steer in one controller, so that a person can switch between them while they drive."""
+
+from collections.abc import Sequence
+from typing import final
+
+import numpy as np
+
+from latentarm.control.controller import Controller
+from latentarm.errors import UserError
+from latentarm.types import Context, FloatArray
+
+
+@final
+class JoinedController(Controller):
+    """The modes of several controllers, one after the other.
+
+    A controller with fewer axes than the others leaves the last ones unused: its latent actions are zero
+    there.
+
+    Args:
+        controllers: at least one.
+
+    Raises:
+        UserError: there are none.
+    """
+
+    def __init__(self, controllers: Sequence[Controller]) -> None:
+        if not controllers:
+            raise UserError("Joining controllers needs at least one.")
+        self._parts = tuple((one, mode) for one in controllers for mode in range(len(one.modes)))
+        self._modes = tuple(name for one in controllers for name in one.modes)
+        self._input_dim = max(one.input_dim for one in controllers)
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """All modes of all controllers, in their order."""
+        return self._modes
+
+    @property
+    def input_dim(self) -> int:
+        """As many axes as the controller with the most."""
+        return self._input_dim
+
+    def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
+        """What the mode's own controller makes of its axes; zero on axes that it lacks."""
+        controller, own = self._parts[mode]
+        axes = controller.input_dim
+        if axes == self._input_dim:
+            return controller.latent(u, context, own)
+        z = np.zeros(u.shape)
+        z[..., :axes] = controller.latent(u[..., :axes], context, own)
+        return z
+
+    def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
+        """What the mode's own controller does."""
+        controller, own = self._parts[mode]
+        return controller.action(z[..., : controller.input_dim], context, own)

@@ -1,0 +1,86 @@
+"""The process that owns the arm: it drives at its own rate on its own clock, whatever the web server does."""
+
+import gc
+import os
+import signal
+from contextlib import suppress
+from dataclasses import replace
+from types import FrameType
+from typing import Final
+
+from threadpoolctl import threadpool_limits
+
+from latentarm.control.clock import MonotonicClock
+from latentarm.control.loop import ControlLoop
+from latentarm.errors import UserError
+from latentarm.robots.arm import Arm
+from latentarm.web.channel import Channel, ChooseProfile, Reset
+from latentarm.web.cockpit import Cockpit
+from latentarm.web.live_arm import LiveArm
+from latentarm.web.recording import EpisodeWriter
+from latentarm.web.setting import Setting, Spec, load_setting
+
+_PRIORITY: Final = 10
+"""Of the least urgent real-time processes."""
+
+
+def run_control(spec: Spec, channel: Channel, server: int) -> None:
+    """Drive until the server says so or is gone; then bring the arm to rest and return.
+
+    Args:
+        spec: what to drive.
+        channel: to the server.
+        server: its process id.
+
+    Raises:
+        UserError: the spec names what is not to be had.
+    """
+
+    def end(number: int, frame: FrameType | None) -> None:
+        channel.ending.raise_()
+
+    # Ctrl-C in a terminal reaches both processes: the server then ends this one in good order.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, end)
+    _ask_for_priority()
+    with threadpool_limits(1):
+        setting = load_setting(spec)
+        clock = MonotonicClock()
+        writer = EpisodeWriter(spec.out)
+        cockpit = Cockpit(setting, channel, clock, writer, orphaned=lambda: os.getppid() != server)
+        arm: Arm = LiveArm(setting.task.robot, setting.start, clock)
+        # Nothing that is there by now is ever garbage: the collector need not look through it.
+        gc.collect()
+        gc.freeze()
+        note = ""
+        try:
+            while True:
+                step = setting.step()
+                loop = ControlLoop(step, arm, cockpit, clock, [cockpit.observe])
+                cockpit.take_seat(loop, step, arm, setting, note)
+                loop.run()
+                note = ""
+                match cockpit.change:
+                    case None:
+                        break
+                    case Reset():
+                        arm = LiveArm(setting.task.robot, setting.start, clock)
+                    case ChooseProfile(name=name):
+                        setting, note = _with_profile(setting, name)
+        finally:
+            writer.close()
+            gc.unfreeze()
+
+
+def _ask_for_priority() -> None:
+    """Come before ordinary processes, where the system allows it: a busy computer makes us late."""
+    with suppress(OSError, AttributeError):  # not allowed, or a system that has no such thing
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
+
+
+def _with_profile(setting: Setting, name: str | None) -> tuple[Setting, str]:
+    """The setting for another person, or the same and why it cannot be had."""
+    try:
+        return load_setting(replace(setting.spec, profile=name)), ""
+    except UserError as error:
+        return setting, str(error)

@@ -1,0 +1,213 @@
+"""The socket that pages drive through, and what they all see."""
+
+import asyncio
+import time
+from contextlib import suppress
+from typing import Final, final
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from latentarm.web.channel import ChooseMode, ChooseProfile, Enable, Given, Record, Reset
+from latentarm.web.messages import (
+    FRAME_LIMIT,
+    AskToDrive,
+    ClientMessage,
+    DriverInput,
+    HandOver,
+    Hello,
+    Mode,
+    PressEnable,
+    PressStop,
+    Profile,
+    RecordEpisode,
+    Refused,
+    Release,
+    ResetArm,
+    TrailClear,
+    Welcome,
+    parse_message,
+)
+from latentarm.web.sessions import MOST, Page, Sessions
+from latentarm.web.states import GhostMemory, States
+from latentarm.web.supervisor import ControlProcess
+
+RATE: Final = 100.0
+"""Messages a second that a page may send."""
+
+BURST: Final = 100.0
+"""Messages that may come at once, as after a moment without network."""
+
+HELLO_WITHIN_S: Final = 5.0
+
+DRIVER_PERIOD_S: Final = 0.02
+WATCHER_PERIOD_S: Final = 0.033
+"""How often a page is sent a state, at most: the driver's is also what makes the next input fresh."""
+
+_PROTOCOL_BROKEN: Final = (1002, 1003, 1007, 1009)
+"""Codes with which the server below us hangs up: no frame, no text, or far too long."""
+
+_BROKEN: Final = "A page sent what is no message: the arm was stopped."
+
+
+class _ViolationError(Exception):
+    """A page has sent what it must not."""
+
+
+@final
+class DriveSocket:
+    """The endpoint of ``/drive``.
+
+    Args:
+        control: the control process.
+        states: what pages see.
+        sessions: who is there.
+        welcome: what a page is told first, but for its id.
+    """
+
+    def __init__(self, control: ControlProcess, states: States, sessions: Sessions, welcome: Welcome) -> None:
+        self._control = control
+        self._states = states
+        self._sessions = sessions
+        self._welcome = welcome
+        self._open = 0
+
+    async def __call__(self, socket: WebSocket) -> None:
+        """Serve one page until it goes."""
+        if self._open >= MOST:
+            await socket.close(1013)
+            return
+        self._open += 1
+        try:
+            await socket.accept()
+            await self._serve(socket)
+        finally:
+            self._open -= 1
+
+    def stop(self, who: str) -> None:
+        """Stop the arm, for somebody."""
+        self._control.stop(f"{who} pressed Stop.")
+
+    async def _serve(self, socket: WebSocket) -> None:
+        page: Page | None = None
+        sender: asyncio.Task[None] | None = None
+        allowance = _Allowance()
+        try:
+            async with asyncio.timeout(HELLO_WITHIN_S):
+                hello = await _receive(socket, allowance)
+            if not isinstance(hello, Hello) or (page := self._sessions.join(hello.name)) is None:
+                raise _ViolationError
+            welcome = self._welcome.model_copy(update={"id": page.id})
+            await socket.send_text(welcome.model_dump_json())
+            sender = asyncio.create_task(self._send_states(socket, page))
+            while True:
+                self._take(page, await _receive(socket, allowance))
+        except (_ViolationError, TimeoutError):
+            self._control.stop(_BROKEN)
+            with suppress(RuntimeError, WebSocketDisconnect):
+                await socket.send_text(Refused(why="This is not what a page may send.").model_dump_json())
+                await socket.close(1008)
+        except WebSocketDisconnect:
+            pass
+        finally:
+            if sender is not None:
+                sender.cancel()
+            if page is not None and self._sessions.leave(page):
+                self._wheel_changed("The page of the person who drove has gone.")
+
+    async def _send_states(self, socket: WebSocket, page: Page) -> None:
+        """States as fast as the page takes them, always the newest: nothing queues up."""
+        ghosts = GhostMemory()
+        tick = -1
+        with suppress(RuntimeError, WebSocketDisconnect):
+            while True:
+                tick = await self._states.after(tick)
+                await socket.send_text(self._states.text(page, ghosts))
+                drives = self._sessions.drives(page)
+                await asyncio.sleep(DRIVER_PERIOD_S / 2 if drives else WATCHER_PERIOD_S)
+
+    def _take(self, page: Page, message: ClientMessage) -> None:
+        """Do what a page asks for; what only the driver may ask for is not heard from others."""
+        if isinstance(message, Hello) or not self._suits(message):
+            raise _ViolationError
+        if isinstance(message, PressStop):
+            self.stop(page.name)
+        elif isinstance(message, AskToDrive):
+            self._sessions.ask(page)
+        elif isinstance(message, TrailClear):
+            self._states.clear_trail()
+        elif self._sessions.drives(page):
+            self._take_from_driver(page, message)
+
+    def _suits(self, message: ClientMessage) -> bool:
+        """Whether an input has no more axes than what is driven."""
+        return not isinstance(message, DriverInput) or len(message.u) <= self._states.input_dim
+
+    def _take_from_driver(self, page: Page, message: ClientMessage) -> None:
+        match message:
+            case DriverInput(seq=seq, nonce=nonce, u=u, latched=latched):
+                self._give(seq, nonce, u, latched=latched)
+            case PressEnable():
+                self._control.order(Enable(driver=self._sessions.turn, stops=self._control.stops))
+            case Mode(mode=mode, axes=axes):
+                self._control.order(ChooseMode(mode=mode, axes=axes))
+            case Profile(name=name):
+                self._control.order(ChooseProfile(name=name))
+            case RecordEpisode(on=on, task=task):
+                self._control.order(Record(on=on, task=task))
+            case ResetArm():
+                self._control.order(Reset())
+            case HandOver(to=to):
+                if self._sessions.hand_over(page, to):
+                    self._wheel_changed("The wheel was handed over.")
+            case Release():
+                if self._sessions.release(page):
+                    self._wheel_changed("The driver has given up the wheel.")
+            case _:
+                pass
+
+    def _wheel_changed(self, why: str) -> None:
+        """The arm stops for it, and an episode is one driver's."""
+        self._control.stop(why)
+        self._control.order(Record(on=False, task=""))
+
+    def _give(self, seq: int, nonce: str, u: tuple[float, ...], *, latched: bool) -> None:
+        padded = u + (0.0,) * (self._states.input_dim - len(u))
+        self._control.give(Given(driver=self._sessions.turn, seq=seq, nonce=nonce, u=padded, latched=latched))
+
+
+@final
+class _Allowance:
+    """How many messages a page may still send: a bucket that fills up again."""
+
+    def __init__(self) -> None:
+        self._left = BURST
+        self._at_s = time.monotonic()
+
+    def spend(self) -> bool:
+        """Take one; False where there is none."""
+        now_s = time.monotonic()
+        self._left = min(self._left + (now_s - self._at_s) * RATE, BURST)
+        self._at_s = now_s
+        self._left -= 1.0
+        return self._left >= 0.0
+
+
+async def _receive(socket: WebSocket, allowance: _Allowance) -> ClientMessage:
+    """The next message.
+
+    Raises:
+        _ViolationError: it is none, or one too many.
+        WebSocketDisconnect: the page has gone.
+    """
+    event = await socket.receive()
+    if event["type"] == "websocket.disconnect":
+        if event.get("code") in _PROTOCOL_BROKEN:
+            raise _ViolationError
+        raise WebSocketDisconnect
+    text = event.get("text")
+    if not allowance.spend() or text is None or len(text) > FRAME_LIMIT or len(text.encode()) > FRAME_LIMIT:
+        raise _ViolationError
+    try:
+        return parse_message(text)
+    except ValueError as error:
+        raise _ViolationError from error

@@ -1,0 +1,72 @@
+"""The pages as NiceGUI serves them: semantic HTML, to whose ids the modules in ``static/`` attach."""
+
+from dataclasses import dataclass
+from html import escape
+from importlib.resources import files
+from typing import final
+
+from nicegui import ui
+
+_STATIC = files("latentarm.web").joinpath("static")
+
+
+@final
+@dataclass(frozen=True)
+class Page:
+    """One page of the site.
+
+    Attributes:
+        path: where it is served.
+        title: its name in the navigation and in the browser's title.
+        fragment: the file in ``static/`` that holds its body.
+        script: its module in ``static/``.
+        styles: its style sheets in ``static/``, besides the common ones.
+    """
+
+    path: str
+    title: str
+    fragment: str
+    script: str
+    styles: tuple[str, ...] = ()
+
+
+PAGES = (Page("/", "Drive", "drive.html", "main.js", ("drive.css",)),)
+
+_COMMON_STYLES = ("tokens.css", "page.css")
+
+
+def add_pages(pages: tuple[Page, ...] = PAGES) -> None:
+    """Register every page with NiceGUI. ``/static`` must serve the package's ``static`` folder."""
+    for page in pages:
+        _add_page(page, pages)
+
+
+def _add_page(page: Page, pages: tuple[Page, ...]) -> None:
+    @ui.page(page.path, title=f"{page.title} · latentarm", language="en-US", dark=None)
+    def build() -> None:  # pyright: ignore[reportUnusedFunction]
+        for style in (*_COMMON_STYLES, *page.styles):
+            ui.add_head_html(f'<link rel="stylesheet" href="/static/{style}">')
+        # Beside NiceGUI's own application and not inside it: nobody may redraw a page that drives.
+        ui.add_body_html(body_of(page, pages))
+        ui.add_body_html(f'<script type="module" src="/static/{page.script}"></script>')
+
+
+def body_of(page: Page, pages: tuple[Page, ...]) -> str:
+    """A page's HTML, with the navigation that leads to the others.
+
+    Args:
+        page: this page.
+        pages: all of them, in the order of the navigation.
+
+    Returns:
+        What goes into the body.
+    """
+    links = "".join(
+        f'<a href="{escape(other.path)}"{_current(other is page)}>{escape(other.title)}</a>'
+        for other in pages
+    )
+    return _STATIC.joinpath(page.fragment).read_text(encoding="utf-8").replace("{pages}", links)
+
+
+def _current(is_this: bool) -> str:
+    return ' aria-current="page"' if is_this else ""

@@ -1,0 +1,204 @@
+"""Who may speak to the server at all: exact hosts and origins, a cookie off the loopback, strict headers."""
+
+import hashlib
+import hmac
+import secrets
+import time
+from collections.abc import Callable
+from http.cookies import CookieError, SimpleCookie
+from typing import Final, final
+from urllib.parse import parse_qs
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import HTMLResponse, PlainTextResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+COOKIE: Final = "latentarm"
+LIFE_S: Final = 8 * 3600
+"""For how long a cookie opens the page, s."""
+
+BODY_LIMIT: Final = 1 << 20
+"""The longest body of a request, bytes."""
+
+ENTRY: Final = "/enter"
+STOP: Final = "/stop"
+"""Needs no cookie: whoever reaches the page may stop the arm."""
+
+_MOST_VISITORS: Final = 64
+_READING: Final = ("GET", "HEAD")
+
+_HEADERS: Final = {
+    # NiceGUI compiles its components in the page, with scripts in its HTML: hence both 'unsafe'.
+    "content-security-policy": (
+        "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval';"
+        " style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:;"
+        " connect-src 'self'; manifest-src 'self';"
+        " base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+    ),
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+    "permissions-policy": "camera=(), microphone=(), geolocation=(), gamepad=(self)",
+}
+
+# A redirect would still count as coming from where the link was, and a strict cookie is not sent there.
+_WELCOME: Final = (
+    '<!doctype html><html lang="en"><head><meta charset="utf-8"><title>latentarm</title>'
+    '<meta http-equiv="refresh" content="0; url=/"></head>'
+    '<body><p><a href="/">Open the page</a></p></body></html>'
+)
+
+
+@final
+class Keys:
+    """One-time links, and the cookies that they were exchanged for; only hashes are kept.
+
+    Args:
+        now_s: the time, s; monotonic.
+    """
+
+    def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:
+        self._now_s = now_s
+        self._link: bytes | None = None
+        self._cookies: dict[bytes, float] = {}
+
+    def new_link(self) -> str:
+        """A key for the next visitor, 256 random bits; the one before is void."""
+        key = secrets.token_urlsafe(32)
+        self._link = _hash(key)
+        return key
+
+    def redeem(self, key: str) -> str | None:
+        """A cookie for a key that was not used yet, or None."""
+        self._forget()
+        if self._link is None or not hmac.compare_digest(self._link, _hash(key)):
+            return None
+        if len(self._cookies) >= _MOST_VISITORS:
+            return None
+        self._link = None
+        cookie = secrets.token_urlsafe(32)
+        self._cookies[_hash(cookie)] = self._now_s() + LIFE_S
+        return cookie
+
+    def opens(self, cookie: str) -> bool:
+        """Whether a cookie is one of ours and not too old."""
+        self._forget()
+        given = _hash(cookie)
+        found = False
+        for known in self._cookies:
+            found |= hmac.compare_digest(known, given)
+        return found
+
+    def _forget(self) -> None:
+        now_s = self._now_s()
+        self._cookies = {known: until_s for known, until_s in self._cookies.items() if now_s < until_s}
+
+
+@final
+class Gate:
+    """Stands before the whole application, its sockets and those of the framework.
+
+    Args:
+        app: what is behind.
+        hosts: exact ``Host`` headers, with the port where it is not the scheme's own.
+        origins: exact ``Origin`` headers.
+        keys: who may enter; None lets everybody in, for a server on the loopback.
+        secure: whether the cookie is for TLS alone.
+        entered: called after somebody has used up the link.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        hosts: frozenset[str],
+        origins: frozenset[str],
+        keys: Keys | None = None,
+        *,
+        secure: bool = False,
+        entered: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.app = app
+        self._hosts = hosts
+        self._origins = origins
+        self._keys = keys
+        self._secure = secure
+        self._entered = entered
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let through what may pass, answer the rest."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        refusal = self._refusal(scope, headers)
+        if scope["type"] == "websocket":
+            if refusal is None:
+                await self.app(scope, receive, send)
+            else:
+                # Before it is accepted this is an answer of 403.
+                await send({"type": "websocket.close", "code": 1008})
+            return
+        answer = refusal or self._own_answer(scope)
+        await (answer or self.app)(scope, receive, _with_headers(send))
+
+    def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
+        if headers.getlist("host") not in [[host] for host in self._hosts]:
+            return PlainTextResponse("This server is not reached by that name.", 421)
+        origins = headers.getlist("origin")
+        must_name_origin = scope["type"] == "websocket" or scope["method"] not in _READING
+        if (origins or must_name_origin) and origins not in [[origin] for origin in self._origins]:
+            return PlainTextResponse("This page may not be used from another site.", 403)
+        if not _short(headers):
+            return PlainTextResponse("That is too long.", 413)
+        if self._keys is None or scope["path"] in (ENTRY, STOP):
+            return None
+        if self._keys.opens(_cookie(headers)):
+            return None
+        return PlainTextResponse("Open the link that latentarm has printed; each one works once.", 401)
+
+    def _own_answer(self, scope: Scope) -> Response | None:
+        """The exchange of a link for a cookie."""
+        if self._keys is None or scope["path"] != ENTRY:
+            return None
+        key = parse_qs(scope["query_string"].decode("latin-1")).get("key", [""])[0]
+        cookie = self._keys.redeem(key) if scope["method"] == "GET" else None
+        if cookie is None:
+            return PlainTextResponse("This link was used already. The newest one is in the terminal.", 403)
+        answer = HTMLResponse(_WELCOME, headers={"cache-control": "no-store"})
+        answer.set_cookie(
+            COOKIE, cookie, max_age=LIFE_S, path="/", secure=self._secure, httponly=True, samesite="strict"
+        )
+        self._entered()
+        return answer
+
+
+def _with_headers(send: Send) -> Send:
+    async def with_headers(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            for name, value in _HEADERS.items():
+                headers[name] = value
+        await send(message)
+
+    return with_headers
+
+
+def _short(headers: Headers) -> bool:
+    """Whether a body is said to be short; one of unknown length is not."""
+    if "transfer-encoding" in headers:
+        return False
+    length = headers.get("content-length", "0")
+    return length.isascii() and length.isdigit() and int(length) <= BODY_LIMIT
+
+
+def _cookie(headers: Headers) -> str:
+    try:
+        found = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
+    except CookieError:
+        return ""
+    return "" if found is None else found.value
+
+
+def _hash(text: str) -> bytes:
+    return hashlib.sha256(text.encode()).digest()

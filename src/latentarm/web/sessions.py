@@ -1,0 +1,123 @@
+"""Who is connected, who drives, and who would like to."""
+
+import secrets
+from dataclasses import dataclass
+from typing import Final, final
+
+MOST: Final = 16
+"""Pages that may be connected at once."""
+
+
+@final
+@dataclass(frozen=True)
+class Page:
+    """A connected page.
+
+    Attributes:
+        id: for this connection alone.
+        name: what its person is called.
+    """
+
+    id: str
+    name: str
+
+
+@final
+class Sessions:
+    """At most one page drives; handing over is explicit on both sides.
+
+    The page that comes first drives. Later ones ask: they get the wheel where nobody has it, or else
+    when the driver gives it to them or gives it up. `turn` counts the changes: whoever holds an older turn
+    is not listened to any more.
+    """
+
+    def __init__(self) -> None:
+        self._pages: dict[str, Page] = {}
+        self._driver: str | None = None
+        self._asking: str | None = None
+        self._turn = 0
+
+    @property
+    def turn(self) -> int:
+        """Changes with every change of the driver."""
+        return self._turn
+
+    @property
+    def driver(self) -> Page | None:
+        """Who drives."""
+        return None if self._driver is None else self._pages[self._driver]
+
+    @property
+    def asking(self) -> Page | None:
+        """Who asks for the wheel."""
+        return None if self._asking is None else self._pages[self._asking]
+
+    @property
+    def count(self) -> int:
+        """How many pages are connected."""
+        return len(self._pages)
+
+    def drives(self, page: Page) -> bool:
+        """Whether this page is the driver's."""
+        return self._driver == page.id
+
+    def join(self, name: str | None) -> Page | None:
+        """A new page, or None where there are too many."""
+        if len(self._pages) >= MOST:
+            return None
+        page = Page(
+            secrets.token_hex(8), (name or "").strip() or f"Guest {self._turn + len(self._pages) + 1}"
+        )
+        self._pages[page.id] = page
+        if len(self._pages) == 1:
+            self._give_to(page.id)
+        return page
+
+    def leave(self, page: Page) -> bool:
+        """A page has gone.
+
+        Returns:
+            Whether it was the driver's.
+        """
+        was_driver = self._driver == page.id
+        if self._asking == page.id:
+            self._asking = None
+        if was_driver:
+            self._give_to(self._asking)
+        del self._pages[page.id]
+        return was_driver
+
+    def ask(self, page: Page) -> None:
+        """A page would like to drive; who asked first is answered first."""
+        if self._driver is None:
+            self._give_to(page.id)
+        elif self._driver != page.id and self._asking is None:
+            self._asking = page.id
+
+    def hand_over(self, page: Page, to: str) -> bool:
+        """The driver gives the wheel to the page that has asked for it.
+
+        Returns:
+            Whether the driver changed.
+        """
+        if self._driver != page.id or self._asking is None or self._asking != to:
+            return False
+        self._give_to(to)
+        return True
+
+    def release(self, page: Page) -> bool:
+        """The driver gives the wheel up, to the page that has asked for it or to nobody.
+
+        Returns:
+            Whether the driver changed.
+        """
+        if self._driver != page.id:
+            return False
+        self._give_to(self._asking)
+        return True
+
+    def _give_to(self, page_id: str | None) -> None:
+        self._driver = page_id
+        self._turn += 1
+        if self._asking == page_id:
+            self._asking = None

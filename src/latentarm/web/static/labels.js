@@ -1,0 +1,69 @@
+/** Small texts that stay beside points of the scene, in both views. */
+
+const LINE_PX = 22;
+const RAISED_PX = 24;
+
+export class Labels {
+  /** @param {import("./views.js").Views} views */
+  constructor(views) {
+    this._views = views;
+    /** @type {Map<string, {point: any, shown: boolean, wide: number, elements: HTMLElement[]}>} */
+    this._all = new Map();
+    views.beforeFrame.push(() => this._place());
+  }
+
+  /**
+   * @param {string} key
+   * @param {any} point
+   * @param {string} text
+   * @param {{shown?: boolean, ghost?: string, share?: string}} [look] a share is left out where there is little room
+   */
+  set(key, point, text, { shown = true, ghost, share } = {}) {
+    let label = this._all.get(key);
+    if (!label) {
+      const elements = this._views.views.map((view) => {
+        const element = document.createElement("span");
+        element.className = ghost ? "label ghost" : "label";
+        if (ghost) element.dataset.ghost = ghost;
+        view.labels.append(element);
+        return element;
+      });
+      label = { point: null, shown, wide: 0, elements };
+      this._all.set(key, label);
+    }
+    label.point = point?.clone() ?? null;
+    label.shown = shown && point !== null;
+    const [first] = label.elements;
+    if (first.textContent === text && first.dataset.share === share) return;
+    for (const element of label.elements) {
+      element.textContent = text;
+      if (share) element.dataset.share = share;
+      else delete element.dataset.share;
+    }
+    label.wide = first.offsetWidth;
+  }
+
+  _place() {
+    this._views.views.forEach((view, index) => {
+      const width = view.element.clientWidth;
+      /** @type {{x: number, y: number, wide: number}[]} */
+      const placed = [];
+      for (const { point, shown, elements, wide } of this._all.values()) {
+        const element = elements[index];
+        element.hidden = !shown;
+        if (!shown) continue;
+        let { x, y } = this._views.project(view, point);
+        if (!element.classList.contains("ghost")) {
+          y -= RAISED_PX;
+          x = Math.min(Math.max(x, wide / 2 + 2), width - wide / 2 - 2);
+          // Names that would cover each other are stacked.
+          for (const other of placed) {
+            if (Math.abs(other.y - y) < LINE_PX && Math.abs(other.x - x) < (other.wide + wide) / 2) y = other.y - LINE_PX;
+          }
+          placed.push({ x, y, wide });
+        }
+        element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+      }
+    });
+  }
+}

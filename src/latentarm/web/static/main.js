@@ -1,0 +1,184 @@
+/** The Drive page: puts its parts together. */
+
+import { attachBelief } from "./belief.js";
+import { Connection } from "./connection.js";
+import { motionWords, placeWords } from "./directions.js";
+import { attachDpad } from "./dpad.js";
+import { attachGamepad } from "./gamepad.js";
+import { Inputs } from "./inputs.js";
+import { attachKeyboard } from "./keyboard.js";
+import { attachModes } from "./modes.js";
+import { personal, listGhosts } from "./paths.js";
+import { attachRecording } from "./recording.js";
+import { attachScanning } from "./scanning.js";
+import { attachSeat, seatFirst } from "./seat.js";
+import { NO_PROFILE, Settings } from "./settings.js";
+import { attachSettingsDialog } from "./settings_dialog.js";
+import { attachStatus } from "./status.js";
+import { attachStick } from "./stick.js";
+import { attachStop } from "./stop.js";
+import { attachTheme } from "./theme.js";
+
+/** Words beside the views change no more often than this, ms. */
+const WORDS_MS = 250;
+
+/** @param {string} id @returns {any} */
+const part = (id) => document.getElementById(id);
+
+const settings = new Settings();
+const connection = new Connection(settings.name);
+
+/** From the stick to what is sent, for the mode that is on. @param {number} x @param {number} y @returns {number[]} */
+function shaped(x, y) {
+  const [right, up] = settings.shape(x, y);
+  const { state, welcome } = connection;
+  if (state?.mode === "end_effector") {
+    // The server's axes are the base frame's: forward and left, up and turn, roll and pitch.
+    const facing = settings.values.seat === "facing" && state.axes === 0;
+    return (facing ? [-up, right] : [up, -right]).map((value) => value + 0);
+  }
+  return welcome?.latent_dim === 1 ? [right] : [right, up];
+}
+
+const inputs = new Inputs(connection, shaped);
+const status = attachStatus({ line: part("status"), text: part("status-text") }, connection);
+inputs.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
+const seat = seatFirst(connection);
+const stop = attachStop(connection, () => {
+  seat.forget();
+  inputs.drop();
+});
+
+/** The seat first, if it is free, and then the arm: one press for both. */
+const enable = () => {
+  if (!connection.engaged) seat.ask(() => inputs.enable());
+};
+part("enable").addEventListener("click", enable);
+
+const modes = attachModes({ mode: part("mode"), axes: part("axes") }, connection);
+attachSeat({ text: part("seat"), ask: part("ask"), handOver: part("hand-over"), release: part("release") }, connection);
+attachRecording({ button: part("record"), task: part("record-task"), text: part("record-text") }, connection);
+const dialog = attachSettingsDialog(part("settings"), part("settings-open"), settings);
+
+const refused = () => status.halted("the arm is not enabled");
+attachStick(part("stick"), part("stick-value"), inputs, settings);
+attachDpad(part("dpad"), part("dpad-help"), inputs, settings, refused);
+const switches = attachScanning(
+  { list: part("scan"), press: part("switch"), next: part("switch-next"), help: part("scan-help") },
+  inputs, settings, { enable, stop, nextMode: modes.next },
+);
+attachKeyboard(inputs, settings, { enable, nextMode: modes.next, axes: modes.axes });
+attachGamepad(inputs, settings, { enable, stop, press: switches.press });
+
+const belief = attachBelief({
+  list: part("belief"), none: part("belief-none"), level: part("help-level"),
+  alpha: part("alpha"), alphaText: part("alpha-text"),
+});
+const ghostList = listGhosts(part("ghosts"));
+part("trail-clear").addEventListener("click", () => connection.send("trail_clear"));
+part("reset").addEventListener("click", () => connection.send("reset"));
+
+for (const radio of document.querySelectorAll("input[name=panel]")) {
+  radio.addEventListener("change", () => settings.change({ panel: /** @type {HTMLInputElement} */ (radio).value }));
+}
+
+/** @type {import("./drawing.js").Drawing | null} */
+let drawing = null;
+const loading = import("./drawing.js").then(({ Drawing }) =>
+  Drawing.load({ canvas: part("scene"), front: part("view-front"), side: part("view-side") }));
+loading.then(
+  (loaded) => {
+    drawing = loaded;
+    show();
+  },
+  (error) => {
+    part("scene-lost").hidden = false;
+    part("scene-lost").textContent = "This browser cannot draw the views. Everything else works.";
+    console.error(error);
+  },
+);
+attachTheme(part("theme"), settings, () => drawing?.repaint());
+
+/** @returns {import("./dpad.js").Direction[]} */
+function pressed() {
+  const said = /** @type {import("./dpad.js").Direction[]} */ ([]);
+  const size = Math.max(Math.abs(inputs.x), Math.abs(inputs.y));
+  if (inputs.y > 0.4 * size) said.push("up");
+  if (inputs.y < -0.4 * size) said.push("down");
+  if (inputs.x > 0.4 * size) said.push("right");
+  if (inputs.x < -0.4 * size) said.push("left");
+  return said;
+}
+
+let wordsAt = -Infinity;
+
+function show() {
+  const { state, welcome } = connection;
+  part("enable").setAttribute("aria-disabled", String(connection.engaged || !connection.open));
+  if (!state || !welcome) return;
+  const paths = personal(state.ghosts, state.tool, shaped);
+  drawing?.show(state, paths, pressed(), settings.values);
+  belief.show(state.belief, state.alpha);
+  if (performance.now() - wordsAt < WORDS_MS) return;
+  wordsAt = performance.now();
+  ghostList.show(paths, pressed(), (motion) => motionWords(motion, settings.values.seat));
+  write(part("scene-text"), placeWords(state.tool, welcome.goals));
+  part("bound-text").hidden = !settings.values.showBound || state.bound_m === null;
+  if (state.bound_m !== null) write(part("bound-text"), `Help may hold the tool within ${Math.round(100 * state.bound_m)} cm of the likeliest goal.`);
+  part("reset").disabled = connection.engaged;
+}
+
+/** @param {HTMLElement} element @param {string} text */
+function write(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+function applySettings() {
+  const { panel, seat } = settings.values;
+  for (const name of ["stick", "dpad", "switch"]) part(`panel-${name}`).hidden = name !== panel;
+  /** @type {any} */ (document.querySelector(`input[name=panel][value=${panel}]`)).checked = true;
+  part("view-front").querySelector("figcaption").textContent = seat === "facing" ? "Front" : "Over the shoulder";
+  part("ghosts").parentElement.hidden = !settings.values.showGhosts;
+}
+
+let name = settings.name;
+settings.addEventListener("change", () => {
+  if (settings.values.panel !== lastPanel) inputs.drop();
+  lastPanel = settings.values.panel;
+  applySettings();
+  if (settings.name !== name) connection.rename((name = settings.name));
+  chooseProfile();
+  show();
+});
+let lastPanel = settings.values.panel;
+applySettings();
+
+let profileAsked = "";
+
+/** The person's alignment, once they drive and the arm stands still; asked for once. Without a wish the server's stays. */
+function chooseProfile() {
+  const { state, welcome } = connection;
+  const { profile } = settings.values;
+  const known = profile === NO_PROFILE || welcome?.profiles.includes(profile);
+  if (!known || !connection.driving || connection.engaged || profile === profileAsked) return;
+  profileAsked = profile;
+  const name = profile === NO_PROFILE ? null : profile;
+  if (name !== state.profile) connection.send("profile", { name });
+}
+
+connection.addEventListener("welcome", () => {
+  const { robot, run, goals, limits } = connection.welcome;
+  write(part("about"), run ? `${robot}, run ${run}` : `${robot}, tool directions only: no run is loaded`);
+  write(part("latch-max"), String(limits.latch_max_s));
+  belief.name(goals);
+  dialog.offer(connection.welcome.profiles);
+});
+let trail = 0;
+connection.addEventListener("state", () => {
+  if (connection.state.trail !== trail) drawing?.clearTrail();
+  trail = connection.state.trail;
+  chooseProfile();
+  show();
+});
+connection.addEventListener("line", show);
+inputs.addEventListener("change", show);

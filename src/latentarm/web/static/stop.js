@@ -1,0 +1,49 @@
+/** Stop: on press, on Space and on Escape, from every page and every dialog. It needs no focus and no mouse. */
+
+/**
+ * @param {import("./connection.js").Connection} connection
+ * @param {() => void} [alsoHere] what this page lets go of
+ */
+export function attachStop(connection, alsoHere = () => {}) {
+  const stop = () => {
+    alsoHere();
+    // Where the line is doubtful, by another way as well; the arm also stops by itself when inputs cease.
+    if (!connection.send("stop") || !connection.fresh) fetch("/stop", { method: "POST", keepalive: true }).catch(() => {});
+  };
+  // Capture, on the window: before anything else on the page can keep the press for itself.
+  window.addEventListener("pointerdown", (event) => {
+    if (isStop(event.target)) stop();
+  }, { capture: true });
+  window.addEventListener("click", (event) => {
+    if (event.detail === 0 && isStop(event.target)) stop();
+  }, { capture: true });
+  window.addEventListener("keydown", (event) => {
+    if (event.code !== "Space" && event.code !== "Escape") return;
+    const writing = event.code === "Space" && isWritingIn(event.target);
+    // While the arm stands disengaged, Space may press buttons and tick boxes as it always does.
+    const pressing = event.code === "Space" && !connection.engaged && isControl(event.target);
+    if (writing || pressing) return;
+    if (event.code === "Space") event.preventDefault();
+    stop();
+  }, { capture: true });
+  // A button that has the focus acts when Space comes up.
+  window.addEventListener("keyup", (event) => {
+    if (event.code === "Space" && connection.state?.phase === "stopping") event.preventDefault();
+  }, { capture: true });
+  return stop;
+}
+
+/** @param {EventTarget | null} target */
+function isStop(target) {
+  return target instanceof Element && target.closest("#stop, [data-stop]") !== null;
+}
+
+/** @param {EventTarget | null} target */
+function isWritingIn(target) {
+  return target instanceof Element && target.matches("textarea, input[type=text]:not([readonly])");
+}
+
+/** @param {EventTarget | null} target */
+function isControl(target) {
+  return target instanceof Element && target.closest("button, input, select, summary, a") !== null;
+}

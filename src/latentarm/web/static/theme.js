@@ -1,0 +1,26 @@
+/** Light or dark: as the system has it, until somebody chooses. */
+
+/**
+ * @param {HTMLElement} button
+ * @param {import("./settings.js").Settings} settings
+ * @param {() => void} repaint
+ */
+export function attachTheme(button, settings, repaint) {
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  const show = () => {
+    const { theme } = settings.values;
+    const dark = theme === "auto" ? system.matches : theme === "dark";
+    if (button.getAttribute("aria-pressed") === String(dark) && document.documentElement.dataset.theme) return;
+    document.documentElement.dataset.theme = dark ? "dark" : "light";
+    document.body.classList.toggle("body--dark", dark);
+    button.setAttribute("aria-pressed", String(dark));
+    repaint();
+  };
+  button.addEventListener("click", () => {
+    const dark = document.documentElement.dataset.theme === "dark";
+    settings.change({ theme: dark ? "light" : "dark" });
+  });
+  system.addEventListener("change", show);
+  settings.addEventListener("change", show);
+  show();
+}

@@ -1,0 +1,273 @@
+"""A real server, started by the command line, and a real Chromium in front of it."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+HERE = Path(__file__).parent
+
+SETTLING_S = 0.2
+"""The simulated arm follows its last command, zero, within this."""
+
+TRIES = 8
+"""A busy computer keeps inputs waiting, and the arm stops then, as it must: a person enables it again."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if HERE in item.path.parents:
+            item.add_marker(pytest.mark.browser)
+            # Minutes, and a machine that draws without a graphics processor: `make test-all`.
+            item.add_marker(pytest.mark.slow)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Browser]:
+    """One browser for all tests; each opens pages of its own in it."""
+    found = next((path for name in NAMES if (path := shutil.which(name))), None)
+    if found is None:
+        pytest.skip(f"No Chromium is installed: looked for {', '.join(NAMES)}.")
+    # Chromium does not run sandboxed as root, which is what containers run as.
+    sandbox = ("--no-sandbox",) if os.getuid() == 0 else ()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=found, args=[*SOFTWARE_GL, *sandbox])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Where `latentarm teleop RUN` serves its page."""
+    folder = tmp_path_factory.mktemp("teleop")
+    command = [sys.executable, "-m", "latentarm", "teleop", str(trained), "--port", "0", "--out", str(folder)]
+    with (folder / "said").open("w") as said:
+        server = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT)
+    try:
+        yield _printed_address(server, folder / "said")
+    finally:
+        server.send_signal(signal.SIGINT)
+        server.wait(20)
+
+
+def _printed_address(server: subprocess.Popen[bytes], said: Path) -> str:
+    end_s = time.monotonic() + 60
+    while time.monotonic() < end_s and server.poll() is None:
+        found = re.search(r"https?://[\d.]+:\d+", said.read_text())
+        if found and not _refuses(found.group()):
+            return found.group()
+        time.sleep(0.1)
+    raise AssertionError(f"the server did not start: {said.read_text()}")
+
+
+def _refuses(address: str) -> bool:
+    try:
+        with connect(f"{address.replace('http', 'ws', 1)}/drive", origin=address):
+            return False
+    except OSError:
+        return True
+
+
+class Arm:
+    """The arm as the server has it: a connection of its own that only watches."""
+
+    def __init__(self) -> None:
+        self.state: dict[str, Any] = {}
+        self.welcome: dict[str, Any] = {}
+        self.ghosts: dict[str, list[list[float]]] = {}
+        self.states: list[dict[str, Any]] = []
+
+    @property
+    def tool(self) -> np.ndarray:
+        return np.array(self.state["tool"])
+
+    @property
+    def goals(self) -> dict[str, np.ndarray]:
+        return {goal["name"]: np.array(goal["position"]) for goal in self.welcome["goals"]}
+
+    @property
+    def enabled(self) -> bool:
+        return self.state["phase"] in ("ready", "moving")
+
+    def comes_to(self, until: Callable[[], Any], within_s: float) -> bool:
+        end_s = time.monotonic() + within_s
+        while time.monotonic() < end_s:
+            if self.state and until():
+                return True
+            time.sleep(0.01)
+        return False
+
+    def wait(self, until: Callable[[], Any], within_s: float = 8.0) -> None:
+        if self.comes_to(until, within_s):
+            return
+        shown = {key: self.state.get(key) for key in ("phase", "why", "mode", "axes", "driver", "tool")}
+        raise AssertionError(f"it never came to that: {shown}")
+
+    def comes_to_rest(self) -> None:
+        """Disengaged within a second, and not moving any more."""
+        self.wait(lambda: self.state["phase"] in ("disengaged", "neutral_needed"), 1.0)
+        time.sleep(SETTLING_S)
+        self.stays()
+
+    def is_let_go(self) -> None:
+        """At rest within a second, enabled or not."""
+        self.wait(lambda: self.state["phase"] not in ("moving", "stopping"), 1.0)
+        time.sleep(SETTLING_S)
+        self.stays()
+
+    def stays(self, for_s: float = 0.5) -> None:
+        """It does not move."""
+        before, tick = self.tool, self.state["tick"]
+        time.sleep(for_s)
+        assert self.state["tick"] > tick, "the server says nothing new"
+        assert np.array_equal(before, self.tool)
+
+    def listen(self, socket: Any) -> None:
+        with suppress(ConnectionClosed):
+            for frame in socket:
+                message = json.loads(frame)
+                if message["type"] == "welcome":
+                    self.welcome = message
+                elif message["type"] == "state":
+                    self.ghosts = message["ghosts"] or self.ghosts
+                    self.state = message
+
+
+@contextmanager
+def _watching(address: str) -> Iterator[Arm]:
+    arm = Arm()
+    with connect(f"{address.replace('http', 'ws', 1)}/drive", origin=address, compression=None) as socket:
+        listener = threading.Thread(target=arm.listen, args=[socket], daemon=True)
+        listener.start()
+        socket.send(json.dumps({"type": "hello", "version": 1, "name": "test"}))
+        arm.wait(lambda: arm.welcome and arm.ghosts)
+        # The first to come drives: not this one.
+        socket.send(json.dumps({"type": "release"}))
+        yield arm
+    listener.join()
+
+
+@pytest.fixture(scope="session")
+def arm(address: str) -> Iterator[Arm]:
+    with _watching(address) as arm:
+        yield arm
+
+
+@pytest.fixture
+def open_page(chromium: Browser, address: str, arm: Arm) -> Iterator[Callable[..., Page]]:
+    """Opens a page in a browser profile of its own; an error on any of them fails the test."""
+    errors: list[str] = []
+    contexts = []
+
+    def open_page(script: str = "", **options: Any) -> Page:
+        context = chromium.new_context(**{"viewport": {"width": 1100, "height": 720}, **options})
+        contexts.append(context)
+        page = context.new_page()
+        page.set_default_timeout(10_000)
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
+        if script:
+            page.add_init_script(script)
+        page.goto(address)
+        page.locator("#status:not([data-phase=connecting], [data-phase=lost])").wait_for()
+        # The drawing is loaded last.
+        page.locator(".label").first.wait_for(state="attached")
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    arm.wait(lambda: arm.state["driver"] is None)
+    assert errors == []
+
+
+@pytest.fixture
+def page(open_page: Callable[..., Page], arm: Arm) -> Page:
+    """A page at the wheel, the arm at its start in latent actions with help, not enabled."""
+    return seated(open_page(), arm)
+
+
+def seated(page: Page, arm: Arm) -> Page:
+    """The page takes the wheel and puts the arm back."""
+    page.get_by_role("button", name="Ask to drive").click()
+    page.get_by_role("button", name="Let others drive").wait_for()
+    page.get_by_role("radio", name="Learned, with help").check()
+    arm.wait(lambda: arm.state["mode"] == "assisted")
+    page.get_by_role("button", name="Arm back to start").click()
+    time.sleep(0.5)
+    return page
+
+
+def enable(page: Page, arm: Arm) -> None:
+    for _ in range(TRIES):
+        page.get_by_role("button", name="Enable", exact=True).click()
+        if arm.comes_to(lambda: arm.enabled, 1.5):
+            return
+    raise AssertionError(f"the arm is never enabled: {arm.state['why']}")
+
+
+def move(page: Page, arm: Arm, press: Callable[[], Any], let_go: Callable[[], Any]) -> None:
+    """Press until the arm moves, and keep on pressing."""
+    for _ in range(TRIES):
+        press()
+        if arm.comes_to(lambda: arm.state["phase"] == "moving", 1.5):
+            return
+        let_go()
+        enable(page, arm)
+    raise AssertionError(f"the arm never moves: {arm.state['why']}")
+
+
+@pytest.fixture
+def seat() -> Callable[[Page, Arm], Page]:
+    return seated
+
+
+@pytest.fixture
+def enabled(page: Page, arm: Arm) -> Page:
+    """A page at the wheel of an enabled arm."""
+    enable(page, arm)
+    return page
+
+
+def drag(page: Page, right: float, up: float) -> None:
+    """Take the stick in its middle and push it, in shares of its whole drawing."""
+    stick = page.locator("#stick")
+    stick.scroll_into_view_if_needed()
+    box = stick.bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + right * box["width"], y - up * box["height"], steps=3)
+
+
+@pytest.fixture
+def drag_stick() -> Callable[[Page, float, float], None]:
+    return drag
+
+
+@pytest.fixture
+def press_until_moving() -> Callable[[Page, Arm, Callable[[], Any], Callable[[], Any]], None]:
+    return move
+
+
+@pytest.fixture
+def press_enable() -> Callable[[Page, Arm], None]:
+    return enable

@@ -1,0 +1,91 @@
+"""Stop acts on press, on Space and on Escape, from every page; one page drives at a time."""
+
+import pytest
+
+
+@pytest.fixture
+def hold_key(arm, press_until_moving):
+    """Hold an arrow key until the arm moves."""
+
+    def hold_key(page):
+        def press():
+            page.locator("#stick").focus()
+            page.keyboard.down("ArrowLeft")
+
+        press_until_moving(page, arm, press, lambda: page.keyboard.up("ArrowLeft"))
+
+    return hold_key
+
+
+@pytest.fixture
+def moving(enabled, hold_key):
+    """A page that holds a key, and so moves the arm."""
+    hold_key(enabled)
+    return enabled
+
+
+@pytest.mark.parametrize("key", ["Space", "Escape"])
+@pytest.mark.parametrize("focus", ["#stick", "#enable", "#settings-open", "input[name=mode]:checked"])
+def test_a_key_stops_the_arm_wherever_the_focus_is(moving, arm, key, focus):
+    moving.locator(focus).focus()
+    moving.keyboard.press(key)
+    arm.comes_to_rest()
+    assert moving.locator("dialog[open]").count() == 0
+
+
+def test_stop_acts_on_press_and_not_on_release(moving, arm):
+    moving.locator("#stop").hover()
+    moving.mouse.down()
+    arm.comes_to_rest()
+    moving.mouse.up()
+
+
+def test_a_watching_page_stops_the_arm_and_cannot_drive_it(moving, arm, open_page):
+    watcher = open_page()
+    watcher.get_by_text("is driving; you are watching").wait_for()
+    watcher.keyboard.press("Escape")
+    arm.comes_to_rest()
+    watcher.locator("#stick").focus()
+    watcher.keyboard.down("ArrowRight")
+    arm.stays()
+    watcher.keyboard.up("ArrowRight")
+
+
+def test_a_watching_page_that_loses_the_focus_does_not_stop_the_arm(moving, arm, open_page):
+    watcher = open_page()
+    watcher.evaluate("window.dispatchEvent(new Event('blur'))")
+    watcher.close()
+    arm.wait(lambda: arm.state["watchers"] == 1)
+    assert "lost the focus" not in arm.state["why"]
+    assert "pressed Stop" not in arm.state["why"]
+
+
+def test_settings_have_a_stop_of_their_own(enabled, arm):
+    enabled.get_by_role("button", name="Settings").click()
+    enabled.get_by_role("dialog").get_by_role("button", name="Stop").hover()
+    enabled.mouse.down()
+    arm.comes_to_rest()
+    enabled.mouse.up()
+
+
+def test_the_wheel_is_handed_over(page, arm, open_page, press_enable, hold_key):
+    other = open_page()
+    other.get_by_role("button", name="Ask to drive").click()
+    page.get_by_text("asks to drive").wait_for()
+    page.get_by_role("button", name="Hand over to").click()
+    other.get_by_text("You are driving").wait_for()
+    page.get_by_text("is driving; you are watching").wait_for()
+    press_enable(other, arm)
+    hold_key(other)
+    other.keyboard.up("ArrowLeft")
+    assert "pressed Stop" not in arm.state["why"]
+
+
+def test_a_stop_right_after_enable_wins(page, arm):
+    page.evaluate(
+        """() => {
+          document.getElementById("enable").click();
+          window.dispatchEvent(new KeyboardEvent("keydown", { code: "Escape" }));
+        }"""
+    )
+    assert not arm.comes_to(lambda: arm.enabled, 1.0)

@@ -1,0 +1,261 @@
+import asyncio
+import json
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, field
+from multiprocessing import Pipe
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import uvicorn
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
+
+from latentarm.control.clock import SimulatedClock
+from latentarm.control.loop import ControlLoop
+from latentarm.demonstrations.dataset import write_dataset
+from latentarm.tasks.table_top import TableTop
+from latentarm.web.addresses import TeleopConfig, listen
+from latentarm.web.channel import Given, Order, Report, new_channel, parse_report
+from latentarm.web.cockpit import Cockpit
+from latentarm.web.live_arm import LiveArm
+from latentarm.web.recording import EpisodeWriter
+from latentarm.web.server import build_app, gated, server_config
+from latentarm.web.setting import PERIOD_S, Setting, Spec, load_setting
+from latentarm.web.supervisor import ControlProcess
+
+
+@pytest.fixture(scope="session")
+def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run for the table: principal components of a few demonstrations."""
+    from latentarm.experiments.training import TrainConfig, train_run
+
+    folder = tmp_path_factory.mktemp("trained")
+    write_dataset(TableTop().demonstrate(12, np.random.default_rng(0)), folder / "table")
+    train_run(TrainConfig(folder / "table", "pca", folder / "run", seeds=1))
+    return folder / "run"
+
+
+@pytest.fixture(scope="session")
+def setting(trained: Path) -> Setting:
+    return load_setting(Spec(trained))
+
+
+class Desk:
+    """A cockpit in this process, in simulated time: both ends of the channel are here.
+
+    `each_tick` is called before every tick with the time, s.
+    """
+
+    def __init__(self, setting: Setting, folder: Path) -> None:
+        self.setting = setting
+        self.clock = SimulatedClock([self._passed])
+        reading, self.orders = Pipe(duplex=False)
+        self.channel = new_channel(reading)
+        self.orphaned = False
+        self.writer = EpisodeWriter(folder)
+        self.cockpit = Cockpit(setting, self.channel, self.clock, self.writer, lambda: self.orphaned)
+        self.arm = LiveArm(setting.task.robot, setting.start, self.clock)
+        self.step = setting.step()
+        self.loop = ControlLoop(
+            self.step, self.arm, self.cockpit, self.clock, [self.cockpit.observe, self._saw]
+        )
+        self.cockpit.take_seat(self.loop, self.step, self.arm, setting, "")
+        self.each_tick: Callable[[float], None] = lambda now_s: None
+        self.records: list[Any] = []
+        self.reports: list[Report] = []
+        self.sequence = 0
+
+    def run(self, for_s: float) -> None:
+        """So much time; afterwards the loop has ended and the arm is at rest."""
+        self.loop.run(round(for_s / PERIOD_S))
+
+    def give(self, *u: float, nonce: str | None = None, latched: bool = False, driver: int = 1) -> None:
+        self.sequence += 1
+        known = nonce or (self.reports[-1].nonce if self.reports else "")
+        given = Given(driver=driver, seq=self.sequence, nonce=known, u=u, latched=latched)
+        self.channel.given.write(given.model_dump_json().encode())
+
+    def order(self, order: Order) -> None:
+        self.orders.send_bytes(order.model_dump_json().encode())
+
+    def speeds(self) -> np.ndarray:
+        """(T,), the fastest joint of every command, rad/s."""
+        return np.array([np.abs(record.command.velocity).max() for record in self.records])
+
+    def times(self) -> np.ndarray:
+        return np.array([record.time_s for record in self.records])
+
+    def _passed(self, span_s: float) -> None:
+        self.each_tick(self.clock.now_s())
+
+    def _saw(self, record: Any) -> None:
+        self.records.append(record)
+        found = self.channel.report.read()
+        report = None if found is None else parse_report(found[1])
+        if report is not None and (not self.reports or report.tick != self.reports[-1].tick):
+            self.reports.append(report)
+
+
+@pytest.fixture
+def desk(setting: Setting, tmp_path: Path) -> Iterator[Desk]:
+    desk = Desk(setting, tmp_path / "teleop")
+    yield desk
+    desk.writer.close()
+    desk.orders.close()
+    desk.channel.orders.close()
+
+
+@dataclass
+class Client:
+    """A page without a browser: it keeps the newest state, and sends inputs at 50 Hz while `u` is set."""
+
+    socket: ClientConnection
+    state: dict[str, Any] = field(default_factory=dict)
+    welcome: dict[str, Any] = field(default_factory=dict)
+    refused: str | None = None
+    closed: int | None = None
+    u: list[float] | None = None
+    latched: bool = False
+    sequence: int = 0
+
+    def send(self, **message: Any) -> None:
+        self.socket.send(json.dumps(message))
+
+    def wait(self, until: Callable[[dict[str, Any]], Any], within_s: float = 5.0) -> dict[str, Any]:
+        """The first state from now on of which something holds."""
+        end_s = time.monotonic() + within_s
+        while time.monotonic() < end_s:
+            if self.state and until(self.state):
+                return self.state
+            time.sleep(0.005)
+        raise AssertionError(f"it never came to that: {self.state}")
+
+    def enable(self) -> None:
+        """Let go and press Enable, as a page does; on a busy machine more than once."""
+        self.u = [0.0] * 2
+        for _ in range(5):
+            time.sleep(0.06)
+            self.send(type="enable")
+            with suppress(AssertionError):
+                self.wait(lambda state: state["phase"] == "ready", within_s=1.0)
+                return
+        raise AssertionError(f"it could not be enabled: {self.state}")
+
+    def wait_closed(self, within_s: float = 5.0) -> None:
+        end_s = time.monotonic() + within_s
+        while self.closed is None and time.monotonic() < end_s:
+            time.sleep(0.005)
+        assert self.closed is not None
+
+    def listen(self) -> None:
+        with suppress(ConnectionClosed):
+            for frame in self.socket:
+                message = json.loads(frame)
+                if message["type"] == "state":
+                    if message["ghosts"] is None:
+                        message["ghosts"] = self.state.get("ghosts")
+                    self.state = message
+                elif message["type"] == "welcome":
+                    self.welcome = message
+                else:
+                    self.refused = message["why"]
+        self.closed = self.socket.close_code
+
+    def talk(self) -> None:
+        with suppress(ConnectionClosed):
+            while self.closed is None:
+                if self.u is not None and self.state:
+                    self.sequence += 1
+                    self.send(
+                        type="input",
+                        seq=self.sequence,
+                        nonce=self.state["nonce"],
+                        u=self.u,
+                        source="pointer",
+                        latched=self.latched,
+                    )
+                time.sleep(0.02)
+
+
+@dataclass
+class Site:
+    """A server in a thread of this process, its control process, and pages that connect to it."""
+
+    port: int
+    control: ControlProcess
+    loop: asyncio.AbstractEventLoop
+
+    @property
+    def origin(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+    @property
+    def address(self) -> str:
+        return f"ws://127.0.0.1:{self.port}/drive"
+
+    @contextmanager
+    def raw(self, **changes: Any) -> Iterator[ClientConnection]:
+        """A bare socket."""
+        options = {"origin": self.origin, "compression": None, "ping_interval": None, **changes}
+        with connect(self.address, **options) as socket:
+            yield socket
+
+    @contextmanager
+    def page(self, name: str = "Ada") -> Iterator[Client]:
+        with self.raw() as socket:
+            client = Client(socket)
+            threads = [threading.Thread(target=work, daemon=True) for work in (client.listen, client.talk)]
+            for thread in threads:
+                thread.start()
+            client.send(type="hello", version=1, name=name)
+            client.wait(lambda state: True)
+            try:
+                yield client
+            finally:
+                client.u = None
+                socket.close()
+                for thread in threads:
+                    thread.join()
+        self._settled()
+
+    def _settled(self) -> None:
+        """Whoever comes next finds the arm at rest and nobody at the wheel."""
+        time.sleep(0.1)
+
+
+@contextmanager
+def served(spec: Spec) -> Iterator[Site]:
+    config = TeleopConfig(spec, port=0)
+    listening = listen(config)
+    port = int(listening.getsockname()[1])
+    control = ControlProcess(spec)
+    server = uvicorn.Server(
+        server_config(gated(build_app(load_setting(spec), control), config, port, None, lambda: None), config)
+    )
+    loops: list[asyncio.AbstractEventLoop] = []
+
+    async def run() -> None:
+        loops.append(asyncio.get_running_loop())
+        await server.serve(sockets=[listening])
+
+    thread = threading.Thread(target=lambda: asyncio.run(run()), daemon=True)
+    with ExitStack() as stack:
+        stack.callback(listening.close)
+        stack.callback(control.end)
+        thread.start()
+        stack.callback(thread.join, 10.0)
+        stack.callback(setattr, server, "should_exit", True)
+        while not server.started:
+            time.sleep(0.01)
+        yield Site(port, control, loops[0])
+
+
+@pytest.fixture(scope="session")
+def site(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    with served(Spec(trained, out=tmp_path_factory.mktemp("teleop"))) as site:
+        yield site

@@ -1,0 +1,241 @@
+"""What the control process does with inputs and orders, in simulated time."""
+
+import numpy as np
+import pytest
+
+from latentarm.control.journal import read_journal
+from latentarm.web.channel import ChooseMode, ChooseProfile, Enable, Record, Reset
+from latentarm.web.cockpit import LATCH_MAX_S
+
+
+def enabled_at(desk, now_s, at_s=0.1):
+    """Ask to be enabled, once."""
+    if abs(now_s - at_s) < 0.005:
+        desk.order(Enable(driver=1, stops=desk.channel.stop.version))
+
+
+def test_nothing_moves_before_enable(desk):
+    desk.each_tick = lambda now_s: desk.give(1.0, 0.0)
+    desk.run(1.0)
+    assert not desk.speeds().any()
+    assert desk.reports[-1].phase == "neutral_needed"
+    assert "Let go of the stick" in desk.reports[-1].why
+
+
+def test_a_pressed_stick_cannot_be_enabled(desk):
+    def tick(now_s):
+        desk.give(1.0, 0.0)
+        enabled_at(desk, now_s)
+
+    desk.each_tick = tick
+    desk.run(1.0)
+    assert not desk.speeds().any()
+
+
+def test_it_drives_and_stops_in_time_when_inputs_cease(desk):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        if now_s < 1.5:
+            desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
+
+    desk.each_tick = tick
+    desk.run(2.5)
+    moving = desk.times()[desk.speeds() > 0.0]
+    assert 0.5 <= moving[0] <= 0.52
+    assert moving[-1] - 1.5 < 0.15
+    assert desk.reports[-1].phase == "disengaged"
+
+
+def test_inputs_that_come_back_do_not_move_an_arm_that_was_stopped(desk):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        if not 1.0 < now_s < 1.3:
+            desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
+
+    desk.each_tick = tick
+    desk.run(3.0)
+    assert not desk.speeds()[desk.times() > 1.2].any()
+
+
+@pytest.mark.parametrize("stale", ["old nonce", "no nonce", "same number"])
+def test_stale_inputs_do_not_count(desk, stale):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        u = 0.0 if now_s < 0.5 else 1.0
+        if now_s < 1.0:
+            desk.give(u, 0.0)
+            return
+        if stale == "same number":
+            desk.sequence = 10
+        nonce = {"old nonce": desk.reports[0].nonce, "no nonce": "0" * 32}.get(stale)
+        desk.give(u, 0.0, nonce=nonce)
+
+    desk.each_tick = tick
+    desk.run(2.0)
+    assert desk.speeds()[(desk.times() > 0.9) & (desk.times() < 1.0)].min() > 0.0
+    assert not desk.speeds()[desk.times() > 1.0 + 0.15].any()
+
+
+def test_stop_works_while_the_pipe_of_orders_is_full(desk):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
+        for _ in range(6):  # more than are read in a tick
+            desk.order(ChooseMode(mode="latent", axes=None))
+        if abs(now_s - 1.0) < 0.005:
+            desk.channel.stop.write(b"Ada pressed Stop.")
+
+    desk.each_tick = tick
+    desk.run(1.5)
+    stopped = desk.times()[desk.speeds() > 0.0].max()
+    assert 1.0 < stopped < 1.15
+    assert "Ada pressed Stop." in desk.reports[-1].why
+
+
+def test_after_a_stop_the_stick_must_be_let_go_and_enable_pressed(desk):
+    def tick(now_s):
+        for at_s in (0.1, 1.2, 2.0):
+            enabled_at(desk, now_s, at_s)
+        desk.give(1.0 if 0.5 < now_s < 1.6 or now_s > 2.3 else 0.0, 0.0)
+        if abs(now_s - 1.0) < 0.005:
+            desk.channel.stop.write(b"Stop.")
+
+    desk.each_tick = tick
+    desk.run(3.0)
+    moving = desk.times()[desk.speeds() > 0.0]
+    assert not ((moving > 1.15) & (moving < 2.3)).any()
+    assert (moving > 2.4).any()
+
+
+def test_an_enable_that_was_pressed_before_stop_counts_for_nothing(desk):
+    def tick(now_s):
+        desk.give(0.0, 0.0)
+        if abs(now_s - 0.5) < 0.005:
+            before = desk.channel.stop.version
+            desk.channel.stop.write(b"Stop.")
+            desk.order(Enable(driver=1, stops=before))
+
+    desk.each_tick = tick
+    desk.run(1.5)
+    assert {report.phase for report in desk.reports} == {"disengaged"}
+
+
+def test_latched_motion_ends(desk):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(0.0 if now_s < 0.5 else 0.05, 0.0, latched=True)
+
+    desk.each_tick = tick
+    desk.run(LATCH_MAX_S + 1.5)
+    moving = desk.times()[desk.speeds() > 0.0]
+    assert LATCH_MAX_S - 0.05 < moving[-1] - moving[0] < LATCH_MAX_S + 0.15
+    assert "Latched motion ends" in desk.reports[-1].why
+
+
+def test_switching_modes_never_makes_the_arm_jump(desk):
+    orders = {
+        0.8: ChooseMode(mode="end_effector", axes=0),
+        1.1: ChooseMode(mode="end_effector", axes=2),
+        1.4: ChooseMode(mode="assisted", axes=None),
+        1.7: ChooseMode(mode="latent", axes=None),
+    }
+
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
+        for at_s, order in orders.items():
+            if abs(now_s - at_s) < 0.005:
+                desk.order(order)
+
+    desk.each_tick = tick
+    desk.run(2.0)
+    commands = np.array([record.command.velocity for record in desk.records])
+    driven = desk.times() < 2.0
+    gained = np.abs(np.diff(commands[driven], axis=0))
+    assert (gained <= 0.2 * desk.setting.task.robot.limits.acceleration * 0.01 + 1e-9).all()
+    assert {record.mode for record in desk.records} == {0, 1, 3}
+    assert desk.speeds()[(desk.times() > 1.9) & driven].min() > 0.0
+    helped = [record.alpha > 0.0 for record in desk.records if 1.5 < record.time_s < 1.7]
+    assert all(helped)
+    assert not any(record.alpha for record in desk.records if record.time_s < 1.4)
+
+
+def test_another_driver_finds_a_stopped_arm(desk):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(0.0 if now_s < 0.5 else 1.0, 0.0, driver=1 if now_s < 1.0 else 2)
+
+    desk.each_tick = tick
+    desk.run(2.0)
+    assert not desk.speeds()[desk.times() > 1.15].any()
+    assert desk.reports[-1].driver == 2
+
+
+def test_an_orphan_brings_the_arm_to_rest_and_ends(desk):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
+        desk.orphaned = now_s > 1.0
+
+    desk.each_tick = tick
+    desk.loop.run()
+    assert desk.clock.now_s() < 1.2
+    assert not desk.records[-1].command.velocity.any()
+    assert desk.cockpit.change is None
+
+
+@pytest.mark.parametrize("order", [Reset(), ChooseProfile(name="ada")])
+def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(0.0, 0.0)
+        if abs(now_s - 0.5) < 0.005:
+            desk.order(order)
+        if abs(now_s - 0.7) < 0.005:
+            desk.channel.stop.write(b"Stop.")
+        if abs(now_s - 1.0) < 0.005:
+            desk.order(order)
+
+    desk.each_tick = tick
+    desk.loop.run()
+    assert 0.99 < desk.clock.now_s() < 1.05
+    assert desk.cockpit.change == order
+    assert "Stop the arm first." in {report.why for report in desk.reports}
+
+
+def test_an_episode_is_in_the_journal(desk, tmp_path):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(1.0 if 0.5 <= now_s < 1.4 else 0.0, 0.0)
+        if abs(now_s - 0.3) < 0.005:
+            desk.order(Record(on=True, task="stab the carrot"))
+        if abs(now_s - 1.3) < 0.005:
+            desk.order(Record(on=False, task=""))
+
+    desk.each_tick = tick
+    desk.run(2.0)
+    desk.writer.close()
+    (path,) = (tmp_path / "teleop").glob("*.sqlite")
+    (episode,) = read_journal(path)
+    assert episode.complete
+    assert episode.header.task == "stab the carrot"
+    assert not episode.records[-1].command.velocity.any()
+    assert len(episode.records) == desk.reports[-1].recording.samples == pytest.approx(150, abs=10)
+    assert desk.writer.status.episodes == 1
+
+
+def test_a_disk_that_cannot_be_written_ends_the_recording_and_not_the_drive(desk, tmp_path):
+    (tmp_path / "teleop").write_text("no folder")
+
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
+        if abs(now_s - 0.3) < 0.005:
+            desk.order(Record(on=True, task=""))
+
+    desk.each_tick = tick
+    desk.run(2.0)
+    desk.writer.close()
+    assert "cannot be written" in desk.writer.status.problem
+    assert not desk.writer.status.on
+    assert desk.speeds()[desk.times() > 1.0].max() > 0.0

@@ -1,0 +1,328 @@
+"""A real server, a real control process, and pages without a browser."""
+
+import asyncio
+import json
+import time
+import urllib.error
+import urllib.request
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from latentarm.web.drive import BURST
+from latentarm.web.messages import FRAME_LIMIT
+
+HELLO = '{"type": "hello", "version": 1}'
+
+
+def moved(before, after):
+    return float(np.linalg.norm(np.subtract(before["tool"], after["tool"])))
+
+
+def drive(page):
+    """Enabled, and on the way. On a busy machine the arm may stop first: people press Enable again too."""
+    for _ in range(5):
+        page.enable()
+        before = page.state
+        page.u = [1.0, 0.0]
+        page.wait(
+            lambda state, before=before: state["phase"] != "ready" and state["tick"] > before["tick"] + 5
+        )
+        state = page.wait(
+            lambda state, before=before: moved(before, state) > 0.01 or state["phase"] != "moving"
+        )
+        if state["phase"] == "moving":
+            return
+    raise AssertionError(f"it was stopped five times: {page.state}")
+
+
+def at_rest(page):
+    page.wait(lambda state: state["phase"] in ("disengaged", "neutral_needed"))
+    time.sleep(0.05)  # a state shows where the arm was before its last command
+    first = page.state
+    time.sleep(0.15)
+    assert page.state["tick"] > first["tick"]
+    assert moved(first, page.state) == 0.0
+
+
+def test_a_page_drives_the_arm_and_stops_it(site):
+    with site.page() as page:
+        assert page.welcome["modes"] == ["latent", "assisted", "end_effector"]
+        assert page.welcome["latent_dim"] == 2
+        assert [goal["name"] for goal in page.welcome["goals"]] == ["carrot", "tofu", "melon"]
+        drive(page)
+        page.send(type="stop")
+        at_rest(page)
+        assert "Ada pressed Stop." in page.state["why"]
+
+
+def test_nothing_moves_without_enable(site):
+    with site.page() as page:
+        before = page.state
+        page.u = [1.0, 1.0]
+        time.sleep(0.5)
+        assert moved(before, page.state) == 0.0
+        assert page.state["phase"] == "neutral_needed"
+
+
+def test_a_page_that_goes_stops_the_arm(site):
+    with site.page("Bob") as watcher, site.page() as page:
+        watcher.send(type="release")
+        page.send(type="ask_to_drive")
+        page.wait(lambda state: state["you"])
+        drive(page)
+        page.socket.close()
+        at_rest(watcher)
+        assert watcher.state["driver"] is None
+
+
+def test_only_the_driver_drives_and_everybody_stops(site):
+    with site.page() as ada, site.page("Bob") as bob:
+        assert ada.wait(lambda state: state["watchers"] == 1)["you"]
+        assert not bob.state["you"]
+        assert bob.state["driver_name"] == "Ada"
+        bob.u = [1.0, 1.0]
+        for message in (
+            {"type": "enable"},
+            {"type": "mode", "mode": "end_effector", "axes": 2},
+            {"type": "record", "on": True},
+            {"type": "reset"},
+            {"type": "hand_over", "to": bob.welcome["id"]},
+            {"type": "release"},
+        ):
+            bob.send(**message)
+        before = bob.state
+        time.sleep(0.4)
+        assert moved(before, bob.state) == 0.0
+        assert bob.state["mode"] == before["mode"]
+        assert bob.state["recording"] is None
+        assert ada.state["you"]
+        drive(ada)
+        bob.send(type="stop")
+        at_rest(ada)
+        assert "Bob pressed Stop." in ada.state["why"]
+
+
+def test_the_wheel_is_handed_over_and_the_arm_stops_for_it(site):
+    with site.page() as ada, site.page("Bob") as bob:
+        drive(ada)
+        bob.send(type="ask_to_drive")
+        assert ada.wait(lambda state: state["asking"])["asking_name"] == "Bob"
+        assert ada.state["phase"] == "moving"
+        ada.send(type="hand_over", to=bob.welcome["id"])
+        bob.wait(lambda state: state["you"])
+        at_rest(bob)
+        before = bob.state
+        time.sleep(0.2)  # Ada still pushes
+        assert moved(before, bob.state) == 0.0
+        drive(bob)
+
+
+def test_modes_can_be_switched_while_it_moves(site):
+    with site.page() as page:
+        drive(page)
+        for mode, axes in (("end_effector", 1), ("assisted", None), ("latent", None)):
+            page.send(type="mode", mode=mode, axes=axes)
+            page.wait(lambda state, mode=mode: state["mode"] == mode)
+            assert page.state["phase"] == "moving"
+
+
+def test_an_episode_ends_with_its_driver(site):
+    with site.page() as ada, site.page("Bob") as bob:
+        ada.send(type="record", on=True, task="stab")
+        assert bob.wait(lambda state: state["recording"] and state["recording"]["on"])
+        before = bob.state["recording"]["episodes"]
+        drive(ada)
+        ada.socket.close()
+        bob.wait(lambda state: not state["recording"]["on"] and state["recording"]["episodes"] > before)
+
+
+def test_help_shows_in_the_state(site):
+    with site.page() as page:
+        page.send(type="mode", mode="assisted")
+        drive(page)
+        state = page.wait(lambda state: state["alpha"] > 0.0)
+        assert state["alpha"] == pytest.approx(0.15)
+        assert state["bound_m"] > 0.0
+        assert sum(state["belief"]) == pytest.approx(1.0, abs=1e-3)
+        page.send(type="mode", mode="latent")
+        assert page.wait(lambda state: state["alpha"] == 0.0)["bound_m"] is None
+
+
+def test_ghosts_are_sent_again_only_when_they_have_moved(site):
+    with site.page() as page:
+        page.wait(lambda state: state["ghosts"])
+        time.sleep(0.3)  # those of the mode before are gone
+        assert {name: len(path) for name, path in page.state["ghosts"].items()} == dict.fromkeys(
+            ("up", "down", "left", "right"), 6
+        )
+        with site.raw() as socket:
+            socket.send(HELLO)
+            states = [json.loads(socket.recv()) for _ in range(15)][1:]
+            assert states[0]["ghosts"] is not None
+            assert all(state["ghosts"] is None for state in states[1:])
+
+
+def test_the_arm_goes_back_to_its_start_when_it_is_not_enabled(site):
+    with site.page() as page:
+        page.send(type="reset")
+        start = page.wait(lambda state: state["tick"] > 0)
+        time.sleep(0.3)
+        start = page.state
+        drive(page)
+        page.send(type="reset")
+        time.sleep(0.2)
+        assert page.state["phase"] == "moving"
+        page.send(type="stop")
+        at_rest(page)
+        assert moved(start, page.state) > 0.01
+        page.send(type="reset")
+        page.wait(lambda state: moved(start, state) < 1e-4)
+
+
+def test_pages_beyond_the_cap_are_turned_away(site):
+    held = []
+    try:
+        for _ in range(16):
+            context = site.raw()
+            held.append((context, context.__enter__()))
+        with pytest.raises(InvalidStatus), site.raw():
+            pass
+    finally:
+        for context, _ in held:
+            context.__exit__(None, None, None)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"origin": "http://evil.example"},
+        {"origin": None},
+        {"origin": "null"},
+        {"additional_headers": {"Host": "evil.example"}},
+    ],
+)
+def test_sockets_from_elsewhere_are_not_accepted(site, changes):
+    with pytest.raises((InvalidStatus, ValueError)), site.raw(**changes):
+        pass
+
+
+def ends(socket):
+    """The code that the server closes with."""
+    try:
+        for _ in range(200):
+            socket.recv(timeout=5)
+        raise AssertionError("the connection was not ended")
+    except ConnectionClosed as closed:
+        return closed.rcvd.code
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        "",
+        "{}",
+        "[" * 3000,
+        '{"type": "stop", "now": true}',
+        '{"type": "input", "seq": 1, "nonce": "", "u": [NaN, 0], "source": "pointer", "latched": false}',
+        '{"type": "input", "seq": 1, "nonce": "", "u": [0, 0, 0], "source": "pointer", "latched": false}',
+        HELLO,
+        b"\x00\x01",
+        json.dumps({"type": "stop", "pad": "x" * FRAME_LIMIT}),
+        "x" * (1 << 17),
+    ],
+    ids=["empty", "no type", "deep", "extra", "nan", "axes", "hello twice", "binary", "long", "huge"],
+)
+def test_what_is_no_message_ends_the_connection_and_stops_the_arm(site, frame):
+    with site.page() as ada:
+        drive(ada)
+        with site.raw() as socket:
+            socket.send(HELLO)
+            socket.recv()
+            socket.send(frame)
+            assert ends(socket) in (1008, 1009)
+        at_rest(ada)
+
+
+def test_the_first_message_must_be_hello(site):
+    with site.raw() as socket:
+        socket.send('{"type": "stop"}')
+        assert ends(socket) == 1008
+
+
+def test_a_flood_ends_the_connection(site):
+    with site.page() as ada:
+        drive(ada)
+        with site.raw() as socket:
+            socket.send(HELLO)
+            with suppress(ConnectionClosed):
+                for _ in range(int(3 * BURST)):
+                    socket.send('{"type": "trail_clear"}')
+            assert ends(socket) == 1008
+        at_rest(ada)
+
+
+def test_a_thousand_malformed_messages_crash_nothing_and_move_nothing(site):
+    rng = np.random.default_rng(0)
+    sound = ['{"type": "enable"}', HELLO, '{"type": "input", "seq": 1, "nonce": "00", "u": [1, 1]}']
+
+    async def storm():
+        from websockets.asyncio.client import connect
+
+        async def one():
+            text = bytearray(str(rng.choice(sound)).encode())
+            for _ in range(rng.integers(1, 6)):
+                at = int(rng.integers(len(text)))
+                text[at : at + int(rng.integers(0, 3))] = rng.bytes(int(rng.integers(0, 3)))
+            frame = bytes(text) if rng.random() < 0.3 else text.decode(errors="replace")
+            async with connect(site.address, origin=site.origin, compression=None) as socket:
+                if rng.random() < 0.5:
+                    await socket.send(HELLO)
+                await socket.send(frame)
+                await socket.close()
+
+        for _ in range(125):
+            await asyncio.gather(*(one() for _ in range(8)))
+
+    with site.page() as ada:
+        before = ada.state
+        asyncio.run(storm())
+        assert site.control.alive
+        assert moved(before, ada.state) == 0.0
+        assert ada.state["phase"] == "disengaged"
+    with site.page() as ada:
+        drive(ada)
+
+
+def post(site, path, **headers):
+    request = urllib.request.Request(f"{site.origin}{path}", method="POST", headers=headers)  # noqa: S310
+    with urllib.request.urlopen(request, timeout=5) as answer:  # noqa: S310
+        return answer.status
+
+
+def test_stop_works_without_a_socket(site):
+    with site.page() as ada:
+        drive(ada)
+        with pytest.raises(urllib.error.HTTPError):
+            post(site, "/stop")
+        assert ada.state["phase"] == "moving"
+        assert post(site, "/stop", Origin=site.origin) == 204
+        at_rest(ada)
+
+
+def get(site, path):
+    with urllib.request.urlopen(f"{site.origin}{path}", timeout=5) as answer:  # noqa: S310
+        return answer.read()
+
+
+def test_the_scene_has_a_pose_for_every_body(site, setting):
+    scene = json.loads(get(site, "/scene.json"))
+    with site.page() as page:
+        poses = np.array(page.state["bodies"])
+    assert len(scene["bodies"]) == len(poses) == setting.task.robot.dof + 1
+    np.testing.assert_allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, atol=1e-3)
+    assert sum(len(body["geoms"]) for body in scene["bodies"]) == setting.task.robot.model().ngeom
+    with pytest.raises(urllib.error.HTTPError):
+        get(site, "/mesh/0")

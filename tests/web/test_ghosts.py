@@ -1,0 +1,70 @@
+"""What is shown is what would happen."""
+
+import numpy as np
+import pytest
+
+from latentarm.robots.simulated import SimulatedArm
+from latentarm.types import Context, Input
+from latentarm.web.ghosts import GhostPaths
+from latentarm.web.setting import PERIOD_S
+
+DIRECTIONS = {"up": (0.0, 1.0), "down": (0.0, -1.0), "left": (-1.0, 0.0), "right": (1.0, 0.0)}
+
+
+def looked(setting, q, mode):
+    ghosts = GhostPaths(setting)
+    assert ghosts.newest is None
+    belief = np.full(len(setting.task.goals), 1.0 / len(setting.task.goals))
+    for direction in range(4):
+        ghosts.look(direction, Context(q, belief), mode)
+    return ghosts.newest
+
+
+def driven(setting, q, u, mode):
+    """Where the tool is after a second of a full deflection, through all safety filters."""
+    step, arm = setting.step(), SimulatedArm(setting.task.robot, q, PERIOD_S)
+    step.reset(q)
+    step.choose_mode(mode)
+    step(Input(np.zeros(2)), 0.0, q, 0.0)
+    step.enable()
+    for tick in range(1, 101):
+        arm.send(step(Input(np.array(u)), 0.0, arm.state(), tick * PERIOD_S).command)
+        arm.advance()
+    return setting.task.robot.chain.forward(arm.state()).position
+
+
+@pytest.mark.parametrize("mode", ["latent", "assisted", "end_effector"])
+def test_the_arm_goes_where_the_ghosts_show(setting, mode):
+    setting.help.on = mode == "assisted"
+    index = setting.mode_index(mode, 0)
+    at = setting.task.robot.chain.forward(setting.start).position
+    try:
+        ghosts = looked(setting, setting.start, index)
+        for name, u in DIRECTIONS.items():
+            shown = np.array(getattr(ghosts, name))[-1]
+            there = driven(setting, setting.start, u, index)
+            # The ramp, which ghosts leave out, costs a good part of the first second.
+            assert np.linalg.norm(shown - there) < 0.45 * np.linalg.norm(shown - at) + 0.005
+    finally:
+        setting.help.on = False
+
+
+def test_ghosts_do_not_go_through_the_table(setting):
+    low = setting.task.goals[1].configuration
+    chain = setting.task.robot.chain
+    index = setting.mode_index("end_effector", 1)
+    q = low
+    for _ in range(12):
+        path = np.array(looked(setting, q, index).left)
+        assert path[:, 2].min() > 0.0
+        step, arm = setting.step(), SimulatedArm(setting.task.robot, q, PERIOD_S)
+        step.reset(q)
+        step.choose_mode(index)
+        step(Input(np.zeros(2)), 0.0, q, 0.0)
+        step.enable()
+        for tick in range(1, 21):
+            arm.send(step(Input(np.array([-1.0, 0.0])), 0.0, arm.state(), tick * PERIOD_S).command)
+            arm.advance()
+        q = arm.state()
+    lowest = chain.forward(q).position
+    np.testing.assert_allclose(np.array(looked(setting, q, index).left)[-1], lowest, atol=0.03)
