@@ -211,8 +211,11 @@ class Step:
     def _falters(self, age_s: float) -> bool:
         """Whether fresh inputs are missing, but not yet for so long that the arm is disengaged."""
         timeout_s = self._config.input_timeout_s
-        late = timeout_s < age_s <= timeout_s + self._config.input_grace_s
-        return late and self._engagement.stopped is None
+        try:
+            late = timeout_s < age_s <= timeout_s + self._config.input_grace_s
+            return bool(late) and self._engagement.stopped is None
+        except Exception:  # noqa: BLE001 - an age that is no number is refused further on
+            return False
 
     def _driven(self, u: FloatArray, input_age_s: float, q: FloatArray, time_s: float) -> StepRecord:
         """Lines 6 to 10 for an input that wants motion, or at rest for a robot that helps there too."""
