@@ -63,8 +63,8 @@ class Homogeneous(NeuralModel):
     finds none that leads back. These lie on a closed curve that leaves the plane (for d = 2, of the first,
     third, fifth and seventh harmonics of the stick's angle), so that there is nearly always a direction that
     brings the tools closer, and more kinds of motion are had than there are axes. The price is that the
-    motion may turn up to seven times as fast as the stick between its axes;
-    `latentarm.metrics.turning` measures how much.
+    motion may turn several times as fast as the stick between its axes; `latentarm.metrics.turning`
+    measures how much.
 
     A network of the context gives the matrices. The encoder searches for the latent action whose action is
     nearest; it has no weights. What SCL (Przystupa et al., arXiv 2410.21441) does with d fixed directions is
