@@ -42,7 +42,7 @@ def test_every_condition_has_a_bar_in_every_panel(result, models, spread):
     ]
     figure = conditions_figure(results, models, TASKS, NOISES)
     assert_well_drawn(figure)
-    assert {*CONDITIONS, "the decoder's own limit", "0.1"} <= words_of(figure)
+    assert {*CONDITIONS, "the encoder's own choice", "0.1"} <= words_of(figure)
     assert len(figure.axes) == len(TASKS) * len(models)
     for axes in figure.axes:
         assert axes.get_yscale() == "log"

@@ -70,7 +70,7 @@ def test_every_condition_has_an_error_for_each_run(result):
         assert errors.shape == ((1,) if name == NO_ALIGN else (TINY.runs,))
         assert np.isfinite(errors).all()
         assert (errors > 0).all()
-    assert result.limit > 0
+    assert result.encoded > 0
     assert set(result.learn_s) == set(CONDITIONS) - {NO_ALIGN, "Manual Align"}
 
 
@@ -78,7 +78,7 @@ def test_a_cell_is_the_same_from_the_same_seed(learned, result):
     again = measure_cell(Cell(learned, 0.5))
     for name, errors in result.errors.items():
         np.testing.assert_array_equal(errors, again.errors[name])
-    assert again.limit == result.limit
+    assert again.encoded == result.encoded
     anew = learn_decoder(learned.cell)
     for name, tensor in learned.model.trained_.tensors.items():
         np.testing.assert_array_equal(tensor, anew.model.trained_.tensors[name])

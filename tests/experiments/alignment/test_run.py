@@ -58,7 +58,7 @@ def test_every_model_condition_and_noise_has_its_row(done):
     assert {row.measure for row in rows} <= set(UNITS) & set(NAMES)
     of = {(row.model, row.condition, row.measure): row for row in rows}
     for model in MODELS:
-        assert of[model, "the decoder's own limit", "relative_alignment_error"].n == 1
+        assert of[model, "the encoder's own choice", "relative_alignment_error"].n == 1
         for noise in ("0", "0.5"):
             for name in CONDITIONS:
                 row = of[model, f"{name}, noise {noise}", "relative_alignment_error"]

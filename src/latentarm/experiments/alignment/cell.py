@@ -49,13 +49,13 @@ class CellResult:
         cell: what was asked for.
         errors: condition -> (R,), relative error of each run on the held-out motions; (1,) where nothing is
             learned.
-        limit: the decoder's own, see `Scene.limit`.
+        encoded: the error of the encoder's own choice, see `Scene.encoded`.
         learn_s: condition -> how long all its runs took in one fit, s.
     """
 
     cell: Cell
     errors: Mapping[str, FloatArray]
-    limit: float
+    encoded: float
     learn_s: Mapping[str, float]
 
 
@@ -93,4 +93,4 @@ def _measure(cell: Cell, scene: Scene) -> CellResult:
         fitted = scene.learn(answers, config, runs)
         learn_s[name] = perf_counter() - began
         errors[name] = scene.errors(fitted.alignments)
-    return CellResult(cell, errors, scene.limit(), learn_s)
+    return CellResult(cell, errors, scene.encoded(), learn_s)

@@ -196,8 +196,9 @@ def _reading(preset: Preset) -> str:
   noise and in f's first weights. Motions are the same for every condition and noise. {NO_ALIGN} (z = u)
   learns nothing and has one figure.
 - {listed(FEW_ANSWERS)} are learned from the same {preset.answers} answers.
-- *The decoder's own limit* is the error with the latent action that the encoder would choose, which knows the
-  wanted motion: no alignment can be expected to do much better. An alignment may come out a little below it.
+- *The encoder's own choice* is the error with the latent action that the encoder would choose, which knows
+  the wanted motion. It looks for the nearest action in the joints, not at the tool, so that it is no bound: a
+  good alignment may come out below it.
 - The paper shows its figures as bars without printed numbers, for Plane and Reach & Pour. Its text says that
   single priors do twice as well as {WITHOUT_PRIORS}, that all of them do better still with the lowest mean
   and SD at every noise, and that this almost matches {IDEAL}.

@@ -16,7 +16,7 @@ ERROR: Final = "relative_alignment_error"
 ANSWERS: Final = "answers"
 """How many were asked for before asking stopped."""
 
-LIMIT: Final = "the decoder's own limit"
+ENCODED: Final = "the encoder's own choice"
 """Condition of the rows that say what the encoder's own latent actions come to."""
 
 
@@ -25,7 +25,7 @@ def rows_of(results: Sequence[CellResult], curves: Sequence[CurveResult]) -> lis
     rows: list[Row] = []
     for task, model in dict.fromkeys((result.cell.task, result.cell.model) for result in results):
         here = [result for result in results if (result.cell.task, result.cell.model) == (task, model)]
-        rows.append(summarise(Subject(STUDY, task, model, LIMIT), ERROR, [here[0].limit]))
+        rows.append(summarise(Subject(STUDY, task, model, ENCODED), ERROR, [here[0].encoded]))
         rows += [
             summarise(Subject(STUDY, task, model, under(name, result.cell.noise)), ERROR, result.errors[name])
             for result in here

@@ -84,10 +84,11 @@ class Scene:
             [relative_alignment_error(one, self.decoder, self.chain, self.test) for one in alignments]
         )
 
-    def limit(self) -> float:
-        """The decoder's own limit: the relative error with the latent action that the encoder would choose.
+    def encoded(self) -> float:
+        """The relative error with the latent action that the encoder would choose, which knows the motion.
 
-        An alignment may come out below it where a decoder does better than its encoder asks.
+        The encoder looks for the nearest action in the joints and not for the nearest place of the tool, so
+        that an alignment may come out below it.
         """
         motions = self.test.motions
         z = self.model.encode(motions.context, motions.action)[0]

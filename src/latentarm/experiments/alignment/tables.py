@@ -6,7 +6,7 @@ from latentarm.experiments.alignment.cell import CellResult
 from latentarm.experiments.alignment.conditions import CONDITIONS
 from latentarm.experiments.alignment.curves import CHOICES, CurveResult
 from latentarm.experiments.alignment.hypotheses import Comparison
-from latentarm.experiments.alignment.rows import LIMIT
+from latentarm.experiments.alignment.rows import ENCODED
 from latentarm.experiments.alignment.targets import Target
 from latentarm.experiments.studies.pages import markdown_table
 from latentarm.experiments.studies.statistics import format_p
@@ -18,9 +18,9 @@ from latentarm.types import FloatArray
 def condition_table(results: Sequence[CellResult]) -> str:
     """The relative errors of one task and model: conditions down, noises across."""
     lines = [[name, *(_mean_and_sd(result.errors[name]) for result in results)] for name in CONDITIONS]
-    limit = [LIMIT, *(format_figure(result.limit, None) for result in results)]
+    encoded = [ENCODED, *(format_figure(result.encoded, None) for result in results)]
     head = ["relative error, simulated", *(f"noise {result.cell.noise:g}" for result in results)]
-    return markdown_table(head, [*lines, limit])
+    return markdown_table(head, [*lines, encoded])
 
 
 def curve_table(curve: CurveResult) -> str:

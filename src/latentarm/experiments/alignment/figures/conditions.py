@@ -7,7 +7,7 @@ import numpy as np
 
 from latentarm.experiments.alignment.cell import CellResult
 from latentarm.experiments.alignment.conditions import CONDITIONS, IDEAL
-from latentarm.experiments.alignment.rows import LIMIT
+from latentarm.experiments.alignment.rows import ENCODED
 from latentarm.experiments.studies.panels import plain_ticks, title
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
 
@@ -53,8 +53,8 @@ def conditions_figure(
     for axes in panels[-1]:
         axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
         axes.set_xlabel("coefficient of variation of answers", fontsize=FONT_SIZE)
-    (line, *bars), (limit, *names) = panels[0, 0].get_legend_handles_labels()
-    labels = [*names, limit]
+    (line, *bars), (encoded, *names) = panels[0, 0].get_legend_handles_labels()
+    labels = [*names, encoded]
     figure.legend(
         [*bars, line],
         labels,
@@ -69,7 +69,7 @@ def conditions_figure(
 
 
 def _draw(axes: "Axes", results: Sequence[CellResult]) -> None:
-    """All conditions of one task and model, one group per noise, and the decoder's own limit."""
+    """All conditions of one task and model, one group per noise, and the encoder's own choice."""
     width = GROUP / len(CONDITIONS)
     groups = np.arange(len(results))
     for index, name in enumerate(CONDITIONS):
@@ -88,11 +88,11 @@ def _draw(axes: "Axes", results: Sequence[CellResult]) -> None:
             zorder=2,
         )
     axes.axhline(
-        results[0].limit,
+        results[0].encoded,
         color="black",
         linestyle=":",
         linewidth=0.9,
-        label=LIMIT,
+        label=ENCODED,
         zorder=3,
     )
     tidy(axes)
@@ -100,7 +100,7 @@ def _draw(axes: "Axes", results: Sequence[CellResult]) -> None:
 
 
 def _log_axis(axes: "Axes", results: Sequence[CellResult]) -> None:
-    """A logarithmic axis around all means, SDs upwards and limits."""
+    """A logarithmic axis around all means, SDs upwards and the encoder's choice."""
     means = [float(values.mean()) for result in results for values in result.errors.values()]
     spreads = [
         float(values.mean() + values.std(ddof=1))
@@ -109,5 +109,5 @@ def _log_axis(axes: "Axes", results: Sequence[CellResult]) -> None:
         if len(values) > 1
     ]
     axes.set_yscale("log")
-    axes.set_ylim(min(means + [result.limit for result in results]) / ROOM, max(means + spreads) * ROOM)
+    axes.set_ylim(min(means + [result.encoded for result in results]) / ROOM, max(means + spreads) * ROOM)
     plain_ticks(axes)
