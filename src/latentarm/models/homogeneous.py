@@ -10,6 +10,7 @@ from torch import Tensor
 from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.decoder import BEND_SIZE, NORM_FLOOR
 from latentarm.models.layout import HOMOGENEOUS_DAMPING_M2, ORDERS, PLACE, Dimensions
+from latentarm.models.metric import applied, inner
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.objectives import reconstruction_error
@@ -130,9 +131,9 @@ def _geometry(networks: Networks, context: Tensor, joints: int) -> _Geometry:
     for axis in range(latent):
         column, twist = columns[..., axis], twists[..., axis]
         for other, other_twist in zip(straight, straight_twist, strict=True):
-            along = _inner(column, twist, other, other_twist)
+            along = inner(column, twist, other, other_twist, HOMOGENEOUS_DAMPING_M2)
             column, twist = column - along * other, twist - along * other_twist
-        size = (_inner(column, twist, column, twist) + NORM_FLOOR).rsqrt()
+        size = (inner(column, twist, column, twist, HOMOGENEOUS_DAMPING_M2) + NORM_FLOOR).rsqrt()
         column, twist = column * size, twist * size
         along = (twist[..., None] * bend_twist).sum(-2, keepdim=True)
         along = along + HOMOGENEOUS_DAMPING_M2 * (column[..., None] * bend).sum(-2, keepdim=True)
@@ -145,12 +146,6 @@ def _geometry(networks: Networks, context: Tensor, joints: int) -> _Geometry:
     )
 
 
-def _inner(first: Tensor, first_twist: Tensor, second: Tensor, second_twist: Tensor) -> Tensor:
-    """``a^T G b`` of joint velocities (..., m) with weighted twists (..., 6 k): (..., 1)."""
-    joints = HOMOGENEOUS_DAMPING_M2 * (first * second).sum(-1, keepdim=True)
-    return (first_twist * second_twist).sum(-1, keepdim=True) + joints
-
-
 def _odd_degrees(direction: Tensor) -> Tensor:
     """As `latentarm.models.decoder.odd_degrees`, in torch."""
     twice = 4 * direction.square() - 2
@@ -161,17 +156,12 @@ def _odd_degrees(direction: Tensor) -> Tensor:
     return torch.cat(parts, dim=-1)
 
 
-def _applied(matrix: Tensor, vector: Tensor) -> Tensor:
-    """``A v`` of (..., k, d) and (..., d): (..., k)."""
-    return (matrix * vector[..., None, :]).sum(-1)
-
-
 def _decoded(geometry: _Geometry, latent: Tensor) -> Tensor:
     """Phi of latents (S, B, d): (S, B, m)."""
     radius = torch.linalg.vector_norm(latent, dim=-1, keepdim=True)
     degrees = _odd_degrees(latent / radius.clamp_min(NORM_FLOOR))
-    led, twist = _applied(geometry.columns, degrees), _applied(geometry.twists, degrees)
-    return radius * led * (_inner(led, twist, led, twist) + NORM_FLOOR).rsqrt()
+    led, twist = applied(geometry.columns, degrees), applied(geometry.twists, degrees)
+    return radius * led * (inner(led, twist, led, twist, HOMOGENEOUS_DAMPING_M2) + NORM_FLOOR).rsqrt()
 
 
 @torch.no_grad()
@@ -206,8 +196,8 @@ def _nearest(geometry: _Geometry, action: Tensor) -> Tensor:
             best = _unit(best + (spacing * vertex.clamp(-1, 1))[..., None] * tangent)
         spacing /= 4
     degrees = _odd_degrees(best)
-    led, twist = _applied(geometry.columns, degrees), _applied(geometry.twists, degrees)
-    size = (_inner(led, twist, led, twist) + NORM_FLOOR).sqrt()
+    led, twist = applied(geometry.columns, degrees), applied(geometry.twists, degrees)
+    size = (inner(led, twist, led, twist, HOMOGENEOUS_DAMPING_M2) + NORM_FLOOR).sqrt()
     push = (led * action).sum(-1, keepdim=True) * size / (led.square().sum(-1, keepdim=True) + NORM_FLOOR)
     return push * best
 

@@ -10,6 +10,7 @@ from torch import Tensor
 from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.decoder import BEND_SIZE, NORM_FLOOR
 from latentarm.models.layout import ISOMETRIC_DAMPING_M2, PLACE, TWIST, Dimensions
+from latentarm.models.metric import applied, inner
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
 from latentarm.models.objectives import reconstruction_error
@@ -164,11 +165,6 @@ def _gram(first: Tensor, second: Tensor) -> Tensor:
     return (first[..., :, None] * second[..., None, :]).sum(-3)
 
 
-def _applied(matrix: Tensor, vector: Tensor) -> Tensor:
-    """``A v`` of (..., k, d) and (..., d): (..., k)."""
-    return (matrix * vector[..., None, :]).sum(-1)
-
-
 def _orthonormal(columns: Tensor, twists: Tensor) -> tuple[Tensor, Tensor]:
     """Gram-Schmidt in the metric over columns (S, B, m, d) and their weighted twists (S, B, 6 k, d)."""
     done: list[Tensor] = []
@@ -176,19 +172,12 @@ def _orthonormal(columns: Tensor, twists: Tensor) -> tuple[Tensor, Tensor]:
     for raw, raw_twist in zip(columns.unbind(-1), twists.unbind(-1), strict=True):
         column, twist = raw, raw_twist
         for other, other_twist in zip(done, done_twist, strict=True):
-            along = _inner(column, twist, other, other_twist)
+            along = inner(column, twist, other, other_twist, ISOMETRIC_DAMPING_M2)
             column, twist = column - along * other, twist - along * other_twist
-        size = (_inner(column, twist, column, twist) + NORM_FLOOR).rsqrt()
+        size = (inner(column, twist, column, twist, ISOMETRIC_DAMPING_M2) + NORM_FLOOR).rsqrt()
         done.append(column * size)
         done_twist.append(twist * size)
     return torch.stack(done, dim=-1), torch.stack(done_twist, dim=-1)
-
-
-def _inner(first: Tensor, first_twist: Tensor, second: Tensor, second_twist: Tensor) -> Tensor:
-    """``a^T G b`` of joint velocities (..., m) with weighted twists (..., 6 k): (..., 1)."""
-    return (first_twist * second_twist).sum(-1, keepdim=True) + ISOMETRIC_DAMPING_M2 * (first * second).sum(
-        -1, keepdim=True
-    )
 
 
 def _decoded(geometry: _Geometry, gain: _Gain, latent: Tensor) -> Tensor:
@@ -196,9 +185,9 @@ def _decoded(geometry: _Geometry, gain: _Gain, latent: Tensor) -> Tensor:
     radius = torch.linalg.vector_norm(latent, dim=-1, keepdim=True)
     direction = latent / radius.clamp_min(NORM_FLOOR)
     turn = _turn(radius)
-    bend, bend_twist = _applied(geometry.bend, direction), _applied(geometry.bend_twist, direction)
-    bend_size = _inner(bend, bend_twist, bend, bend_twist)
-    led = _applied(geometry.straight, direction) + turn * bend
+    bend, bend_twist = applied(geometry.bend, direction), applied(geometry.bend_twist, direction)
+    bend_size = inner(bend, bend_twist, bend, bend_twist, ISOMETRIC_DAMPING_M2)
+    led = applied(geometry.straight, direction) + turn * bend
     return gain.at(radius) * led * (1 + turn.square() * bend_size).rsqrt()
 
 
@@ -221,7 +210,7 @@ def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
     overlap, cross, spread = _gram(straight, straight), _gram(straight, bend), _gram(bend, bend)
     bend_metric = _entries(_gram(bend_twist, bend_twist) + ISOMETRIC_DAMPING_M2 * spread)
     overlap, cross, spread = _entries(overlap), _entries(cross + cross.mT), _entries(spread)
-    on_straight, on_bend = _applied(straight.mT, action)[..., None], _applied(bend.mT, action)[..., None]
+    on_straight, on_bend = applied(straight.mT, action)[..., None], applied(bend.mT, action)[..., None]
     axes = range(len(overlap))
 
     def fit(radius: Tensor) -> tuple[Tensor, list[Tensor]]:
