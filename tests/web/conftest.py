@@ -32,7 +32,7 @@ from latentarm.web.supervisor import ControlProcess
 @pytest.fixture(scope="session")
 def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run for the table: principal components of a few demonstrations."""
-    from latentarm.experiments.training import TrainConfig, train_run
+    from latentarm.runs.training import TrainConfig, train_run
 
     folder = tmp_path_factory.mktemp("trained")
     write_dataset(TableTop().demonstrate(12, np.random.default_rng(0)), folder / "table")
