@@ -1,5 +1,7 @@
 """Asking a person, question by question, what they mean by their input."""
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from typing import Final, Literal, final
 
@@ -15,11 +17,11 @@ from latentarm.alignment.queries import (
     next_motion,
     novelty,
 )
-from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
+from latentarm.alignment.training import FitConfig, FittedAlignments, Report, fit_alignments, unheard
 from latentarm.errors import UserError
-from latentarm.experiments.asking import Person, Question, Say
 from latentarm.kinematics.chain import Chain
 from latentarm.models.model import LatentActionModel
+from latentarm.runs.person import Person, Question, Say
 from latentarm.types import Demonstrations, FloatArray
 
 CANDIDATES: Final = 100
@@ -37,6 +39,13 @@ ENSEMBLE: Final = 5
 QUICK: Final = FitConfig(steps=150)
 """How an ensemble is learned between two questions, while a person waits."""
 
+Watch = Callable[[], AbstractContextManager[Report]]
+
+
+def unwatched() -> AbstractContextManager[Report]:
+    """A `Watch` without anybody."""
+    return nullcontext(unheard)
+
 
 @final
 @dataclass(frozen=True, eq=False)
@@ -50,7 +59,7 @@ class Scene:
         motions: that may be asked about.
         unlabelled: (M, c).
         rng: of the ensembles.
-        progress: whether learning shows a bar.
+        watch: opened for each fit; says whom to tell how far it is.
     """
 
     model: LatentActionModel
@@ -59,19 +68,20 @@ class Scene:
     motions: Motions
     unlabelled: FloatArray
     rng: np.random.Generator
-    progress: bool
+    watch: Watch
 
     def learn(self, answers: list[Answers], config: FitConfig) -> FittedAlignments:
         """An alignment for each entry, from seeds 0, 1, ..."""
-        return fit_alignments(
-            self.model,
-            self.chain,
-            answers,
-            self.unlabelled,
-            config,
-            seed_index=self.seed_index,
-            progress=self.progress,
-        )
+        with self.watch() as report:
+            return fit_alignments(
+                self.model,
+                self.chain,
+                answers,
+                self.unlabelled,
+                config,
+                seed_index=self.seed_index,
+                report=report,
+            )
 
 
 def shown(
