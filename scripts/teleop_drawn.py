@@ -67,9 +67,9 @@ def main() -> None:
     parser.add_argument("--hardware", action="store_true", help="draw with the graphics processor")
     parser.add_argument("--out", type=Path)
     given = parser.parse_args()
-    with served(given.run) as address, chromium(software=not given.hardware) as browser:
+    with served(given.run) as site, chromium(software=not given.hardware) as browser:
         page = browser.new_page(viewport={"width": 1280, "height": 800})
-        page.goto(address)
+        page.goto(site.address)
         page.locator(".label").first.wait_for(state="attached")
         delays, enables = measure(page, given.inputs)
     figures = {

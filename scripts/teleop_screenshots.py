@@ -66,7 +66,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
-    with served(given.run) as address, chromium() as browser:
+    with served(given.run) as site, chromium() as browser:
         for size_name, size in (("desk", DESK), ("phone", PHONE)):
             for scheme in ("light", "dark"):
                 for name, act in SHOTS.items():
@@ -75,7 +75,7 @@ def main() -> None:
                         viewport=size, color_scheme=scheme, device_scale_factor=2, reduced_motion="reduce"
                     )
                     page = context.new_page()
-                    page.goto(address)
+                    page.goto(site.address)
                     page.locator(".label").first.wait_for(state="attached")
                     page.wait_for_timeout(SETTLE_MS)
                     page.get_by_role("radio", name="Learned, with help").check()
