@@ -14,6 +14,9 @@ Say = Callable[[str], None]
 
 Kind = Literal["person", "simulated person"]
 
+Reply = FloatArray | Literal["back"] | None
+"""An input (d,), None where they would not know, or ``back`` to be asked the question before once more."""
+
 
 @final
 @dataclass(frozen=True, eq=False)
@@ -46,8 +49,8 @@ class Person(ABC):
         """As the profile keeps it."""
 
     @abstractmethod
-    def answer(self, question: Question) -> FloatArray | None:
-        """The input (d,) by which they would ask for the motion, or None where they would not know.
+    def answer(self, question: Question) -> Reply:
+        """The input by which they would ask for the motion.
 
         Raises:
             UserError: there is nobody to ask any more.

@@ -129,10 +129,17 @@ def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRu
         row = next_motion(novelty(chain, motions, asked), asked)
         asked.append(row)
         motion = motions[np.array([row])]
-        u = person.answer(Question(len(answered) + 1, count, motion, chain, reach_m, scene.model.latent_dim))
-        if u is None:
+        reply = person.answer(
+            Question(len(answered) + 1, count, motion, chain, reach_m, scene.model.latent_dim)
+        )
+        if isinstance(reply, str):
+            for again in asked[-2:]:
+                answered.pop(again, None)
+            del asked[-2:], history[max(len(answered) - TOO_FEW + 1, 0) :]
             continue
-        answered[row] = u
+        if reply is None:
+            continue
+        answered[row] = reply
         if TOO_FEW <= len(answered) < count:
             so_far = _answers(motions, answered)
             ensemble = scene.learn(bootstrap(so_far, ENSEMBLE, scene.rng), QUICK).alignments
