@@ -203,6 +203,20 @@ def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
     assert "Stop the arm first." in {report.why for report in desk.reports}
 
 
+@pytest.mark.parametrize("u", [(1.0, 0.0), (0.0, 1.0), (-1.0, -1.0)])
+def test_whoever_lets_go_finds_the_arm_at_rest(desk, u):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(*(u if 0.5 <= now_s < 1.4 else (0.0, 0.0)))
+
+    desk.each_tick = tick
+    desk.run(2.0)
+    moving = desk.times()[desk.speeds() > 0.0]
+    assert moving[-1] - 1.4 < 0.15
+    # Enabled all the while: only the end of the loop has stopped it.
+    assert all(record.command.stop is None for record in desk.records if 0.6 < record.time_s < 1.9)
+
+
 def test_an_episode_is_in_the_journal(desk, tmp_path):
     def tick(now_s):
         enabled_at(desk, now_s)
@@ -220,7 +234,7 @@ def test_an_episode_is_in_the_journal(desk, tmp_path):
     assert episode.complete
     assert episode.header.task == "stab the carrot"
     assert not episode.records[-1].command.velocity.any()
-    assert len(episode.records) == desk.reports[-1].recording.samples == pytest.approx(150, abs=10)
+    assert len(episode.records) == desk.reports[-1].recording.samples == pytest.approx(115, abs=10)
     assert desk.writer.status.episodes == 1
 
 
