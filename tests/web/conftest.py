@@ -117,6 +117,7 @@ class Client:
     socket: ClientConnection
     state: dict[str, Any] = field(default_factory=dict)
     welcome: dict[str, Any] = field(default_factory=dict)
+    workshop: dict[str, Any] = field(default_factory=dict)
     refused: str | None = None
     closed: int | None = None
     u: list[float] | None = None
@@ -162,6 +163,8 @@ class Client:
                     self.state = message
                 elif message["type"] == "welcome":
                     self.welcome = message
+                elif message["type"] == "workshop":
+                    self.workshop = message
                 else:
                     self.refused = message["why"]
         self.closed = self.socket.close_code
