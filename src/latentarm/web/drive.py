@@ -180,14 +180,14 @@ class DriveSocket:
                 self._bench.cancel()
             case PickRun(run=run):
                 self._bench.choose_run(run)
-            case PersonaliseMessage():
-                self._bench.personalising.take(message)
             case HandOver(to=to):
                 if self._sessions.hand_over(page, to):
                     self._wheel_changed("The wheel was handed over.")
             case Release():
                 if self._sessions.release(page):
                     self._wheel_changed("The driver has given up the wheel.")
+            case _ if isinstance(message, PersonaliseMessage):
+                self._bench.personalising.take(message)
             case _:
                 pass
 

@@ -33,7 +33,16 @@ class Page:
     styles: tuple[str, ...] = ()
 
 
-PAGES = (Page("/", "Drive", "drive.html", "main.js", ("workbench.css", "drive.css")),)
+PAGES = (
+    Page("/", "Drive", "drive.html", "main.js", ("workbench.css", "drive.css")),
+    Page(
+        "/personalise",
+        "Personalise",
+        "personalise.html",
+        "personalise.js",
+        ("workbench.css", "personalise.css"),
+    ),
+)
 
 _COMMON_STYLES = ("tokens.css", "page.css")
 

@@ -17,6 +17,8 @@ export class Connection extends EventTarget {
     this.welcome = null;
     /** @type {any} The newest state. */
     this.state = null;
+    /** @type {any} What is learned, tried and kept. */
+    this.workshop = null;
     this.open = false;
     this._sequence = 0;
     this._heardAt = -Infinity;
@@ -93,6 +95,7 @@ export class Connection extends EventTarget {
   _heard(message) {
     this._heardAt = performance.now();
     if (message.type === "welcome") this.welcome = message;
+    if (message.type === "workshop") this.workshop = message;
     // Ghosts are left out while they have not changed.
     if (message.type === "state") {
       this.state = { ...message, ghosts: message.ghosts ?? this.state?.ghosts ?? null };

@@ -5,6 +5,7 @@ import { Ghosts } from "./ghosts.js";
 import { Labels } from "./labels.js";
 import { ArmScene } from "./scene.js";
 import { Views } from "./views.js";
+import { Ways } from "./ways.js";
 
 /** @typedef {import("./dpad.js").Direction} Direction */
 
@@ -18,6 +19,7 @@ export class Drawing {
     this._views = new Views(elements.canvas, elements, scene);
     this._labels = new Labels(this._views);
     this._ghosts = new Ghosts(scene.scene, this._labels);
+    this._ways = new Ways(scene.scene);
     this._still = matchMedia("(prefers-reduced-motion: reduce)");
     this._tick = -1;
     this._shown = "";
@@ -54,17 +56,40 @@ export class Drawing {
     const likeliest = state.belief ? state.belief.indexOf(Math.max(...state.belief)) : -1;
     this._scene.bound(wanted.showBound ? state.bound_m : null, likeliest);
     this._scene.showTrail(wanted.showTrail);
-    this._scene.goals.forEach((/** @type {any} */ goal, /** @type {number} */ index) => {
-      const share = state.belief ? `${Math.round(100 * state.belief[index])} %` : undefined;
-      this._labels.set(`goal-${index}`, new THREE.Vector3(...goal.position), goal.name, { share });
-    });
+    this._scene.markTool(true);
+    this._nameGoals(state.belief);
     this._ghosts.show(paths, pressed, wanted.showGhosts);
-    if (this._first || this._views.seat !== wanted.seat) {
-      this._first = false;
-      this._views.seat = /** @type {"facing" | "behind"} */ (wanted.seat);
-      this._scene.advance(performance.now());
-      this._views.layOut();
-    }
+    this._lookFrom(/** @type {"facing" | "behind"} */ (wanted.seat));
+    this._views.invalidate();
+  }
+
+  /**
+   * A motion's pose instead of the arm's own; without tool, trail and belief, which are the arm's.
+   *
+   * @param {number[][]} bodies
+   * @param {"facing" | "behind"} seat
+   */
+  showPose(bodies, seat) {
+    this._shown = "";
+    this._scene.markTool(false);
+    this._scene.showTrail(false);
+    this._scene.take({ bodies, tool: this._scene.tool.toArray() }, false);
+    this._scene.believe(null);
+    this._scene.bound(null, -1);
+    this._nameGoals(null);
+    this._lookFrom(seat);
+    this._views.invalidate();
+  }
+
+  /** A second arm that can be seen through, or none. @param {number[][] | null} bodies */
+  shadow(bodies) {
+    this._scene.shadow(bodies);
+    this._views.invalidate();
+  }
+
+  /** The ways of the tools along a motion; none for an empty list. @param {number[][][]} ways */
+  showWays(ways) {
+    this._ways.show(ways);
     this._views.invalidate();
   }
 
@@ -76,6 +101,24 @@ export class Drawing {
   repaint() {
     this._scene.repaint();
     this._ghosts.repaint();
+    this._ways.repaint();
     this._views.invalidate();
+  }
+
+  /** @param {number[] | null} belief */
+  _nameGoals(belief) {
+    this._scene.goals.forEach((/** @type {any} */ goal, /** @type {number} */ index) => {
+      const share = belief ? `${Math.round(100 * belief[index])} %` : undefined;
+      this._labels.set(`goal-${index}`, new THREE.Vector3(...goal.position), goal.name, { share });
+    });
+  }
+
+  /** @param {"facing" | "behind"} seat */
+  _lookFrom(seat) {
+    if (!this._first && this._views.seat === seat) return;
+    this._first = false;
+    this._views.seat = seat;
+    this._scene.advance(performance.now());
+    this._views.layOut();
   }
 }

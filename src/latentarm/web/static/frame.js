@@ -41,5 +41,11 @@ export function attachFrame({ drop = () => {}, repaint = () => {} } = {}) {
     write(part("latch-max"), String(limits.latch_max_s));
     dialog.offer(profiles);
   });
+  connection.addEventListener("workshop", () => {
+    const { profiles } = connection.workshop;
+    if (!connection.welcome || profiles.join() === connection.welcome.profiles.join()) return;
+    connection.welcome.profiles = profiles;
+    dialog.offer(profiles);
+  });
   return { settings, connection, status, seat, stop, dialog };
 }

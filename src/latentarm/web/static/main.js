@@ -10,10 +10,11 @@ import { attachKeyboard } from "./keyboard.js";
 import { attachModes } from "./modes.js";
 import { personal, listGhosts } from "./paths.js";
 import { attachRecording } from "./recording.js";
-import { attachScanning } from "./scanning.js";
+import { attachScanning, DIRECTION_CHOICES } from "./scanning.js";
 import { attachSeat } from "./seat.js";
 import { NO_PROFILE } from "./settings.js";
 import { attachStick } from "./stick.js";
+import { attachTrialBanner, TRIAL } from "./trial.js";
 
 /** Words beside the views change no more often than this, ms. */
 const WORDS_MS = 250;
@@ -45,6 +46,7 @@ part("enable").addEventListener("click", enable);
 
 const modes = attachModes({ mode: part("mode"), axes: part("axes") }, connection);
 attachSeat({ text: part("seat"), ask: part("ask"), handOver: part("hand-over"), release: part("release") }, connection);
+attachTrialBanner(connection, settings, seat);
 attachRecording({ button: part("record"), task: part("record-task"), text: part("record-text") }, connection);
 
 const refused = () => status.halted("the arm is not enabled");
@@ -52,7 +54,11 @@ attachStick(part("stick"), part("stick-value"), inputs, settings);
 attachDpad(part("dpad"), part("dpad-help"), inputs, settings, refused);
 const switches = attachScanning(
   { list: part("scan"), press: part("switch"), next: part("switch-next"), help: part("scan-help") },
-  inputs, settings, { enable, stop, nextMode: modes.next },
+  inputs, settings, () => {
+    const mode = { id: "mode", label: "Other mode", act: modes.next };
+    return inputs.live ? [...DIRECTION_CHOICES, mode, { id: "stop", label: "Stop", act: stop }]
+      : [{ id: "enable", label: "Enable", act: enable }, mode];
+  },
 );
 attachKeyboard(inputs, settings, { enable, nextMode: modes.next, axes: modes.axes });
 attachGamepad(inputs, settings, { enable, stop, press: switches.press });
@@ -137,7 +143,8 @@ function chooseProfile() {
   const { state, welcome } = connection;
   const { profile } = settings.values;
   const known = profile === NO_PROFILE || welcome?.profiles.includes(profile);
-  if (!known || !connection.driving || connection.engaged || profile === profileAsked) return;
+  // What is being tried is not put aside by an older choice.
+  if (!known || !connection.driving || connection.engaged || profile === profileAsked || state.profile === TRIAL) return;
   profileAsked = profile;
   const name = profile === NO_PROFILE ? null : profile;
   if (name !== state.profile) connection.send("profile", { name });
