@@ -220,11 +220,10 @@ class Cockpit(InputSource):
         if self._step.stopped is None or not self._step.at_rest:
             self._say("Stop the arm first.")
             return
-        if isinstance(change, ChooseRun):
-            # An episode is of one robot and one set of goals.
+        if not isinstance(change, ChooseProfile):
+            # An episode is one motion of one arm: it ends before the arm is put somewhere else.
             self._writer.end()
             self._ending_episode = False
-            self._say("Loading what you chose …")
         self._change = change
         self._loop.finish()
 

@@ -42,6 +42,7 @@ PAGES = (
         "personalise.js",
         ("workbench.css", "personalise.css"),
     ),
+    Page("/teach", "Teach", "teach.html", "teach.js", ("workbench.css", "teach.css")),
 )
 
 _COMMON_STYLES = ("tokens.css", "page.css")

@@ -17,9 +17,10 @@ export function write(element, text) {
 }
 
 /**
- * @param {{drop?: () => void, repaint?: () => void}} [page] what this page lets go of at a Stop, and draws anew
+ * @param {{drop?: () => void, repaint?: () => void, otherRun?: () => void}} [page] what this page lets go of at a Stop,
+ *   draws anew, and does when another run has been loaded
  */
-export function attachFrame({ drop = () => {}, repaint = () => {} } = {}) {
+export function attachFrame({ drop = () => {}, repaint = () => {}, otherRun = () => location.reload() } = {}) {
   const settings = new Settings();
   const connection = new Connection(settings.name);
   const status = attachStatus({ line: part("status"), text: part("status-text") }, connection);
@@ -41,6 +42,7 @@ export function attachFrame({ drop = () => {}, repaint = () => {} } = {}) {
     write(part("latch-max"), String(limits.latch_max_s));
     dialog.offer(profiles);
   });
+  connection.addEventListener("otherrun", otherRun);
   connection.addEventListener("workshop", () => {
     const { profiles } = connection.workshop;
     if (!connection.welcome || profiles.join() === connection.welcome.profiles.join()) return;

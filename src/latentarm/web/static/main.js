@@ -47,7 +47,7 @@ part("enable").addEventListener("click", enable);
 const modes = attachModes({ mode: part("mode"), axes: part("axes") }, connection);
 attachSeat({ text: part("seat"), ask: part("ask"), handOver: part("hand-over"), release: part("release") }, connection);
 attachTrialBanner(connection, settings, seat);
-attachRecording({ button: part("record"), task: part("record-task"), text: part("record-text") }, connection);
+attachRecording({ button: part("record"), task: part("record-task"), text: part("record-text"), teach: part("record-teach") }, connection);
 
 const refused = () => status.halted("the arm is not enabled");
 attachStick(part("stick"), part("stick-value"), inputs, settings);
