@@ -42,15 +42,21 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
     """One browser for all tests; each opens pages of its own in it."""
-    found = next((path for name in NAMES if (path := shutil.which(name))), None)
-    if found is None:
-        pytest.skip(f"No Chromium is installed: looked for {', '.join(NAMES)}.")
+    found = find_chromium()
     # Chromium does not run sandboxed as root, which is what containers run as.
     sandbox = ("--no-sandbox",) if os.getuid() == 0 else ()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=found, args=[*SOFTWARE_GL, *sandbox])
         yield browser
         browser.close()
+
+
+def find_chromium() -> str:
+    """The Chromium of this machine; whoever asks is skipped where there is none."""
+    found = next((path for name in NAMES if (path := shutil.which(name))), None)
+    if found is None:
+        pytest.skip(f"No Chromium is installed: looked for {', '.join(NAMES)}.")
+    return found
 
 
 @pytest.fixture(scope="session")

@@ -22,7 +22,7 @@ export class Drawing {
     this._ways = new Ways(scene.scene);
     this._still = matchMedia("(prefers-reduced-motion: reduce)");
     this._tick = -1;
-    this._shown = "";
+    this._shown = this._held = "";
     this._first = true;
     // For scripts that measure how long an input takes to be seen.
     this._views.afterFrame.push(() => {
@@ -46,10 +46,13 @@ export class Drawing {
    * @param {import("./settings.js").Values} wanted
    */
   show(state, paths, pressed, wanted) {
-    // An arm at rest needs no new frame.
-    const shown = JSON.stringify([state.bodies, state.belief, state.bound_m, paths, pressed, wanted]);
-    if (shown === this._shown) return;
+    // An arm at rest needs no new frame, and a press alone none that would be in the way of its motion.
+    const shown = JSON.stringify([state.bodies, state.belief, state.bound_m, paths, wanted]);
+    const held = String(pressed);
+    if (shown === this._shown && held === this._held) return;
+    const presses = shown === this._shown;
     this._shown = shown;
+    this._held = held;
     this._tick = state.tick;
     this._scene.take(state, this._views.smooth && !this._still.matches);
     this._scene.believe(state.belief);
@@ -60,11 +63,12 @@ export class Drawing {
     this._nameGoals(state.belief);
     this._ghosts.show(paths, pressed, wanted.showGhosts);
     this._lookFrom(/** @type {"facing" | "behind"} */ (wanted.seat));
-    this._views.invalidate();
+    if (presses) this._views.invalidateSoon();
+    else this._views.invalidate();
   }
 
   /**
-   * A motion's pose instead of the arm's own; without tool, trail and belief, which are the arm's.
+   * A motion's pose instead of the arm's own; without names, tool, trail and belief, which would cover it.
    *
    * @param {number[][]} bodies
    * @param {"facing" | "behind"} seat
@@ -76,7 +80,7 @@ export class Drawing {
     this._scene.take({ bodies, tool: this._scene.tool.toArray() }, false);
     this._scene.believe(null);
     this._scene.bound(null, -1);
-    this._nameGoals(null);
+    this._nameGoals(null, false);
     this._lookFrom(seat);
     this._views.invalidate();
   }
@@ -105,11 +109,11 @@ export class Drawing {
     this._views.invalidate();
   }
 
-  /** @param {number[] | null} belief */
-  _nameGoals(belief) {
+  /** @param {number[] | null} belief @param {boolean} [shown] */
+  _nameGoals(belief, shown = true) {
     this._scene.goals.forEach((/** @type {any} */ goal, /** @type {number} */ index) => {
       const share = belief ? `${Math.round(100 * belief[index])} %` : undefined;
-      this._labels.set(`goal-${index}`, new THREE.Vector3(...goal.position), goal.name, { share });
+      this._labels.set(`goal-${index}`, new THREE.Vector3(...goal.position), goal.name, { share, shown });
     });
   }
 
