@@ -144,7 +144,10 @@ const WORKING = { preparing: "Getting ready …", thinking: "Choosing the next m
 
 function show() {
   const now = step();
+  const hadFocus = document.activeElement?.closest(".step") ?? null;
   for (const name of STEPS) part(name).hidden = name !== now;
+  // Whoever sat on a button that is gone goes on at the new step.
+  if (hadFocus?.hidden) part(now).querySelector("h2").focus({ preventScroll: true });
   part("problem").hidden = !state?.why;
   write(part("problem"), state?.why ?? "");
   if (now === "begin") showBegin();
@@ -170,7 +173,7 @@ function showWorking() {
 function showLearned() {
   const { name, answers, error, error_without } = state;
   write(part("learned-title"), `The robot has learned what ${name} means.`);
-  write(part("learned-text"), `From ${answers} ${answers === 1 ? "answer" : "answers"}. So far are the motions that you meant missed:`);
+  write(part("learned-text"), `From ${answers} ${answers === 1 ? "answer" : "answers"}. By how much it misses the motions that you meant:`);
   write(part("missed-with"), percent(error));
   write(part("missed-without"), percent(error_without));
 }
@@ -240,6 +243,7 @@ connection.addEventListener("state", () => {
   showArm();
   if (leaving && connection.state.profile === TRIAL) location.assign("/");
 });
+write(part("stick-help"), "Push and let go: the dot stays. Push again to change it. The arrow keys do the same.");
 showPanel();
 showAnswer();
 show();

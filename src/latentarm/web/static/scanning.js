@@ -89,8 +89,8 @@ export function attachScanning(parts, inputs, settings, offered) {
     parts.next.hidden = !two;
     const keys = two ? `${settings.values.nextKey} goes on, ${settings.values.switchKey} chooses` : `or ${settings.values.switchKey}`;
     parts.help.textContent = two
-      ? `Next goes on, Switch chooses; while the arm moves, Switch stops it. Keys: ${keys}.`
-      : `A press (${keys}) chooses what is lit; while the arm moves, a press stops it.`;
+      ? `Next goes on, Switch chooses; a direction goes on until Switch is pressed again. Keys: ${keys}.`
+      : `A press (${keys}) chooses what is lit; a direction goes on until the next press.`;
     restart();
   };
 

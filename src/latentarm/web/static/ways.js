@@ -3,7 +3,7 @@
 import { THREE } from "nicegui-scene";
 import { colour } from "./colours.js";
 
-const THICK_M = 0.007;
+const THICK_M = 0.009;
 
 export class Ways {
   /** @param {any} scene */
@@ -26,18 +26,18 @@ export class Ways {
       object.geometry.dispose();
     }
     this._drawn = ways.flatMap((way) => this._arrow(way.map((point) => new THREE.Vector3(...point))));
-    this._scene.add(...this._drawn);
+    if (this._drawn.length) this._scene.add(...this._drawn);
   }
 
   /** @param {any[]} points */
   _arrow(points) {
-    const start = new THREE.Mesh(new THREE.SphereGeometry(0.013, 14, 10), this._material);
+    const start = new THREE.Mesh(new THREE.SphereGeometry(0.017, 14, 10), this._material);
     start.position.copy(points[0]);
     const parts = [start];
     if (points[0].distanceTo(points[points.length - 1]) > 1e-3) {
       const curve = new THREE.CatmullRomCurve3(points);
       parts.push(new THREE.Mesh(new THREE.TubeGeometry(curve, 24, THICK_M, 8), this._material));
-      const head = new THREE.Mesh(new THREE.ConeGeometry(0.021, 0.045, 14), this._material);
+      const head = new THREE.Mesh(new THREE.ConeGeometry(0.028, 0.055, 14), this._material);
       const ahead = curve.getTangent(1);
       head.position.copy(curve.getPoint(1)).addScaledVector(ahead, 0.016);
       head.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), ahead);
