@@ -137,7 +137,7 @@ class Recording(_Message):
 
 @final
 class Report(_Message):
-    """What the control process says of itself, 50 times a second.
+    """What the control process says of itself, in every tick.
 
     Attributes:
         nonce: for the driver to echo.

@@ -45,7 +45,6 @@ Change = ChooseProfile | ChooseRun | Reset
 """What the loop is ended for, to go on otherwise."""
 
 _ORDERS_PER_TICK: Final = 4
-_REPORT_EVERY: Final = 2
 _LOOK_EVERY: Final = 10
 _STATISTICS_EVERY: Final = 100
 _SPARE_S: Final = 0.004
@@ -144,8 +143,7 @@ class Cockpit(InputSource):
             self._writer.end()
         self._obey(record)
         self._enable_if_asked(record.time_s)
-        if self._tick % _REPORT_EVERY == 0 or self._change is not None:
-            self._channel.report.write(self._report(record).model_dump_json().encode())
+        self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
             self._look(record)
 

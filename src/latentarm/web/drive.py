@@ -43,7 +43,8 @@ HELLO_WITHIN_S: Final = 5.0
 
 DRIVER_PERIOD_S: Final = 0.02
 WATCHER_PERIOD_S: Final = 0.033
-"""How often a page is sent a state, at most: the driver's is also what makes the next input fresh."""
+"""How often a page is sent a state, save that it hears at once when the arm sets off. The driver's is also
+what makes the next input fresh."""
 
 _PROTOCOL_BROKEN: Final = (1002, 1003, 1007, 1009)
 """Codes with which the server below us hangs up: no frame, no text, or far too long."""
@@ -136,7 +137,7 @@ class DriveSocket:
                     continue
                 await socket.send_text(self._states.text(page, ghosts))
                 drives = self._sessions.drives(page)
-                await asyncio.sleep(DRIVER_PERIOD_S / 2 if drives else WATCHER_PERIOD_S)
+                await self._states.pause(DRIVER_PERIOD_S if drives else WATCHER_PERIOD_S)
 
     def _take(self, page: Page, message: ClientMessage) -> None:
         """Do what a page asks for; what only the driver may ask for is not heard from others."""

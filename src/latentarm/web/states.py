@@ -4,6 +4,7 @@ import asyncio
 import json
 import math
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Final, final
 
@@ -19,7 +20,7 @@ from latentarm.web.shelf import Shelf
 from latentarm.web.stage import Stage, load_stage
 from latentarm.web.supervisor import ControlProcess
 
-POLL_S: Final = 0.005
+POLL_S: Final = 0.0025
 """How often the control process's slot is looked at, s."""
 
 SILENT_S: Final = 0.5
@@ -77,6 +78,8 @@ class States:
         self._heard_s = time.monotonic()
         self._trail = 0
         self._changed = asyncio.Event()
+        self._set_off = asyncio.Event()
+        self._moves = False
         self._number = 0
         self._cache: tuple[int, dict[bool, str]] = (-1, {})
 
@@ -111,6 +114,12 @@ class States:
         while self._number <= number or self._report is None:
             await self._changed.wait()
         return self._number
+
+    async def pause(self, span_s: float) -> None:
+        """Wait for so long, s, or only until the arm sets off: nobody shall wait to see what a press does."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(span_s):
+                await self._set_off.wait()
 
     def clear_trail(self) -> None:
         """Tell every page to empty its trail."""
@@ -149,6 +158,11 @@ class States:
     def _take(self, report: Report) -> None:
         """Keep a report, or where it is of another run, first load that one here too."""
         if self._stage.shows(report):
+            moved = self._report is not None and _rounded(report.tool) != _rounded(self._report.tool)
+            if moved and not self._moves:
+                self._set_off.set()
+                self._set_off.clear()
+            self._moves = moved
             self._report = report
             self._loading = report.loading
             self._failed = None
