@@ -3,7 +3,7 @@ import json
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from multiprocessing import Pipe
 from pathlib import Path
@@ -256,6 +256,12 @@ def served(spec: Spec) -> Iterator[Site]:
         while not server.started:
             time.sleep(0.01)
         yield Site(port, control, loops[0])
+
+
+@pytest.fixture
+def serve() -> Callable[[Spec], AbstractContextManager[Site]]:
+    """A server of its own for a test that changes what is driven."""
+    return served
 
 
 @pytest.fixture(scope="session")

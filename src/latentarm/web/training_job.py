@@ -15,6 +15,7 @@ from pydantic import Field, TypeAdapter
 from latentarm.control.export import demonstrations_of
 from latentarm.control.journal import read_journal
 from latentarm.errors import UserError
+from latentarm.types import Demonstrations
 from latentarm.web.jobs import Job, JobMessage, Wire
 from latentarm.web.workshop_messages import ModelChoice, Training, TrainingPhase
 
@@ -162,10 +163,7 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
     Raises:
         UserError: the episodes cannot be learned from, or the disk has no room.
     """
-    # torch and pyarrow, which take seconds to load: in this process alone.
-    from latentarm.demonstrations.dataset import write_dataset
     from latentarm.demonstrations.pauses import without_pauses
-    from latentarm.runs.training import TrainConfig, train_run
 
     recorded = demonstrations_of(read_journal(plan.journal, plan.episodes), source="The recording")
     demonstrations = without_pauses(recorded, RATE_HZ)
@@ -175,6 +173,23 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
             f"The arm moves for at least {SHORTEST_S:.0f} s in {len(long_enough)} of the"
             f" {len(set(plan.episodes))} chosen episodes: leave the others out, or record longer ones."
         )
+    try:
+        warned = _train(wire, plan, demonstrations)
+    except BaseException:
+        shutil.rmtree(plan.run, ignore_errors=True)
+        shutil.rmtree(plan.dataset, ignore_errors=True)
+        raise
+    wire.say(_Finished(warned=" ".join(warned) or None))
+
+
+def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[str]:
+    """Write the dataset and the run; what was warned of."""
+    # pyarrow, and then torch, which take seconds to load: in this process alone.
+    from latentarm.demonstrations.dataset import write_dataset
+
+    write_dataset(demonstrations, plan.dataset)
+    from latentarm.runs.training import TrainConfig, train_run
+
     config = TrainConfig(
         demonstrations=plan.dataset,
         model=plan.model,
@@ -183,16 +198,10 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
         seeds=1,
         state_noise_rad=STATE_NOISE_RAD,
     )
-    try:
-        write_dataset(demonstrations, plan.dataset)
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", UserWarning)
-            train_run(config, _report_to(wire))
-    except BaseException:
-        shutil.rmtree(plan.run, ignore_errors=True)
-        shutil.rmtree(plan.dataset, ignore_errors=True)
-        raise
-    wire.say(_Finished(warned=" ".join(str(one.message) for one in caught) or None))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UserWarning)
+        train_run(config, _report_to(wire))
+    return [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
 
 
 def _report_to(wire: Wire) -> Callable[[int, int, float], None]:
