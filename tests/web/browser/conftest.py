@@ -10,7 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -59,11 +59,10 @@ def find_chromium() -> str:
     return found
 
 
-@pytest.fixture(scope="session")
-def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Where `latentarm teleop RUN` serves its page."""
-    folder = tmp_path_factory.mktemp("teleop")
-    command = [sys.executable, "-m", "latentarm", "teleop", str(trained), "--port", "0", "--out", str(folder)]
+@contextmanager
+def _started(folder: Path, *arguments: str) -> Iterator[str]:
+    """Where `latentarm teleop` serves its page; recordings go to ``folder``."""
+    command = [sys.executable, "-m", "latentarm", "teleop", *arguments, "--port", "0", "--out", str(folder)]
     with (folder / "said").open("w") as said:
         server = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT)
     try:
@@ -71,6 +70,25 @@ def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     finally:
         server.send_signal(signal.SIGINT)
         server.wait(20)
+
+
+@pytest.fixture(scope="session")
+def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Where `latentarm teleop RUN` serves its page."""
+    with _started(tmp_path_factory.mktemp("teleop"), str(trained)) as address:
+        yield address
+
+
+@pytest.fixture
+def start_server() -> Callable[..., AbstractContextManager[str]]:
+    """A server of its own for a test that changes what is driven."""
+    return _started
+
+
+@pytest.fixture
+def watch() -> Callable[[str], AbstractContextManager[Any]]:
+    """Watches the arm of such a server."""
+    return _watching
 
 
 def _printed_address(server: subprocess.Popen[bytes], said: Path) -> str:
