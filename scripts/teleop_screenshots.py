@@ -16,6 +16,7 @@ from teleop_page import chromium, enable, served
 
 DESK = {"width": 1280, "height": 800}
 SETTLE_MS = 800
+EPISODES = 3
 PHONE = {"width": 390, "height": 844}
 
 
@@ -51,11 +52,51 @@ def settings(page: Page) -> None:
     page.get_by_role("button", name="Settings").click()
 
 
+def recorded(page: Page) -> None:
+    """The Teach page with episodes to learn from: the same few seconds, driven three times."""
+    page.get_by_role("radio", name="Tool directions").check()
+    page.get_by_label("What is being done").fill("towards the table")
+    while page.get_by_role("link", name="Teach the arm").is_hidden() or episodes(page) < EPISODES:
+        before = episodes(page)
+        page.get_by_role("button", name="Arm back to start").click()
+        page.get_by_role("button", name="Start recording").click()
+        enable(page)
+        page.locator("#stick").focus()
+        page.keyboard.down("ArrowUp")
+        page.wait_for_timeout(2500)
+        page.keyboard.up("ArrowUp")
+        page.keyboard.press("Escape")
+        page.wait_for_timeout(600)
+        page.get_by_role("button", name="Stop recording").click()
+        page.wait_for_function(
+            "n => parseInt(document.querySelector('#record-text').textContent) > n", arg=before
+        )
+    page.get_by_role("link", name="Teach the arm").click()
+    page.get_by_role("checkbox", name="Episode 3").wait_for()
+
+
+def episodes(page: Page) -> int:
+    """How many are recorded, as the page says it."""
+    said = page.locator("#record-text").inner_text()
+    return int(said.split()[0]) if said[:1].isdigit() else 0
+
+
+def trained(page: Page) -> None:
+    """The Teach page after a training."""
+    recorded(page)
+    if page.locator("#training-drive").is_hidden():
+        page.get_by_role("button", name="Train", exact=True).click()
+        page.locator("#training-drive").wait_for(timeout=300_000)
+    page.locator("#training").scroll_into_view_if_needed()
+
+
 SHOTS: dict[str, Callable[[Page], None]] = {
     "drive": driving,
     "drive-buttons": buttons,
     "drive-switch": switch,
     "drive-settings": settings,
+    "teach": recorded,
+    "teach-trained": trained,
 }
 
 
@@ -64,12 +105,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("run", type=Path)
     parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--only", nargs="+", choices=SHOTS, default=list(SHOTS))
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
     with served(given.run) as site, chromium() as browser:
         for size_name, size in (("desk", DESK), ("phone", PHONE)):
             for scheme in ("light", "dark"):
-                for name, act in SHOTS.items():
+                for name in given.only:
                     # Twice as fine: the software renderer spares pixels.
                     context = browser.new_context(
                         viewport=size, color_scheme=scheme, device_scale_factor=2, reduced_motion="reduce"
@@ -82,7 +124,7 @@ def main() -> None:
                     page.get_by_role("button", name="Arm back to start").click()
                     page.evaluate("scrollTo(0, 0)")
                     page.wait_for_timeout(SETTLE_MS)
-                    act(page)
+                    SHOTS[name](page)
                     page.wait_for_timeout(600)
                     page.screenshot(path=given.out / f"teleop-{name}-{size_name}-{scheme}.png")
                     page.mouse.up()

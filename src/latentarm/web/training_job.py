@@ -210,8 +210,10 @@ def _report_to(wire: Wire) -> Callable[[int, int, float], None]:
     told_s = -math.inf
 
     def report(epoch: int, epochs: int, loss: float) -> None:
-        nonlocal told_s
+        nonlocal begun_s, told_s
         now_s = time.monotonic()
+        if epoch == 0:
+            begun_s = now_s
         if now_s - told_s < _TELL_EVERY_S and epoch < epochs:
             return
         told_s = now_s

@@ -134,7 +134,7 @@ function progress({ phase, epoch, epochs, loss, seconds_left }) {
   if (phase === "exporting") return "Reading the episodes: a few seconds.";
   const parts = epochs ? [`Pass ${epoch} of ${phase === "done" ? "" : "at most "}${epochs}`] : [];
   if (loss !== null) parts.push(`loss ${loss.toFixed(3)}`);
-  if (seconds_left !== null) parts.push(`about ${Math.ceil(seconds_left)} s left`);
+  if (seconds_left !== null) parts.push(`up to about ${Math.ceil(seconds_left)} s left`);
   return parts.join(" · ");
 }
 
