@@ -34,8 +34,9 @@ export class Answering extends Held {
     return this.live;
   }
 
-  /** A new question: no answer yet. */
+  /** A new question: no answer yet, and nothing pressed that was meant for the one before. */
   begin() {
+    this.neutral();
     this.live = true;
     this._mean(null);
   }
