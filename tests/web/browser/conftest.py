@@ -115,6 +115,7 @@ class Arm:
     def __init__(self) -> None:
         self.state: dict[str, Any] = {}
         self.welcome: dict[str, Any] = {}
+        self.workshop: dict[str, Any] = {}
         self.ghosts: dict[str, list[list[float]]] = {}
         self.states: list[dict[str, Any]] = []
 
@@ -169,6 +170,8 @@ class Arm:
                 message = json.loads(frame)
                 if message["type"] == "welcome":
                     self.welcome = message
+                elif message["type"] == "workshop":
+                    self.workshop = message
                 elif message["type"] == "state":
                     self.ghosts = message["ghosts"] or self.ghosts
                     self.state = message
