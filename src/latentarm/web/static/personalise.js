@@ -241,7 +241,9 @@ connection.addEventListener("workshop", () => {
 });
 connection.addEventListener("state", () => {
   showArm();
-  if (leaving && connection.state.profile === TRIAL) location.assign("/");
+  if (!leaving || connection.state.profile !== TRIAL) return;
+  leaving = false;
+  location.assign("/");
 });
 write(part("stick-help"), "Push and let go: the dot stays. Push again to change it. The arrow keys do the same.");
 showPanel();
