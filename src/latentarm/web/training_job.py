@@ -47,6 +47,7 @@ class TrainingPlan:
         model: a name in the catalogue of models.
         latent_dim: d.
         out: folder that holds ``datasets`` and ``runs``.
+        end_effector: site, body or link, where the robot is a model file.
 
     Raises:
         UserError: the name cannot be that of a folder or is taken, or there are too few episodes.
@@ -58,6 +59,7 @@ class TrainingPlan:
     model: ModelChoice
     latent_dim: int
     out: Path
+    end_effector: str | None = None
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):
@@ -197,6 +199,7 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
         latent_dim=plan.latent_dim,
         seeds=1,
         state_noise_rad=STATE_NOISE_RAD,
+        end_effector=plan.end_effector,
     )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)

@@ -6,6 +6,7 @@ from typing import Final, final
 
 from latentarm.control.journal import list_journal
 from latentarm.errors import UserError
+from latentarm.runs.folder import read_run
 from latentarm.web.channel import ChooseRun
 from latentarm.web.personalising import Driven, Personalising
 from latentarm.web.shelf import Shelf
@@ -76,7 +77,15 @@ class Bench:
             if journal is None:
                 raise UserError(_NOTHING)
             name = wish.name.strip()
-            plan = TrainingPlan(journal, wish.episodes, name, wish.model, wish.latent_dim, self._out)
+            plan = TrainingPlan(
+                journal=journal,
+                episodes=wish.episodes,
+                name=name,
+                model=wish.model,
+                latent_dim=wish.latent_dim,
+                out=self._out,
+                end_effector=self._end_effector(),
+            )
             self._job = TrainingJob(plan)
             self._training = self._job.look()
         except UserError as error:
@@ -107,6 +116,15 @@ class Bench:
     def _driven(self) -> Driven:
         stage = self._states.stage
         return Driven(stage.spec.run, stage.latent_dim, self._states.report)
+
+    def _end_effector(self) -> str | None:
+        """That of the arm, where a run says it.
+
+        Raises:
+            UserError: the run has gone.
+        """
+        run = self._states.stage.spec.run
+        return None if run is None else read_run(run).end_effector
 
     async def _list_recordings(self) -> None:
         report = self._states.report

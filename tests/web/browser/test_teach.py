@@ -95,6 +95,7 @@ def test_the_arm_learns_on_the_page_what_it_was_shown(open_page, arm, push, tmp_
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         assert found(page) == []
+    expect(page.get_by_label("Name of what is learned")).to_have_value("pushing-1")
     assert (tmp_path / "runs" / "pushing" / "config.json").is_file()
 
     page.get_by_role("button", name="Drive it", exact=True).click()

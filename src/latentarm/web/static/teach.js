@@ -22,6 +22,9 @@ let going = { run: "", until: -Infinity };
 const { connection, seat } = attachFrame({ otherRun: () => {} });
 attachSeat({ text: part("seat"), ask: part("ask"), handOver: part("hand-over"), release: part("release") }, connection);
 
+/** Whether somebody else drives, who alone may train and choose. */
+let watching = false;
+
 /** Episodes that the person has left out. @type {Set<number>} */
 const leftOut = new Set();
 
@@ -110,11 +113,15 @@ const TITLES = {
   cancelled: (run) => `The training of ${run} was cancelled; nothing of it is kept.`,
 };
 
+/** Of the training, as it was shown last. */
+let shownPhase = "";
+
 function showTraining() {
   const { training } = connection.workshop;
   part("training").hidden = training === null;
   const busy = ["exporting", "training"].includes(training?.phase);
-  part("train-begin").disabled = busy || chosen().length < FEWEST;
+  part("train-begin").disabled = watching || busy || chosen().length < FEWEST;
+  part("train-seat").hidden = !watching;
   if (training === null) return;
   const { phase, run, epoch, epochs, why } = training;
   write(part("training-title"), TITLES[phase](run));
@@ -126,13 +133,19 @@ function showTraining() {
   part("training-why").hidden = why === null;
   write(part("training-why"), why ?? "");
   part("training-cancel").hidden = !busy;
+  part("training-cancel").disabled = watching;
   part("training-drive").hidden = phase !== "done";
+  part("training-drive").disabled = watching;
+  // What the person waits for comes into sight, once.
+  if (phase !== shownPhase && connection.driving) part("training").scrollIntoView({ block: "nearest" });
+  shownPhase = phase;
 }
 
 /** @param {any} training */
 function progress({ phase, epoch, epochs, loss, seconds_left }) {
   if (phase === "exporting") return "Reading the episodes: a few seconds.";
-  const parts = epochs ? [`Pass ${epoch} of ${phase === "done" ? "" : "at most "}${epochs}`] : [];
+  const parts = epochs && phase === "training" ? [`Pass ${epoch} of at most ${epochs}`] : [];
+  if (phase === "done" && epochs) parts.push(epoch < epochs ? `${epoch} passes, until it got no better` : `${epoch} passes`);
   if (loss !== null) parts.push(`loss ${loss.toFixed(3)}`);
   if (seconds_left !== null) parts.push(`up to about ${Math.ceil(seconds_left)} s left`);
   return parts.join(" · ");
@@ -143,7 +156,7 @@ let shelved = "";
 function showRuns() {
   const { runs, run } = connection.workshop;
   part("runs-none").hidden = runs.length > 0;
-  const now = JSON.stringify([runs, run]);
+  const now = JSON.stringify([runs, run, watching]);
   if (now !== shelved) {
     part("runs").replaceChildren(...runs.map((/** @type {string} */ name) => {
       const row = document.createElement("li");
@@ -152,6 +165,7 @@ function showRuns() {
       const button = /** @type {HTMLButtonElement} */ (text("button", "Drive it"));
       button.type = "button";
       button.setAttribute("aria-label", `Drive it: ${name}`);
+      button.disabled = watching;
       button.addEventListener("click", () => drive(name));
       row.append(label, button);
       return row;
@@ -167,18 +181,28 @@ function show() {
   showRuns();
 }
 
-/** A name that is not taken, until the person writes one. */
+/** A name that is not taken: at first, and once a run has the one that is written here. */
 function suggestName() {
-  const { runs } = connection.workshop;
-  if (fields.name.value) return;
+  const { runs, training } = connection.workshop;
+  const { value } = fields.name;
+  const used = training?.phase === "done" && training.run === value;
+  if (value && !used) return;
+  const stem = (value || "taught").replace(/-\d+$/, "");
   let number = 1;
-  while (runs.includes(`taught-${number}`)) number += 1;
-  fields.name.value = `taught-${number}`;
+  while (runs.includes(`${stem}-${number}`)) number += 1;
+  fields.name.value = `${stem}-${number}`;
 }
 
 connection.addEventListener("workshop", () => {
   suggestName();
   show();
   if (connection.workshop.run === going.run && performance.now() < going.until) location.assign("/");
+});
+connection.addEventListener("state", () => {
+  const { driver, you } = connection.state;
+  const now = driver !== null && !you;
+  if (now === watching) return;
+  watching = now;
+  show();
 });
 showHelp();
