@@ -29,7 +29,7 @@ STICK_AXES: Final = 2
 """A page's stick cannot answer for more."""
 
 _STOP_FIRST: Final = "Stop the arm first."
-_ASKING: Final = "{name} is being asked what they mean by the stick: the arm stands still until that is done."
+_ASKING: Final = "{name} is being asked: the arm stands still until that is done."
 
 
 @final
