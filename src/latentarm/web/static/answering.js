@@ -4,7 +4,7 @@ import { Held } from "./held.js";
 
 const PERIOD_MS = 20;
 /** A push that hardly moves for so long is meant, ms: a stick that springs back passes many places. */
-const STEADY_MS = 120;
+const STEADY_MS = 250;
 const STEADY = 0.1;
 
 /** @typedef {{x: number, y: number, at: number}} Sample */

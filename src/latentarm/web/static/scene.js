@@ -31,7 +31,10 @@ export class ArmScene {
       return group;
     });
     this.scene.add(...this._bodies);
-    this._shade = new THREE.MeshLambertMaterial({ transparent: true, opacity: 0.4, depthWrite: false });
+    this._shade = new THREE.MeshLambertMaterial({
+      // Behind what it coincides with.
+      transparent: true, opacity: 0.4, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
+    });
     /** @type {any[] | null} */
     this._shadows = null;
     this._from = this._bodies.map(() => null);
