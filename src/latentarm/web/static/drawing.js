@@ -22,7 +22,7 @@ export class Drawing {
     this._ways = new Ways(scene.scene);
     this._still = matchMedia("(prefers-reduced-motion: reduce)");
     this._tick = -1;
-    this._shown = this._held = "";
+    this._pose = this._around = "";
     this._first = true;
     // For scripts that measure how long an input takes to be seen.
     this._views.afterFrame.push(() => {
@@ -46,13 +46,13 @@ export class Drawing {
    * @param {import("./settings.js").Values} wanted
    */
   show(state, paths, pressed, wanted) {
-    // An arm at rest needs no new frame, and a press alone none that would be in the way of its motion.
-    const shown = JSON.stringify([state.bodies, state.belief, state.bound_m, paths, wanted]);
-    const held = String(pressed);
-    if (shown === this._shown && held === this._held) return;
-    const presses = shown === this._shown;
-    this._shown = shown;
-    this._held = held;
+    // An arm at rest needs no new frame; a press or a new belief none that would be in the way of its motion.
+    const pose = JSON.stringify(state.bodies);
+    const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted]);
+    const moved = pose !== this._pose;
+    if (!moved && around === this._around) return;
+    this._pose = pose;
+    this._around = around;
     this._tick = state.tick;
     this._scene.take(state, this._views.smooth && !this._still.matches);
     this._scene.believe(state.belief);
@@ -63,8 +63,8 @@ export class Drawing {
     this._nameGoals(state.belief);
     this._ghosts.show(paths, pressed, wanted.showGhosts);
     this._lookFrom(/** @type {"facing" | "behind"} */ (wanted.seat));
-    if (presses) this._views.invalidateSoon();
-    else this._views.invalidate();
+    if (moved) this._views.invalidate();
+    else this._views.invalidateSoon();
   }
 
   /**
@@ -74,7 +74,7 @@ export class Drawing {
    * @param {"facing" | "behind"} seat
    */
   showPose(bodies, seat) {
-    this._shown = "";
+    this._pose = "";
     this._scene.markTool(false);
     this._scene.showTrail(false);
     this._scene.take({ bodies, tool: this._scene.tool.toArray() }, false);
