@@ -6,6 +6,8 @@ The run is driven by a script for them: a simulated person. For example:
 """
 
 import argparse
+import shutil
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +19,7 @@ from teleop_page import chromium, enable, served
 DESK = {"width": 1280, "height": 800}
 SETTLE_MS = 800
 EPISODES = 3
+LEARNING_MS = 120_000
 PHONE = {"width": 390, "height": 844}
 
 
@@ -90,28 +93,80 @@ def trained(page: Page) -> None:
     page.locator("#training").scroll_into_view_if_needed()
 
 
+def personalise(page: Page) -> None:
+    """The Personalise page as a person finds it."""
+    page.get_by_role("link", name="Personalise").click()
+    begin = page.get_by_role("button", name="Begin")
+    # What the picture before has left.
+    back = "#answer-cancel, #working-cancel, #discard, #another"
+    while begin.is_hidden():
+        if page.locator(back).filter(visible=True).count():
+            page.locator(back).filter(visible=True).first.click()
+        page.wait_for_timeout(200)
+
+
+def asked(page: Page) -> None:
+    """A question, and an answer that is still held."""
+    personalise(page)
+    page.get_by_label("Your name").fill("Ada")
+    page.get_by_label("Motions, at most").select_option("5")
+    page.get_by_role("button", name="Begin").click()
+    page.get_by_role("heading", name="Question 1").wait_for(timeout=LEARNING_MS)
+    push_aside(page)
+
+
+def learned(page: Page) -> None:
+    """What comes of the same answer to every question."""
+    asked(page)
+    while page.get_by_role("heading", name="The robot has learned").is_hidden():
+        answer = page.get_by_role("button", name="This is my answer")
+        if answer.is_visible() and answer.is_enabled():
+            page.mouse.up()
+            answer.click()
+            page.wait_for_timeout(600)
+        elif page.locator("#stick").is_visible():
+            push_aside(page)
+        page.wait_for_timeout(200)
+
+
+def tried(page: Page) -> None:
+    """What was learned, under trial."""
+    learned(page)
+    page.get_by_role("button", name="Try it").click()
+    page.get_by_role("heading", name="You are trying").wait_for()
+
+
+def push_aside(page: Page) -> None:
+    """Hold the stick to the right and a little up."""
+    box = page.locator("#stick").bounding_box()
+    if box is None:
+        raise SystemExit("The page has no stick.")
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.8 * box["width"], box["y"] + 0.4 * box["height"], steps=3)
+    page.wait_for_timeout(600)
+
+
 SHOTS: dict[str, Callable[[Page], None]] = {
     "drive": driving,
     "drive-buttons": buttons,
     "drive-switch": switch,
     "drive-settings": settings,
+    "personalise": personalise,
+    "personalise-question": asked,
+    "personalise-learned": learned,
+    "personalise-trial": tried,
     "teach": recorded,
     "teach-trained": trained,
 }
 
 
-def main() -> None:
-    """Take all pictures."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("run", type=Path)
-    parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--only", nargs="+", choices=SHOTS, default=list(SHOTS))
-    given = parser.parse_args()
-    given.out.mkdir(parents=True, exist_ok=True)
-    with served(given.run) as site, chromium() as browser:
+def take(run: Path, names: list[str], out: Path) -> None:
+    """Take these pictures, at each size and in each scheme."""
+    with served(run) as site, chromium() as browser:
         for size_name, size in (("desk", DESK), ("phone", PHONE)):
             for scheme in ("light", "dark"):
-                for name in given.only:
+                for name in names:
                     # Twice as fine: the software renderer spares pixels.
                     context = browser.new_context(
                         viewport=size, color_scheme=scheme, device_scale_factor=2, reduced_motion="reduce"
@@ -126,11 +181,25 @@ def main() -> None:
                     page.wait_for_timeout(SETTLE_MS)
                     SHOTS[name](page)
                     page.wait_for_timeout(600)
-                    page.screenshot(path=given.out / f"teleop-{name}-{size_name}-{scheme}.png")
+                    page.screenshot(path=out / f"teleop-{name}-{size_name}-{scheme}.png")
                     page.mouse.up()
                     context.close()
                     # So that the next page finds nobody at the wheel.
                     time.sleep(0.3)
+
+
+def main() -> None:
+    """Take all pictures."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("run", type=Path)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--only", nargs="+", choices=SHOTS, default=list(SHOTS))
+    given = parser.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        # What is learned for the pictures is not kept.
+        run = Path(shutil.copytree(given.run, Path(folder) / given.run.name))
+        take(run, given.only, given.out)
 
 
 if __name__ == "__main__":
