@@ -63,11 +63,7 @@ def recorded(page: Page) -> None:
         before = episodes(page)
         page.get_by_role("button", name="Arm back to start").click()
         page.get_by_role("button", name="Start recording").click()
-        enable(page)
-        page.locator("#stick").focus()
-        page.keyboard.down("ArrowUp")
-        page.wait_for_timeout(2500)
-        page.keyboard.up("ArrowUp")
+        push_for(page, 2000)
         page.keyboard.press("Escape")
         page.wait_for_timeout(600)
         page.get_by_role("button", name="Stop recording").click()
@@ -76,6 +72,20 @@ def recorded(page: Page) -> None:
         )
     page.get_by_role("link", name="Teach the arm").click()
     page.get_by_role("checkbox", name="Episode 3").wait_for()
+
+
+def push_for(page: Page, moving_ms: int) -> None:
+    """Hold the up key until the arm has moved for so long; a busy computer stops it in between."""
+    moved_ms = 0
+    while moved_ms < moving_ms:
+        if page.locator("#status[data-phase=ready], #status[data-phase=moving]").count() == 0:
+            page.keyboard.up("ArrowUp")
+            enable(page)
+        page.locator("#stick").focus()
+        page.keyboard.down("ArrowUp")
+        page.wait_for_timeout(100)
+        moved_ms += 100 * page.locator("#status[data-phase=moving]").count()
+    page.keyboard.up("ArrowUp")
 
 
 def episodes(page: Page) -> int:
@@ -89,7 +99,7 @@ def trained(page: Page) -> None:
     recorded(page)
     if page.locator("#training-drive").is_hidden():
         page.get_by_role("button", name="Train", exact=True).click()
-        page.locator("#training-drive").wait_for(timeout=300_000)
+        page.locator("#training-drive, #training-why").filter(visible=True).first.wait_for(timeout=120_000)
     page.locator("#training").scroll_into_view_if_needed()
 
 
