@@ -33,6 +33,10 @@ STATE_NOISE_RAD: Final = 0.01
 
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
 _TELL_EVERY_S: Final = 0.1
+_COLLAPSED: Final = (
+    "One axis of the stick moves hardly anything, because the episodes differ too little: choose one axis, or"
+    " record motions that differ."
+)
 
 
 @final
@@ -138,7 +142,7 @@ class TrainingJob:
                 case _Finished(warned=warned):
                     self._finished = True
                     self._change(why=warned)
-        if not alive:
+        if self._finished or not alive:
             self._change(phase=self._outcome(), seconds_left=None)
             self._change(why=self._job.failure or self._state.why)
         return self._state
@@ -190,6 +194,7 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
     from latentarm.demonstrations.dataset import write_dataset
 
     write_dataset(demonstrations, plan.dataset)
+    from latentarm.models.scaling import CollapseWarning
     from latentarm.runs.training import TrainConfig, train_run
 
     config = TrainConfig(
@@ -204,7 +209,11 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
         train_run(config, _report_to(wire))
-    return [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
+    return [
+        _COLLAPSED if issubclass(one.category, CollapseWarning) else str(one.message)
+        for one in caught
+        if issubclass(one.category, UserWarning)
+    ]
 
 
 def _report_to(wire: Wire) -> Callable[[int, int, float], None]:
