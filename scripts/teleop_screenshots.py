@@ -19,7 +19,9 @@ from teleop_page import chromium, enable, served
 DESK = {"width": 1280, "height": 800}
 SETTLE_MS = 800
 EPISODES = 3
+MOST_STARTS = 5
 LEARNING_MS = 120_000
+BEGUN = "#answer-cancel, #working-cancel, #discard, #trial-discard"
 PHONE = {"width": 390, "height": 844}
 
 
@@ -32,10 +34,17 @@ def driving(page: Page) -> None:
     box = stick.bounding_box()
     if box is None:
         raise SystemExit("The page has no stick.")
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.8 * box["height"], steps=3)
-    page.wait_for_timeout(1200)
+    for _ in range(MOST_STARTS):
+        page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        page.mouse.down()
+        page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.8 * box["height"], steps=3)
+        page.wait_for_timeout(1200)
+        if page.locator("#status[data-phase=moving]").count():
+            return
+        # A busy computer has stopped the arm.
+        page.mouse.up()
+        enable(page)
+    raise SystemExit("The arm is never under way: " + page.locator("#status-text").inner_text())
 
 
 def buttons(page: Page) -> None:
@@ -106,13 +115,7 @@ def trained(page: Page) -> None:
 def personalise(page: Page) -> None:
     """The Personalise page as a person finds it."""
     page.get_by_role("link", name="Personalise").click()
-    begin = page.get_by_role("button", name="Begin")
-    # What the picture before has left.
-    back = "#answer-cancel, #working-cancel, #discard, #another"
-    while begin.is_hidden():
-        if page.locator(back).filter(visible=True).count():
-            page.locator(back).filter(visible=True).first.click()
-        page.wait_for_timeout(200)
+    page.get_by_role("button", name="Begin").wait_for()
 
 
 def asked(page: Page) -> None:
@@ -144,6 +147,14 @@ def tried(page: Page) -> None:
     learned(page)
     page.get_by_role("button", name="Try it").click()
     page.get_by_role("heading", name="You are trying").wait_for()
+
+
+def tidy(page: Page) -> None:
+    """End what was begun, so that the next picture finds the page as this one did."""
+    page.mouse.up()
+    while page.locator(BEGUN).filter(visible=True).count():
+        page.locator(BEGUN).filter(visible=True).first.click()
+        page.wait_for_timeout(SETTLE_MS)
 
 
 def push_aside(page: Page) -> None:
@@ -192,7 +203,7 @@ def take(run: Path, names: list[str], out: Path) -> None:
                     SHOTS[name](page)
                     page.wait_for_timeout(600)
                     page.screenshot(path=out / f"teleop-{name}-{size_name}-{scheme}.png")
-                    page.mouse.up()
+                    tidy(page)
                     context.close()
                     # So that the next page finds nobody at the wheel.
                     time.sleep(0.3)
