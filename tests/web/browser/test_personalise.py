@@ -21,6 +21,13 @@ PATIENCE_MS = 90_000
 
 QUESTIONS = 8
 
+WAY_M = 0.05
+
+GAMEPAD = """
+window.pad = { index: 0, connected: true, axes: [0, 0], buttons: [{ pressed: false }, { pressed: false }] };
+navigator.getGamepads = () => [window.pad];
+"""
+
 
 @pytest.fixture
 def run(trained, tmp_path):
@@ -72,6 +79,43 @@ def answer(page, drag, u):
     page.get_by_role("button", name="This is my answer").click()
 
 
+def says_left(page):
+    expect(page.locator("#answer")).to_have_text("Your answer: left 100 %")
+
+
+def by_buttons(page):
+    page.get_by_role("radio", name="Buttons").check()
+    page.get_by_role("button", name="Left", exact=True).click(delay=100)
+    says_left(page)
+    page.get_by_role("heading", name="Question 1").focus()
+    page.keyboard.press("Enter")
+
+
+def by_one_switch(page):
+    page.get_by_role("radio", name="Switch").check()
+    lit = page.locator("#scan li[aria-current=true]")
+    switch = page.get_by_role("button", name="Switch", exact=True)
+    lit.get_by_text("Left").wait_for()
+    switch.click()
+    says_left(page)
+    switch.click()
+    lit.get_by_text("This is my answer").wait_for()
+    says_left(page)
+    switch.click()
+
+
+def by_gamepad(page):
+    page.evaluate("pad.axes = [-1, 0]")
+    says_left(page)
+    for way in (-0.6, -0.2, 0):
+        page.evaluate("way => { pad.axes = [way, 0]; }", way)
+        page.wait_for_timeout(40)
+    says_left(page)
+    page.evaluate("pad.buttons[0].pressed = true")
+    page.wait_for_timeout(100)
+    page.evaluate("pad.buttons[0].pressed = false")
+
+
 def question(page, arm, number):
     """The motion of a question, once page and server show it; None where enough is known by then."""
     heading = page.get_by_role("heading", name=re.compile(f"^(Question {number} of|Learning|The robot has)"))
@@ -83,16 +127,20 @@ def question(page, arm, number):
 
 
 def straightness(page, arm, person, drag, press_until_moving, press_enable):
-    """The cosine between the way of the tool and what the person means by up, after half a second of it."""
+    """The cosine between the way of the tool from its start and what the person means by up."""
     page.get_by_role("radio", name="Learned motions").check()
     arm.wait(lambda: arm.state["mode"] == "latent")
     page.get_by_role("button", name="Arm back to start").click()
     page.wait_for_timeout(500)
-    press_enable(page, arm)
     begin = arm.tool
-    press_until_moving(page, arm, lambda: drag(page, 0, 0.4), page.mouse.up)
-    arm.wait(lambda: np.linalg.norm(arm.tool - begin) > 0.05)
-    page.mouse.up()
+    # A busy computer keeps inputs waiting, and the arm stops then: whoever drives enables it again.
+    for _ in range(8):
+        press_enable(page, arm)
+        press_until_moving(page, arm, lambda: drag(page, 0, 0.4), page.mouse.up)
+        arm.comes_to(lambda: np.linalg.norm(arm.tool - begin) > WAY_M or not arm.enabled, 8.0)
+        page.mouse.up()
+        if np.linalg.norm(arm.tool - begin) > WAY_M:
+            break
     page.keyboard.press("Escape")
     arm.comes_to_rest()
     way = arm.tool - begin
@@ -102,7 +150,7 @@ def straightness(page, arm, person, drag, press_until_moving, press_enable):
 def test_a_person_is_asked_and_the_arm_does_what_they_mean(
     open_page, arm, person, drag_stick, press_until_moving, press_enable, run
 ):
-    page = open_page()
+    page = open_page(GAMEPAD)
     page.get_by_role("button", name="Ask to drive").click()
     page.get_by_role("button", name="Let others drive").wait_for()
     hands = (person, drag_stick, press_until_moving, press_enable)
@@ -128,15 +176,12 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
     for panel in ("Buttons", "Switch", "Stick"):
         page.get_by_role("radio", name=panel).check()
         assert found(page) == []
-    # By buttons first; then taken back, as after a slip.
-    page.get_by_role("radio", name="Buttons").check()
-    page.get_by_role("button", name="Left", exact=True).click(delay=200)
-    expect(page.locator("#answer")).to_have_text("Your answer: left 100 %")
-    page.get_by_role("heading", name="Question 1").focus()
-    page.keyboard.press("Enter")
-    question(page, arm, 2)
-    page.get_by_role("button", name="Back", exact=True).click()
-    motion = question(page, arm, 1)
+    # Each time taken back, as after a slip.
+    for hand in (by_buttons, by_one_switch, by_gamepad):
+        hand(page)
+        question(page, arm, 2)
+        page.get_by_role("button", name="Back", exact=True).click()
+        assert question(page, arm, 1) == motion
     page.get_by_role("radio", name="Stick").check()
     # A page that is opened again shows the same question.
     page.reload()
