@@ -21,29 +21,51 @@ KEYS = ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown")
 HELD_MS = 250
 RESTING_MS = 450
 
-WATCH = """() => {
-  let tool = null;
-  let pressedAt = null;
+PARTS = ("pressed to sent", "sent to heard of motion", "heard to drawn", "pressed to drawn")
+
+WATCH = """{
+  let press = null;
+  let heard = null;
+  let drawn = null;
+  const moved = (from, to) => from !== null && to.some((value, axis) => Math.abs(value - from[axis]) > 1e-6);
   window.delays = [];
   window.addEventListener("keydown", (event) => {
-    if (event.code.startsWith("Arrow") && !event.repeat) pressedAt = event.timeStamp;
+    if (event.code.startsWith("Arrow") && !event.repeat) press = { at: event.timeStamp };
   }, { capture: true });
-  window.addEventListener("keyup", () => { pressedAt = null; }, { capture: true });
-  document.addEventListener("arm-drawn", (event) => {
-    const now = event.detail.tool;
-    const moved = tool !== null && now.some((value, axis) => Math.abs(value - tool[axis]) > 1e-6);
-    if (moved && pressedAt !== null) {
-      window.delays.push(performance.now() - pressedAt);
-      pressedAt = null;
+  window.addEventListener("keyup", () => { press = null; }, { capture: true });
+  const Socket = window.WebSocket;
+  window.WebSocket = class extends Socket {
+    constructor(...words) {
+      super(...words);
+      if (!this.url.endsWith("/drive")) return;
+      this.addEventListener("message", ({ data }) => {
+        const { type, tool } = JSON.parse(data);
+        if (type !== "state") return;
+        if (press?.sent && !press.heard && moved(heard, tool)) press.heard = performance.now();
+        heard = tool;
+      });
     }
-    tool = now;
+    send(text) {
+      super.send(text);
+      const said = JSON.parse(text);
+      const deflected = said.type === "input" && said.u.some(Boolean);
+      if (press && !press.sent && deflected) press.sent = performance.now();
+    }
+  };
+  document.addEventListener("arm-drawn", ({ detail: { tool } }) => {
+    if (press?.heard && moved(drawn, tool)) {
+      const { at, sent, heard: known } = press;
+      const now = performance.now();
+      window.delays.push([sent - at, known - sent, now - known, now - at]);
+      press = null;
+    }
+    drawn = tool;
   });
 }"""
 
 
-def measure(page: Page, inputs: int) -> tuple[list[float], int]:
-    """Delays of the inputs whose motion was drawn, ms, and how often the arm had to be enabled again."""
-    page.evaluate(WATCH)
+def measure(page: Page, inputs: int) -> tuple[list[list[float]], int]:
+    """`PARTS` of the inputs whose motion was drawn, ms, and how often the arm had to be enabled again."""
     enables = 0
     for number in range(inputs):
         if not page.locator("#status[data-phase=ready]").count():
@@ -67,16 +89,22 @@ def main() -> None:
     parser.add_argument("--hardware", action="store_true", help="draw with the graphics processor")
     parser.add_argument("--out", type=Path)
     given = parser.parse_args()
-    with served(given.run) as address, chromium(software=not given.hardware) as browser:
+    with served(given.run) as site, chromium(software=not given.hardware) as browser:
         page = browser.new_page(viewport={"width": 1280, "height": 800})
-        page.goto(address)
+        page.add_init_script(WATCH)
+        page.goto(site.address)
         page.locator(".label").first.wait_for(state="attached")
         delays, enables = measure(page, given.inputs)
     figures = {
         "inputs": given.inputs,
         "drawn": len(delays),
-        "median_ms": float(np.median(delays)),
-        "p95_ms": float(np.percentile(delays, 95)),
+        **{
+            part: {
+                "median_ms": round(float(np.median(times)), 1),
+                "p95_ms": round(float(np.percentile(times, 95)), 1),
+            }
+            for part, times in zip(PARTS, np.transpose(delays), strict=True)
+        },
         "enabled_again": max(enables - 1, 0),
         "software_drawing": not given.hardware,
         "cores": os.cpu_count(),

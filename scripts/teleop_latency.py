@@ -26,14 +26,12 @@ import uvicorn
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from latentarm.control.journal import JournalEpisode, read_journal
-from latentarm.types import BoolArray, FloatArray
 from latentarm.web.addresses import TeleopConfig, listen
 from latentarm.web.server import build_app, gated, server_config
 from latentarm.web.setting import Spec, load_setting
 from latentarm.web.supervisor import ControlProcess
+from teleop_journal import Halt, halts, spread
 
-STILL_RAD_S = 0.01
 FAULTS = ("inputs cease", "socket closed", "event loop blocked", "server killed")
 INPUT_PERIOD_S = 0.02
 
@@ -213,12 +211,12 @@ def deadlines(run: Path | None, pages: int, for_s: float) -> dict[str, float]:
     return {"pages": pages, "ticks": ticks, "met_share": 1.0 - late}
 
 
-def fault_times(run: Path | None, fault: str, tries: int) -> tuple[list[tuple[float, float]], int]:
-    """Times from a fault to zero command and to rest, s, one pair for each try; and how many tries were void.
+def fault_times(run: Path | None, fault: str, tries: int) -> tuple[list[Halt], int]:
+    """How the arm stopped after a fault, once for each try; and how many tries were void.
 
     A try is void where the arm had stopped for another reason just before the fault.
     """
-    found: list[tuple[float, float]] = []
+    found: list[Halt] = []
     void = 0
     while len(found) < tries:
         # Only a killed server cannot be used again.
@@ -227,8 +225,7 @@ def fault_times(run: Path | None, fault: str, tries: int) -> tuple[list[tuple[fl
             with Server(run, Path(out)) as server:
                 faults_s = [one_fault(server, fault) for _ in range(at_once)]
             (journal,) = Path(out).glob("*.sqlite")
-            episodes = read_journal(journal)
-        times = [after(episode, fault_s) for episode, fault_s in zip(episodes, faults_s, strict=True)]
+            times = halts(journal, faults_s)
         found += [one for one in times if one is not None]
         void += times.count(None)
     return found, void
@@ -261,29 +258,6 @@ def one_fault(server: Server, fault: str) -> float:
     return fault_s
 
 
-def after(episode: JournalEpisode, fault_s: float) -> tuple[float, float] | None:
-    """From the fault to the first command of zero, and to one below 0.01 rad/s; None where it is void."""
-    times = np.array([record.time_s for record in episode.records])
-    speeds = np.array([np.abs(record.command.velocity).max() for record in episode.records])
-    if speeds[times <= fault_s][-1] < STILL_RAD_S:
-        return None
-    if speeds[-1] > 0.0:
-        raise RuntimeError(f"the arm never stopped after the fault in the episode {episode.header.task!r}")
-    return first_after(times, speeds > 0.0) - fault_s, first_after(times, speeds > STILL_RAD_S) - fault_s
-
-
-def first_after(times: FloatArray, moving: BoolArray) -> float:
-    """When the first sample after the last that moved was taken, s."""
-    return float(times[np.flatnonzero(moving)[-1] + 1])
-
-
-def spread(times: list[float]) -> dict[str, float]:
-    """Median, p95 and worst, ms."""
-    shares = {"median_ms": 50, "p95_ms": 95, "worst_ms": 100}
-    figures = {name: round(1000.0 * float(np.percentile(times, share)), 1) for name, share in shares.items()}
-    return {"n": len(times), **figures}
-
-
 def main() -> None:
     """Measure what was asked for, and write it after every table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -309,8 +283,8 @@ def main() -> None:
     for fault in chosen.faults:
         if chosen.tries:
             times, void = fault_times(chosen.run, fault, chosen.tries)
-            tell(f"{fault}, to zero command", spread([zero for zero, _ in times]) | {"void": void})
-            tell(f"{fault}, to rest", spread([rest for _, rest in times]))
+            tell(f"{fault}, to zero command", spread([one.zero_s for one in times]) | {"void": void})
+            tell(f"{fault}, to rest", spread([one.rest_s for one in times]))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 from playwright.sync_api import Browser, Page, sync_playwright
@@ -20,17 +21,45 @@ SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swi
 START_S = 60.0
 
 
+@dataclass(frozen=True)
+class Site:
+    """A running `latentarm teleop`.
+
+    Attributes:
+        address: of the page.
+        pid: of the web server's process.
+    """
+
+    address: str
+    pid: int
+
+
 @contextmanager
-def served(run: Path | None) -> Iterator[str]:
-    """`latentarm teleop RUN` as long as the block lasts; the page's address."""
+def served(run: Path | None, out: Path | None = None) -> Iterator[Site]:
+    """`latentarm teleop RUN` as long as the block lasts.
+
+    Args:
+        run: a trained run.
+        out: keeps what is recorded.
+    """
     with tempfile.TemporaryDirectory() as folder:
         said = Path(folder) / "said"
         words = [] if run is None else [str(run)]
-        command = [sys.executable, "-m", "latentarm", "teleop", *words, "--port", "0", "--out", folder]
+        command = [
+            sys.executable,
+            "-m",
+            "latentarm",
+            "teleop",
+            *words,
+            "--port",
+            "0",
+            "--out",
+            str(out or folder),
+        ]
         with said.open("w") as file:
             server = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT)
         try:
-            yield _address(server, said)
+            yield Site(_address(server, said), server.pid)
         finally:
             server.send_signal(signal.SIGINT)
             server.wait(20)
@@ -62,16 +91,28 @@ def chromium(software: bool = True) -> Iterator[Browser]:
     Args:
         software: draw without a graphics processor.
     """
+    drawing = SOFTWARE_GL if software else ()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=find_chromium(), args=[*drawing, *sandboxed()])
+        yield browser
+        browser.close()
+
+
+def find_chromium() -> str:
+    """The Chromium of this machine.
+
+    Raises:
+        SystemExit: there is none.
+    """
     found = next((path for name in NAMES if (path := shutil.which(name))), None)
     if found is None:
         raise SystemExit(f"No Chromium is installed: looked for {', '.join(NAMES)}.")
-    # Chromium does not run sandboxed as root, which is what containers run as.
-    sandbox = ("--no-sandbox",) if os.getuid() == 0 else ()
-    drawing = SOFTWARE_GL if software else ()
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=found, args=[*drawing, *sandbox])
-        yield browser
-        browser.close()
+    return found
+
+
+def sandboxed() -> tuple[str, ...]:
+    """Arguments without which Chromium does not run here: as root, as in containers, it has no sandbox."""
+    return ("--no-sandbox",) if os.getuid() == 0 else ()
 
 
 def enable(page: Page) -> None:

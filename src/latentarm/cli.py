@@ -221,7 +221,8 @@ def train(
 
     For example: latentarm train --demonstrations pour --model cae --latent-dim 2 --seeds 5
     """
-    from latentarm.experiments.training import TrainConfig, train_run
+    from latentarm.models.training import epoch_bar
+    from latentarm.runs.training import TrainConfig, train_run
 
     config = TrainConfig(
         demonstrations=demonstrations,
@@ -240,9 +241,9 @@ def train(
         end_effector=end_effector,
         out=out or Path("runs") / f"{demonstrations.resolve().name}-{model}",
         resume=resume,
-        progress=not json and sys.stderr.isatty(),
     )
-    rows = train_run(config)
+    with epoch_bar(not json and sys.stderr.isatty()) as report:
+        rows = train_run(config, report)
 
     _show(rows, json)
     _say(f"The run is {config.out}/; next: latentarm evaluate {config.out}", json)

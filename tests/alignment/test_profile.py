@@ -10,12 +10,17 @@ import numpy as np
 import pytest
 
 from latentarm.alignment.profile import (
+    TRIAL,
     Profile,
+    discard_trial,
+    keep_trial,
     load_profile,
     model_fingerprint,
     new_profile_folder,
     profile_folder,
+    profile_names,
     save_profile,
+    trial_folder,
 )
 from latentarm.alignment.runtime import LearnedAlignment
 from latentarm.alignment.training import FitConfig, fit_alignments
@@ -158,3 +163,41 @@ def test_a_profile_needs_no_torch(run):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+@pytest.fixture
+def tried(run, alignment) -> Path:
+    """The run, with a profile that is tried."""
+    profile = Profile(alignment, model_fingerprint(run, 1), seed_index=1)
+    save_profile(profile, trial_folder(run), {"person": "simulated"})
+    return run
+
+
+def test_what_is_tried_is_nobody_s_until_it_is_kept(tried, alignment):
+    assert profile_names(tried) == ("ada",)
+    assert load_profile(tried, TRIAL).alignment.latent_dim == alignment.latent_dim
+    keep_trial(tried, "bob")
+    assert profile_names(tried) == ("ada", "bob")
+    assert load_profile(tried, "bob").seed_index == 1
+    with pytest.raises(UserError, match="no profile"):
+        load_profile(tried, TRIAL)
+
+
+def test_what_is_discarded_is_gone(tried):
+    discard_trial(tried)
+    discard_trial(tried)
+    assert not trial_folder(tried).exists()
+    assert profile_names(tried) == ("ada",)
+
+
+@pytest.mark.parametrize("name", ["ada", TRIAL, "..", "a b", ""])
+def test_a_name_that_is_taken_or_none_keeps_nothing(tried, name):
+    with pytest.raises(UserError):
+        keep_trial(tried, name)
+    assert trial_folder(tried).exists()
+
+
+def test_there_may_be_nothing_to_keep(run):
+    with pytest.raises(UserError, match="cannot be written"):
+        keep_trial(run, "bob")
+    assert profile_names(run) == ("ada",)

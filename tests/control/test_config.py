@@ -87,6 +87,7 @@ def test_a_config_that_is_accepted_stops_in_time(arm, speed, stop, timeout, dt):
         input_timeout_s=timeout,
         acceleration_fraction=0.1,
         jerk_fraction=0.1,
+        release_fraction=0.1,
     )
     with suppress(UserError):
         bounds = Bounds(config, arm, dt)
@@ -96,9 +97,10 @@ def test_a_config_that_is_accepted_stops_in_time(arm, speed, stop, timeout, dt):
     assert timeout + dt + worst <= STOPPED_WITHIN_S + 1e-9
 
 
-def test_a_softer_stop_than_ordinary_motion_is_refused():
+@pytest.mark.parametrize("name", ["acceleration_fraction", "jerk_fraction", "release_fraction"])
+def test_a_softer_stop_than_ordinary_motion_is_refused(name):
     with pytest.raises(UserError, match="stop_fraction"):
-        SafetyConfig(acceleration_fraction=0.9)
+        SafetyConfig(**{name: 0.9})
 
 
 @pytest.mark.parametrize(

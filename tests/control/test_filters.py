@@ -156,7 +156,7 @@ def test_without_a_workspace_nothing_is_changed(arm):
 @settings(deadline=None)
 def test_ramp_keeps_acceleration_and_jerk_and_arrives(surroundings, wanted, ticks):
     bounds, dt = surroundings.bounds, 0.01
-    ramp = Ramp(bounds)
+    ramp = Ramp(bounds.dt_s, bounds.acceleration, bounds.jerk)
     velocity, acceleration = np.zeros(7), np.zeros(7)
     path = [velocity, velocity]
     for target in [*wanted, *[wanted[-1]] * 120]:
@@ -172,7 +172,9 @@ def test_ramp_keeps_acceleration_and_jerk_and_arrives(surroundings, wanted, tick
 
 def test_ramp_alone_is_a_filter(surroundings):
     here = situation(surroundings)
-    ramped = Ramp(surroundings.bounds).apply(np.full(7, 0.3), here)
+    ramped = Ramp(0.01, surroundings.bounds.acceleration, surroundings.bounds.jerk).apply(
+        np.full(7, 0.3), here
+    )
     assert (ramped > 0.0).all()
     assert (ramped <= surroundings.bounds.acceleration * 0.01 + 1e-12).all()
 

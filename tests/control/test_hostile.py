@@ -100,7 +100,8 @@ def test_an_error_without_words_stops_the_arm(driven, arm):
 
 
 def test_a_stop_that_was_harder_than_ordinary_motion_can_be_taken_up_again(two_arms):
-    ramp = Ramp(Bounds(SafetyConfig(), two_arms, DT))
+    bounds = Bounds(SafetyConfig(), two_arms, DT)
+    ramp = Ramp(DT, bounds.acceleration, bounds.jerk)
     sign = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0, -1.0])
     # Figures at which the generator of ramps raises an error of its own.
     found = ramp.ramped(0.2981398858302408 * sign, 0.2945228216277188 * sign, -2.400000000000002 * sign)

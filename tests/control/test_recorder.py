@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from latentarm.control.export import demonstrations_of, export_journal
-from latentarm.control.journal import read_journal
+from latentarm.control.journal import list_journal, read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.errors import UserError
 from latentarm.types import Command, Goal, Pose, StepRecord, Stop
@@ -100,6 +100,21 @@ def test_an_episode_that_was_not_ended_is_kept_and_flagged(tmp_path):
     whole, cut = read_journal(path)
     assert (whole.complete, len(whole.records)) == (True, 5)
     assert (cut.complete, len(cut.records)) == (False, 3)
+
+
+def test_the_table_of_contents_says_what_can_be_read_one_by_one(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    write(path, [5, 1, 3], end_last=False)
+    entries = list_journal(path)
+    assert [entry.complete for entry in entries] == [True, True, False]
+    assert {entry.task for entry in entries} == {header().task}
+    for entry, episode in zip(entries, read_journal(path), strict=True):
+        assert entry.duration_s == episode.records[-1].time_s - episode.records[0].time_s
+        (alone,) = read_journal(path, only=[entry.number])
+        assert len(alone.records) == len(episode.records)
+    rewritten(path, lambda scalars: scalars[:3])
+    with pytest.raises(UserError, match="damaged"):
+        list_journal(path)
 
 
 def rewritten(path, scalars_of):

@@ -12,12 +12,13 @@ import pytest
 
 from latentarm.alignment.answers import Motions
 from latentarm.errors import UserError
-from latentarm.experiments.asking import PersonAtTerminal, Question, SimulatedPerson
+from latentarm.experiments.asking import PersonAtTerminal, SimulatedPerson
 from latentarm.experiments.motion_text import CELLS, draw, moved, said
 from latentarm.experiments.stick_line import parse, read_line
 from latentarm.kinematics.rotations import rotation_from_vector
 from latentarm.operators.preference import ToolAxes
 from latentarm.robots.planar import planar
+from latentarm.runs.person import Question
 from latentarm.types import Pose
 
 UP, DOWN, RIGHT, LEFT = (f"\x1b[{letter}" for letter in "ABCD")

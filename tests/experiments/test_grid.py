@@ -12,8 +12,8 @@ import pytest
 from latentarm.errors import UserError
 from latentarm.experiments import backends
 from latentarm.experiments.backends import BACKENDS
-from latentarm.experiments.checks import check_seed
 from latentarm.experiments.grid import CellError, run_grid
+from latentarm.runs.checks import check_seed
 
 EVERYWHERE = [("joblib", 1), ("joblib", 2), ("dask", 2), ("ray", 2)]
 

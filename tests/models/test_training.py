@@ -1,6 +1,7 @@
 """The training loop: many seeds as one, stopping, and going on after a kill."""
 
 import json
+import math
 import resource
 import signal
 import subprocess
@@ -19,6 +20,7 @@ from latentarm.models.batches import seed_generator
 from latentarm.models.catalogue import MODELS
 from latentarm.models.checkpoint import TrainingState
 from latentarm.models.optimiser import FlatAdam
+from latentarm.models.training import epoch_bar
 
 NEURAL = [name for name in MODELS if name != "pca"]
 SMALL = {"epochs": 4, "hidden": (8, 8), "window": 2}
@@ -188,8 +190,19 @@ def test_the_number_of_threads_is_as_before(demonstrations):
 
 
 def test_the_progress_bar_stays_off_standard_output(demonstrations, capsys):
-    MODELS["cae"](**SMALL).fit(demonstrations, progress=True)
+    with epoch_bar(True) as report:
+        MODELS["cae"](**SMALL).fit(demonstrations, report=report)
     assert capsys.readouterr().out == ""
+
+
+def test_every_epoch_is_reported(demonstrations):
+    heard = []
+    model = MODELS["cae"](**SMALL).fit(demonstrations, report=lambda *said: heard.append(said))
+    epochs, best = len(model.trained_.summary.history), model.held_out_loss_.mean()
+    assert [epoch for epoch, _, _ in heard] == list(range(epochs + 1))
+    assert {most for _, most, _ in heard} == {model.epochs}
+    assert heard[0][2] == math.inf
+    assert heard[-1][2] == pytest.approx(best)
 
 
 def test_adam_is_torchs_adam():

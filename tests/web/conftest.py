@@ -3,7 +3,7 @@ import json
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from multiprocessing import Pipe
 from pathlib import Path
@@ -32,7 +32,7 @@ from latentarm.web.supervisor import ControlProcess
 @pytest.fixture(scope="session")
 def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run for the table: principal components of a few demonstrations."""
-    from latentarm.experiments.training import TrainConfig, train_run
+    from latentarm.runs.training import TrainConfig, train_run
 
     folder = tmp_path_factory.mktemp("trained")
     write_dataset(TableTop().demonstrate(12, np.random.default_rng(0)), folder / "table")
@@ -117,6 +117,7 @@ class Client:
     socket: ClientConnection
     state: dict[str, Any] = field(default_factory=dict)
     welcome: dict[str, Any] = field(default_factory=dict)
+    workshop: dict[str, Any] = field(default_factory=dict)
     refused: str | None = None
     closed: int | None = None
     u: list[float] | None = None
@@ -162,6 +163,8 @@ class Client:
                     self.state = message
                 elif message["type"] == "welcome":
                     self.welcome = message
+                elif message["type"] == "workshop":
+                    self.workshop = message
                 else:
                     self.refused = message["why"]
         self.closed = self.socket.close_code
@@ -253,6 +256,12 @@ def served(spec: Spec) -> Iterator[Site]:
         while not server.started:
             time.sleep(0.01)
         yield Site(port, control, loops[0])
+
+
+@pytest.fixture
+def serve() -> Callable[[Spec], AbstractContextManager[Site]]:
+    """A server of its own for a test that changes what is driven."""
+    return served
 
 
 @pytest.fixture(scope="session")

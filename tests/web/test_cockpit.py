@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from latentarm.control.journal import read_journal
-from latentarm.web.channel import ChooseMode, ChooseProfile, Enable, Record, Reset
+from latentarm.web.channel import ChooseMode, ChooseProfile, ChooseRun, Enable, Record, Reset
 from latentarm.web.cockpit import LATCH_MAX_S
 
 
@@ -184,7 +184,7 @@ def test_an_orphan_brings_the_arm_to_rest_and_ends(desk):
     assert desk.cockpit.change is None
 
 
-@pytest.mark.parametrize("order", [Reset(), ChooseProfile(name="ada")])
+@pytest.mark.parametrize("order", [Reset(), ChooseProfile(name="ada"), ChooseRun(run="other")])
 def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
     def tick(now_s):
         enabled_at(desk, now_s)
@@ -201,6 +201,38 @@ def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
     assert 0.99 < desk.clock.now_s() < 1.05
     assert desk.cockpit.change == order
     assert "Stop the arm first." in {report.why for report in desk.reports}
+    # Nothing more is said until it is there, and that is said.
+    assert [report.loading for report in desk.reports[-2:]] == [False, True]
+
+
+def test_an_episode_ends_before_the_arm_is_put_back(desk):
+    def tick(now_s):
+        desk.give(0.0, 0.0)
+        if abs(now_s - 0.3) < 0.005:
+            desk.order(Record(on=True, task=""))
+        if abs(now_s - 1.0) < 0.005:
+            desk.order(Reset())
+
+    desk.each_tick = tick
+    desk.loop.run()
+    desk.writer.close()
+    assert desk.cockpit.change == Reset()
+    assert desk.writer.status.episodes == 1
+    assert not desk.writer.status.on
+
+
+@pytest.mark.parametrize("u", [(1.0, 0.0), (0.0, 1.0), (-1.0, -1.0)])
+def test_whoever_lets_go_finds_the_arm_at_rest(desk, u):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(*(u if 0.5 <= now_s < 1.4 else (0.0, 0.0)))
+
+    desk.each_tick = tick
+    desk.run(2.0)
+    moving = desk.times()[desk.speeds() > 0.0]
+    assert moving[-1] - 1.4 < 0.15
+    # Enabled all the while: only the end of the loop has stopped it.
+    assert all(record.command.stop is None for record in desk.records if 0.6 < record.time_s < 1.9)
 
 
 def test_an_episode_is_in_the_journal(desk, tmp_path):
@@ -220,7 +252,7 @@ def test_an_episode_is_in_the_journal(desk, tmp_path):
     assert episode.complete
     assert episode.header.task == "stab the carrot"
     assert not episode.records[-1].command.velocity.any()
-    assert len(episode.records) == desk.reports[-1].recording.samples == pytest.approx(150, abs=10)
+    assert len(episode.records) == desk.reports[-1].recording.samples == pytest.approx(115, abs=10)
     assert desk.writer.status.episodes == 1
 
 

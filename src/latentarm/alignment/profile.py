@@ -3,6 +3,7 @@
 import hashlib
 import json
 import re
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,7 @@ from safetensors.numpy import save
 from latentarm.alignment.runtime import LearnedAlignment, tensor_shapes
 from latentarm.demonstrations.folders import check_vacant, staged_folder
 from latentarm.errors import UserError
-from latentarm.files import write_text, written_whole
+from latentarm.files import sync_folder, write_text, written_whole
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, WEIGHTS_NAME, read_tensors
 from latentarm.types import FloatArray
@@ -23,6 +24,9 @@ FOLDER: Final = "profiles"
 ALIGNMENT_NAME: Final = "alignment.safetensors"
 SCHEMA: Final = 1
 NAMED: Final = re.compile(r"\w[\w-]{0,63}")
+
+TRIAL: Final = ".trial"
+"""Where what was learned waits until it is kept under a person's name; itself the name of nobody."""
 
 
 @final
@@ -81,6 +85,45 @@ def new_profile_folder(run: Path, name: str) -> Path:
     return folder
 
 
+def profile_names(run: Path) -> tuple[str, ...]:
+    """People who have a profile of a run, in the order of the names."""
+    found = (path.name for path in (run / FOLDER).glob("*/"))
+    return tuple(sorted(name for name in found if NAMED.fullmatch(name)))
+
+
+def trial_folder(run: Path) -> Path:
+    """Where a run holds a profile that is tried and may not be kept."""
+    return run / FOLDER / TRIAL
+
+
+def keep_trial(run: Path, name: str) -> None:
+    """Give the profile that is tried a person's name.
+
+    Raises:
+        UserError: the name is not one for a folder or has been given already, or there is nothing to keep.
+    """
+    folder = new_profile_folder(run, name)
+    try:
+        trial_folder(run).replace(folder)
+        sync_folder(folder.parent)
+    except OSError as error:
+        raise UserError(f"{folder} cannot be written: {error.strerror or error}.") from error
+
+
+def discard_trial(run: Path) -> None:
+    """Forget the profile that is tried, if there is one.
+
+    Raises:
+        UserError: it cannot be deleted.
+    """
+    folder = trial_folder(run)
+    try:
+        if folder.exists():
+            shutil.rmtree(folder)
+    except OSError as error:
+        raise UserError(f"{folder} cannot be deleted: {error.strerror or error}.") from error
+
+
 def save_profile(profile: Profile, folder: Path, about: Mapping[str, object]) -> None:
     """Write a profile to a new folder, which appears whole or not at all.
 
@@ -116,7 +159,7 @@ def load_profile(run: Path, name: str) -> Profile:
         UserError: there is none of that name, its files are broken or foreign, or it was learned for another
             model.
     """
-    folder = profile_folder(run, name)
+    folder = trial_folder(run) if name == TRIAL else profile_folder(run, name)
     if not folder.is_dir():
         raise UserError(
             f"{run} has no profile '{name}': make one with `latentarm align {run} --name {name}`."

@@ -1,7 +1,8 @@
 """Learning alignments: S runs in one batched loop, each as it would be alone."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Final, final
 
@@ -20,6 +21,9 @@ from latentarm.models.networks import FlatNetworks
 from latentarm.models.optimiser import FlatAdam, falling_rate
 from latentarm.models.training import progress_bar, threads_for
 from latentarm.types import FloatArray
+
+Report = Callable[[int, int], None]
+"""Is told after each step of a fit: how many are done, of how many."""
 
 JUDGED: Final = 512
 """Contexts in which all runs are judged at the end."""
@@ -86,7 +90,7 @@ def fit_alignments(
     *,
     seed_index: int = 0,
     seeds: Sequence[int] | None = None,
-    progress: bool = False,
+    report: Report | None = None,
 ) -> FittedAlignments:
     """Learn an alignment for each run, all runs together.
 
@@ -98,7 +102,7 @@ def fit_alignments(
         config: how; the defaults where None.
         seed_index: which of the model's seeds decodes.
         seeds: S, of the weights and draws of each run; 0..S-1 where None.
-        progress: show a bar.
+        report: see `Report`.
 
     Raises:
         UserError: the model is not fitted or has no such seed, the answers do not fit it, or the training
@@ -116,17 +120,14 @@ def fit_alignments(
     adam = FlatAdam(networks.values)
     draws = loss.draws(seeds, config.steps, config.batch_size)
     rows = 3 * config.batch_size + min(len(answers[0]), ANSWERS_AT_ONCE)
-    with (
-        threads_for(len(seeds) * rows * max(config.hidden, default=1)),
-        progress_bar(progress, "steps") as bar,
-    ):
-        task = bar.add_task("learning the alignment", total=config.steps, loss="")
+    report = report or unheard
+    with threads_for(len(seeds) * rows * max(config.hidden, default=1)):
         for step in range(config.steps):
             draw = Draw(*(part[step] for part in draws))
             networks.fill_gradient(loss(networks.networks, draw).sum())
             rate = falling_rate(config.learning_rate, step, config.steps)
             adam.step(networks.values, networks.gradient, rate)
-            bar.update(task, completed=step + 1)
+            report(step + 1, config.steps)
     with torch.no_grad():
         # The same draws for every run, so that their losses compare.
         judged = loss.draws([JUDGE] * len(seeds), 1, JUDGED)
@@ -140,3 +141,19 @@ def fit_alignments(
         for run in range(len(seeds))
     )
     return FittedAlignments(alignments, final)
+
+
+def unheard(step: int, steps: int) -> None:
+    """A `Report` to nobody."""
+
+
+@contextmanager
+def step_bar(shown: bool) -> Generator[Report]:
+    """A `Report` that shows a bar on standard error.
+
+    Args:
+        shown: whether there is one at all.
+    """
+    with progress_bar(shown, "steps") as bar:
+        task = bar.add_task("learning the alignment", loss="")
+        yield lambda step, steps: bar.update(task, total=steps, completed=step)

@@ -3,7 +3,8 @@
 import json
 import math
 import sqlite3
-from contextlib import closing
+from collections.abc import Collection, Generator
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
@@ -35,30 +36,97 @@ class JournalEpisode:
     complete: bool
 
 
-def read_journal(path: Path) -> list[JournalEpisode]:
-    """Every episode of a journal, with every acknowledged sample; the file is not changed.
+@final
+@dataclass(frozen=True)
+class JournalEntry:
+    """One recorded episode in a journal's table of contents.
+
+    Attributes:
+        number: its own, for `read_journal`.
+        task: what was done, in words.
+        duration_s: from its first sample to its last, s.
+        complete: whether the recording was ended, rather than cut short.
+    """
+
+    number: int
+    task: str
+    duration_s: float
+    complete: bool
+
+
+def read_journal(path: Path, only: Collection[int] | None = None) -> list[JournalEpisode]:
+    """The episodes of a journal, with every acknowledged sample; the file is not changed.
 
     Args:
         path: what a `Recorder` wrote. Its ``-wal`` file, where one is left, belongs to it.
+        only: numbers of the episodes to read, from `list_journal`; all where None.
 
     Returns:
-        The episodes; those cut short by a kill have ``complete`` False.
+        The episodes, oldest first; those cut short by a kill have ``complete`` False.
 
     Raises:
         UserError: there is no such file, it is damaged, or it is no journal.
+    """
+    with _opened(path) as database:
+        (verdict,) = database.execute("PRAGMA quick_check(1)").fetchone()
+        if verdict != "ok":
+            raise UserError(f"The journal {path} is damaged ({verdict}): restore it from a copy.")
+        rows = database.execute("SELECT id, about, complete FROM episodes ORDER BY id").fetchall()
+        return [_episode(database, path, *row) for row in rows if only is None or row[0] in only]
+
+
+def list_journal(path: Path) -> list[JournalEntry]:
+    """A journal's table of contents, oldest episode first; quick, however long the episodes are.
+
+    Args:
+        path: what a `Recorder` wrote, or still writes.
+
+    Raises:
+        UserError: there is no such file, it is damaged, or it is no journal.
+    """
+    with _opened(path) as database:
+        rows = database.execute("SELECT id, about, complete FROM episodes ORDER BY id").fetchall()
+        return [
+            JournalEntry(
+                number=number,
+                task=_checked_header(path, number, about).task,
+                duration_s=_duration_s(database, path, number),
+                complete=bool(complete),
+            )
+            for number, about, complete in rows
+        ]
+
+
+@contextmanager
+def _opened(path: Path) -> Generator[sqlite3.Connection]:
+    """The database, to be read only.
+
+    Raises:
+        UserError: there is no such file, it is damaged, or it is no journal; also for what fails within.
     """
     if not path.is_file():
         raise UserError(f"There is no journal {path}.")
     try:
         with closing(sqlite3.connect(f"file:{_quoted(path)}?mode=ro", uri=True)) as database:
             check_is_journal(database, path, may_be_empty=False)
-            (verdict,) = database.execute("PRAGMA quick_check(1)").fetchone()
-            if verdict != "ok":
-                raise UserError(f"The journal {path} is damaged ({verdict}): restore it from a copy.")
-            rows = database.execute("SELECT id, about, complete FROM episodes ORDER BY id").fetchall()
-            return [_episode(database, path, *row) for row in rows]
+            yield database
     except sqlite3.Error as error:
         raise UserError(f"The journal {path} cannot be read ({error}): restore it from a copy.") from error
+
+
+def _duration_s(database: sqlite3.Connection, path: Path, number: int) -> float:
+    ends = database.execute(
+        "SELECT figures, stop, limited_by FROM samples WHERE episode = :episode AND number IN ("
+        "SELECT min(number) FROM samples WHERE episode = :episode UNION "
+        "SELECT max(number) FROM samples WHERE episode = :episode) ORDER BY number",
+        {"episode": number},
+    ).fetchall()
+    if not ends:
+        return 0.0
+    try:
+        return _record(*ends[-1]).time_s - _record(*ends[0]).time_s
+    except (ValueError, TypeError) as error:
+        raise _damaged(path, number, error) from error
 
 
 def _quoted(path: Path) -> str:
@@ -72,12 +140,23 @@ def _episode(
     samples = database.execute(
         "SELECT figures, stop, limited_by FROM samples WHERE episode = ? ORDER BY number", (number,)
     ).fetchall()
+    header = _checked_header(path, number, about)
     try:
-        header = _header(json.loads(about))
         records = tuple(_record(*sample) for sample in samples)
-    except (ValueError, KeyError, TypeError) as error:
-        raise UserError(f"Episode {number} of the journal {path} is damaged ({error}).") from error
+    except (ValueError, TypeError) as error:
+        raise _damaged(path, number, error) from error
     return JournalEpisode(header, records, bool(complete))
+
+
+def _checked_header(path: Path, number: int, about: str) -> EpisodeHeader:
+    try:
+        return _header(json.loads(about))
+    except (ValueError, KeyError, TypeError) as error:
+        raise _damaged(path, number, error) from error
+
+
+def _damaged(path: Path, number: int, error: Exception) -> UserError:
+    return UserError(f"Episode {number} of the journal {path} is damaged ({error}).")
 
 
 def _header(about: dict[str, Any]) -> EpisodeHeader:

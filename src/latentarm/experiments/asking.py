@@ -1,61 +1,16 @@
 """Whom `latentarm align` asks: a person at the terminal, or a simulated one."""
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 
-from latentarm.alignment.answers import Motions
 from latentarm.errors import UserError
 from latentarm.experiments.motion_text import draw, moved, said
 from latentarm.experiments.stick_line import parse
-from latentarm.kinematics.chain import Chain
 from latentarm.operators.preference import Preference
+from latentarm.runs.person import Kind, Person, Question, Say
 from latentarm.types import FloatArray
-
-Say = Callable[[str], None]
-"""Shows text to the person."""
-
-
-@final
-@dataclass(frozen=True, eq=False)
-class Question:
-    """One motion, and what a person sees of it.
-
-    Attributes:
-        number: counted from 1.
-        total: how many there may be.
-        motion: one motion.
-        chain: the arm.
-        reach_m: the longest way of a tool in any motion, m.
-        axes: d, numbers that the answer has.
-    """
-
-    number: int
-    total: int
-    motion: Motions
-    chain: Chain
-    reach_m: float
-    axes: int
-
-
-class Person(ABC):
-    """Whoever answers."""
-
-    @property
-    @abstractmethod
-    def kind(self) -> str:
-        """``person`` or ``simulated person``, as the profile keeps it."""
-
-    @abstractmethod
-    def answer(self, question: Question) -> FloatArray | None:
-        """The input (d,) by which they would ask for the motion, or None where they would not know.
-
-        Raises:
-            UserError: there is nobody to ask any more.
-        """
 
 
 @final
@@ -72,7 +27,7 @@ class SimulatedPerson(Person):
         self._say = say
 
     @property
-    def kind(self) -> str:
+    def kind(self) -> Kind:
         """``simulated person``."""
         return "simulated person"
 
@@ -101,7 +56,7 @@ class PersonAtTerminal(Person):
         self._read = read
 
     @property
-    def kind(self) -> str:
+    def kind(self) -> Kind:
         """``person``."""
         return "person"
 

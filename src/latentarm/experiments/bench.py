@@ -18,10 +18,11 @@ from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.latent import LatentController
-from latentarm.experiments.checks import check_count, check_seed
 from latentarm.kinematics.obstacles import Sphere
 from latentarm.models.autoencoders import CVAE
+from latentarm.models.training import epoch_bar
 from latentarm.robots.simulated import SimulatedArm
+from latentarm.runs.checks import check_count, check_seed
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Input, Row
 
@@ -219,7 +220,8 @@ def _time_fits(demonstrations: Demonstrations, seed: int, progress: bool) -> tup
 def _fit_s(model: CVAE, demonstrations: Demonstrations, progress: bool) -> float:
     """How long a fit takes, s."""
     began = time.perf_counter()
-    model.fit(demonstrations, progress=progress)
+    with epoch_bar(progress) as report:
+        model.fit(demonstrations, report=report)
     return time.perf_counter() - began
 
 

@@ -21,12 +21,10 @@ from latentarm.controllers.latent import LatentController
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.errors import UserError
 from latentarm.experiments.arm_figure import draw_task
-from latentarm.experiments.checks import check_count, check_seed
 from latentarm.experiments.drive_figures import draw_drives, draw_inputs
 from latentarm.experiments.driving import drive_all
 from latentarm.experiments.evaluating import evaluate_run
 from latentarm.experiments.simulation import Setup, Trace
-from latentarm.experiments.training import TrainConfig, train_run
 from latentarm.files import write_text
 from latentarm.metrics.comparison_figure import comparison_figure
 from latentarm.metrics.drives import drive_rows
@@ -34,7 +32,10 @@ from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject, headline
 from latentarm.metrics.table import markdown_table
 from latentarm.models.decoder import load_decoder
+from latentarm.models.training import epoch_bar
 from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.runs.checks import check_count, check_seed
+from latentarm.runs.training import TrainConfig, train_run
 from latentarm.style import save_figure
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Row
@@ -116,18 +117,17 @@ def run_demo(config: DemoConfig) -> list[Row]:
 
 def _train(config: DemoConfig, model: str) -> list[Row]:
     run = config.out / "runs" / model
-    train_run(
-        TrainConfig(
-            demonstrations=config.out / "demonstrations",
-            model=model,
-            out=run,
-            seeds=config.seeds,
-            seed=config.seed,
-            state_noise_rad=STATE_NOISE_RAD,
-            epochs=config.epochs,
-            progress=config.bars,
-        )
+    chosen = TrainConfig(
+        demonstrations=config.out / "demonstrations",
+        model=model,
+        out=run,
+        seeds=config.seeds,
+        seed=config.seed,
+        state_noise_rad=STATE_NOISE_RAD,
+        epochs=config.epochs,
     )
+    with epoch_bar(config.bars) as report:
+        train_run(chosen, report)
     return evaluate_run(run, run, config.seed)
 
 

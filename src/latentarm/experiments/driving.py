@@ -16,13 +16,13 @@ from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.errors import UserError
-from latentarm.experiments.checks import check_count, check_positive, check_seed
 from latentarm.experiments.drive_figures import draw_drives
 from latentarm.experiments.simulation import RATE_HZ, Setup, Trace, simulate
 from latentarm.metrics.drives import drive_rows
 from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject
 from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.runs.checks import check_count, check_positive, check_seed
 from latentarm.runs.folder import read_run
 from latentarm.runs.setting import TaskName, latent_controller, task_of_run, task_without_run
 from latentarm.tasks.task import Task

@@ -5,8 +5,6 @@ from pathlib import Path
 import numpy as np
 
 from latentarm.errors import UserError
-from latentarm.experiments.checks import check_seed
-from latentarm.experiments.training import prepared
 from latentarm.metrics.effects import axis_effects, axis_grid
 from latentarm.metrics.evaluation import EvaluationConfig, evaluate
 from latentarm.metrics.latent_effect_figure import latent_effect_figure
@@ -17,7 +15,9 @@ from latentarm.metrics.summary import Subject
 from latentarm.models.catalogue import load_model
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.robot import Robot
+from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import Run, read_run, robot_of
+from latentarm.runs.training import prepared
 from latentarm.style import save_figure
 from latentarm.types import Demonstrations, Row
 

@@ -35,7 +35,7 @@ from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.torch_decoder import TorchDecoder
 from latentarm.models.trained import TrainedModel, TrainingSummary
-from latentarm.models.training import TrainingResult
+from latentarm.models.training import Report, TrainingResult
 from latentarm.robots.catalogue import load_robot
 from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs
 
@@ -117,7 +117,7 @@ class LatentActionModel(ABC):
         dimensions: Dimensions,
         term: ScaledTerm | None,
         checkpoint: Path | None,
-        progress: bool,
+        report: Report | None,
     ) -> TrainingResult:
         """Fit the weights of S seeds to normalised pairs."""
 
@@ -141,7 +141,7 @@ class LatentActionModel(ABC):
         chain: Chain | None = None,
         term: LossTerm | None = None,
         checkpoint: Path | None = None,
-        progress: bool = False,
+        report: Report | None = None,
     ) -> Self:
         """Learn from demonstrations, all seeds at once.
 
@@ -155,7 +155,7 @@ class LatentActionModel(ABC):
                 demonstrated.
             checkpoint: file to write the training's state to and, if it exists, to go on from. It
                 stays when the training is done; delete it once the model is saved.
-            progress: show a bar.
+            report: is told after each epoch, by models that are trained in epochs.
 
         Returns:
             This model.
@@ -181,7 +181,7 @@ class LatentActionModel(ABC):
         )
         arm = self._arm(demonstrations, chain) if self.sees_tools else None
         chosen = tuple(int(index) for index in held_out)
-        self.trained_ = self._fit_pairs(pairs, chosen, arm, term, checkpoint, progress)
+        self.trained_ = self._fit_pairs(pairs, chosen, arm, term, checkpoint, report)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds
             warn(CollapseWarning(describe_collapse(self.kind, seeds, self.collapsed_)), stacklevel=2)
@@ -314,7 +314,7 @@ class LatentActionModel(ABC):
         arm: Chain | None,
         term: LossTerm | None,
         checkpoint: Path | None,
-        progress: bool,
+        report: Report | None,
     ) -> TrainedModel:
         outside = np.isin(pairs.episode, held_out)
         if outside.all() or not outside.any():
@@ -355,7 +355,7 @@ class LatentActionModel(ABC):
             joints=dimensions.action,
             speed=float(np.sqrt(np.square(action).sum(axis=1).mean())),
         )
-        learned = self._learn(data, dimensions, scaled, checkpoint, progress)
+        learned = self._learn(data, dimensions, scaled, checkpoint, report)
         weights = learned.weights
         latents = self._encode_rows(weights, data.context, data.action)
         centre = np.zeros_like(latents[:, 0]) if self.rests_at_zero else latents.mean(axis=1)

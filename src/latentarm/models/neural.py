@@ -18,7 +18,7 @@ from latentarm.models.model import LatentActionModel, Weights
 from latentarm.models.networks import Networks, mlp, networks_from_arrays
 from latentarm.models.scaling import SPAN_QUANTILE
 from latentarm.models.term import ScaledTerm, Span
-from latentarm.models.training import TrainingConfig, TrainingResult, train
+from latentarm.models.training import Report, TrainingConfig, TrainingResult, train
 from latentarm.types import FloatArray
 
 Start = Callable[[TrainingData, Dimensions], dict[str, FloatArray]]
@@ -51,7 +51,7 @@ class NeuralModel(LatentActionModel, ABC):
         dimensions: Dimensions,
         term: ScaledTerm | None,
         checkpoint: Path | None,
-        progress: bool,
+        report: Report | None,
     ) -> TrainingResult:
         layout = LAYOUTS[self.kind]
         apart = ("device", "checkpoint_interval_s")
@@ -75,7 +75,7 @@ class NeuralModel(LatentActionModel, ABC):
             start=self.start(data, dimensions) if self.start else None,
             checkpoint=checkpoint,
             identity=json.dumps({"kind": self.kind, **identity}, sort_keys=True),
-            progress=progress,
+            report=report,
         )
 
     def _objective(self, term: ScaledTerm | None) -> Callable[[Networks, Batch], Tensor]:

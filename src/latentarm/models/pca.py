@@ -14,7 +14,7 @@ from latentarm.models.layout import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.term import ScaledTerm
-from latentarm.models.training import TrainingResult
+from latentarm.models.training import Report, TrainingResult
 from latentarm.types import FloatArray
 
 
@@ -36,7 +36,7 @@ class PCA(LatentActionModel):
         dimensions: Dimensions,
         term: ScaledTerm | None,
         checkpoint: Path | None,
-        progress: bool,
+        report: Report | None,
     ) -> TrainingResult:
         if term is not None:
             raise UserError("PCA has a closed form, to which no term can be added: choose another model.")

@@ -22,6 +22,9 @@ from latentarm.models.networks import FlatNetworks, Networks
 from latentarm.models.optimiser import FlatAdam, falling_rate
 from latentarm.types import FloatArray, IntArray
 
+Report = Callable[[int, int, float], None]
+"""Is told after each epoch: how many are done, how many there are at most, and the held-out loss so far."""
+
 THREADED_WORK: Final = 40_000
 """Hidden units computed per layer and step from which a second thread costs less than it saves."""
 
@@ -74,7 +77,7 @@ def train(
     start: Mapping[str, FloatArray] | None = None,
     checkpoint: Path | None = None,
     identity: str = "",
-    progress: bool = False,
+    report: Report | None = None,
 ) -> TrainingResult:
     """Train S seeds together; each as it would be alone.
 
@@ -93,7 +96,7 @@ def train(
             broadcasts to (S, in, out).
         checkpoint: file to go on from, if it exists, and to write to.
         identity: what else fixes the result; a checkpoint of another identity is refused.
-        progress: show a bar.
+        report: see `Report`; also told before the first epoch, with a loss that is infinite.
 
     Raises:
         UserError: a seed diverged, or the checkpoint is not this training's.
@@ -112,11 +115,9 @@ def train(
 
     batches = Batches(data, seeds, config.batch_size, noise_dim, device)
     written = monotonic()
-    with (
-        threads_for(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())),
-        progress_bar(progress, "epochs") as bar,
-    ):
-        task = bar.add_task("training", total=config.epochs, completed=state.epoch, loss="")
+    report = report or _unheard
+    report(state.epoch, config.epochs, math.inf)
+    with threads_for(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())):
         while state.epoch < config.epochs and not state.stalled(config.patience).all():
             rate = falling_rate(config.learning_rate, state.epoch, config.epochs)
             for batch in batches.epoch(state.epoch + 1):
@@ -125,7 +126,7 @@ def train(
             with torch.no_grad():
                 loss = objective(networks.networks, batches.held_out).cpu().double().numpy()
             state.record(loss, adam.steps, config.patience)
-            bar.update(task, completed=state.epoch, loss=f"held-out loss {state.best_loss.mean():.4f}")
+            report(state.epoch, config.epochs, float(state.best_loss.mean()))
             if checkpoint is not None and monotonic() - written >= config.checkpoint_interval_s:
                 write_checkpoint(checkpoint, print_of, state)
                 written = monotonic()
@@ -158,6 +159,27 @@ def threads_for(work: int) -> Generator[None]:
         yield
     finally:
         torch.set_num_threads(before)
+
+
+def _unheard(epoch: int, epochs: int, loss: float) -> None:
+    pass
+
+
+@contextmanager
+def epoch_bar(shown: bool) -> Generator[Report]:
+    """A `Report` that shows a bar on standard error.
+
+    Args:
+        shown: whether there is one at all.
+    """
+    with progress_bar(shown, "epochs") as bar:
+        task = bar.add_task("training", loss="")
+
+        def report(epoch: int, epochs: int, loss: float) -> None:
+            said = f"held-out loss {loss:.4f}" if math.isfinite(loss) else ""
+            bar.update(task, total=epochs, completed=epoch, loss=said)
+
+        yield report
 
 
 def progress_bar(shown: bool, unit: str) -> Progress:

@@ -1,1 +1,1 @@
-"""A trained run as something to drive: what its folder says, its task, what steers it."""
+"""A trained run: training it, what its folder says, what steers by it, what people mean by their input."""

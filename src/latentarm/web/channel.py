@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from latentarm.web.setting import ModeName
 from latentarm.web.shared import Flag, LatestSlot
 
-ORDER_LIMIT: Final = 1024
+ORDER_LIMIT: Final = 4096
 """The longest order, bytes; short enough that the pipe takes it whole or not at all."""
 
 _REPORT_LIMIT: Final = 16384
@@ -79,6 +79,14 @@ class ChooseProfile(_Message):
 
 
 @final
+class ChooseRun(_Message):
+    """Drive another run from its start, without anybody's alignment; only while the arm stands disengaged."""
+
+    order: Literal["run"] = "run"
+    run: str
+
+
+@final
 class Record(_Message):
     """Begin an episode of what is driven, or end it once the arm is at rest."""
 
@@ -94,7 +102,7 @@ class Reset(_Message):
     order: Literal["reset"] = "reset"
 
 
-Order = Enable | ChooseMode | ChooseProfile | Record | Reset
+Order = Enable | ChooseMode | ChooseProfile | ChooseRun | Record | Reset
 _ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="order")])
 
 
@@ -129,7 +137,7 @@ class Recording(_Message):
 
 @final
 class Report(_Message):
-    """What the control process says of itself, 50 times a second.
+    """What the control process says of itself, in every tick.
 
     Attributes:
         nonce: for the driver to echo.
@@ -141,7 +149,9 @@ class Report(_Message):
         why: one sentence for people.
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
+        run: path of the run that is driven, as it was named; None without one.
         profile: whose alignment.
+        loading: whether something else to drive is being loaded; nothing more is said until it is there.
         q: (n,), joint positions, rad.
         speed: the fastest joint's, rad/s.
         tool: the tool's position, m.
@@ -162,7 +172,9 @@ class Report(_Message):
     why: str
     mode: ModeName
     axes: int
+    run: str | None
     profile: str | None
+    loading: bool
     q: tuple[float, ...]
     speed: float
     tool: Point

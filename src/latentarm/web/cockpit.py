@@ -17,6 +17,7 @@ from latentarm.web.channel import (
     Channel,
     ChooseMode,
     ChooseProfile,
+    ChooseRun,
     Enable,
     Given,
     Order,
@@ -40,8 +41,10 @@ ENABLE_WAITS_S: Final = 0.3
 NOTE_S: Final = 6.0
 """For how long a refusal is shown instead of what the arm does, s."""
 
+Change = ChooseProfile | ChooseRun | Reset
+"""What the loop is ended for, to go on otherwise."""
+
 _ORDERS_PER_TICK: Final = 4
-_REPORT_EVERY: Final = 2
 _LOOK_EVERY: Final = 10
 _STATISTICS_EVERY: Final = 100
 _SPARE_S: Final = 0.004
@@ -91,10 +94,10 @@ class Cockpit(InputSource):
         self._ending_episode = False
         self._note = ""
         self._note_until_s = -math.inf
-        self._change: ChooseProfile | Reset | None = None
+        self._change: Change | None = None
 
     @property
-    def change(self) -> ChooseProfile | Reset | None:
+    def change(self) -> Change | None:
         """What the loop was ended for, to go on otherwise; None where it was ended for good."""
         return self._change
 
@@ -109,6 +112,9 @@ class Cockpit(InputSource):
             note: what the person is told first; "" for nothing.
         """
         self._loop, self._step, self._arm = loop, step, arm
+        if setting.spec.run != self._setting.spec.run:
+            self._mode, self._axes = setting.modes[0], 0
+            self._port = InputPort(setting.controller.input_dim, self._clock)
         if setting is not self._setting:
             self._setting, self._ghosts = setting, GhostPaths(setting)
         self._change = None
@@ -137,8 +143,7 @@ class Cockpit(InputSource):
             self._writer.end()
         self._obey(record)
         self._enable_if_asked(record.time_s)
-        if self._tick % _REPORT_EVERY == 0:
-            self._channel.report.write(self._report(record).model_dump_json().encode())
+        self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
             self._look(record)
 
@@ -205,12 +210,20 @@ class Cockpit(InputSource):
                 self._record(on=on, task=task)
             case ChooseProfile(name=name) if name == self._setting.spec.profile:
                 pass
-            case ChooseProfile() | Reset():
-                if self._step.stopped is None or not self._step.at_rest:
-                    self._say("Stop the arm first.")
-                else:
-                    self._change = order
-                    self._loop.finish()
+            case ChooseProfile() | ChooseRun() | Reset():
+                self._change_to(order)
+
+    def _change_to(self, change: Change) -> None:
+        """End the loop for it, where the arm stands disengaged."""
+        if self._step.stopped is None or not self._step.at_rest:
+            self._say("Stop the arm first.")
+            return
+        if not isinstance(change, ChooseProfile):
+            # An episode is one motion of one arm: it ends before the arm is put somewhere else.
+            self._writer.end()
+            self._ending_episode = False
+        self._change = change
+        self._loop.finish()
 
     def _choose(self, mode: ModeName, axes: int) -> None:
         self._mode = mode
@@ -284,7 +297,9 @@ class Cockpit(InputSource):
             why=self._why(phase, record),
             mode=self._mode,
             axes=self._axes,
+            run=None if self._setting.spec.run is None else str(self._setting.spec.run),
             profile=self._setting.spec.profile,
+            loading=self._change is not None,
             q=tuple(record.state.tolist()),
             speed=float(np.abs(self._arm.velocity()).max()),
             tool=(tool[0], tool[1], tool[2]),

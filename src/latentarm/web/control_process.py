@@ -5,6 +5,7 @@ import os
 import signal
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 from types import FrameType
 from typing import Final
 
@@ -14,7 +15,7 @@ from latentarm.control.clock import MonotonicClock
 from latentarm.control.loop import ControlLoop
 from latentarm.errors import UserError
 from latentarm.robots.arm import Arm
-from latentarm.web.channel import Channel, ChooseProfile, Reset
+from latentarm.web.channel import Channel, ChooseProfile, ChooseRun, Reset
 from latentarm.web.cockpit import Cockpit
 from latentarm.web.live_arm import LiveArm
 from latentarm.web.recording import EpisodeWriter
@@ -66,7 +67,11 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                     case Reset():
                         arm = LiveArm(setting.task.robot, setting.start, clock)
                     case ChooseProfile(name=name):
-                        setting, note = _with_profile(setting, name)
+                        setting, note = _loaded(replace(setting.spec, profile=name), setting)
+                    case ChooseRun(run=run):
+                        setting, note = _loaded(replace(setting.spec, run=Path(run), profile=None), setting)
+                        if not note:
+                            arm = LiveArm(setting.task.robot, setting.start, clock)
         finally:
             writer.close()
             gc.unfreeze()
@@ -78,9 +83,9 @@ def _ask_for_priority() -> None:
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
-def _with_profile(setting: Setting, name: str | None) -> tuple[Setting, str]:
-    """The setting for another person, or the same and why it cannot be had."""
+def _loaded(spec: Spec, before: Setting) -> tuple[Setting, str]:
+    """What a spec names, or what there was before and why the other cannot be had."""
     try:
-        return load_setting(replace(setting.spec, profile=name)), ""
+        return load_setting(spec), ""
     except UserError as error:
-        return setting, str(error)
+        return before, str(error)

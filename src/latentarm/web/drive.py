@@ -24,12 +24,14 @@ from latentarm.web.messages import (
     Release,
     ResetArm,
     TrailClear,
-    Welcome,
     parse_message,
 )
+from latentarm.web.personalise_messages import AnswerQuestion, PersonaliseMessage
 from latentarm.web.sessions import MOST, Page, Sessions
 from latentarm.web.states import GhostMemory, States
 from latentarm.web.supervisor import ControlProcess
+from latentarm.web.workshop import Bench
+from latentarm.web.workshop_messages import CancelTraining, PickRun, Train
 
 RATE: Final = 100.0
 """Messages a second that a page may send."""
@@ -41,7 +43,8 @@ HELLO_WITHIN_S: Final = 5.0
 
 DRIVER_PERIOD_S: Final = 0.02
 WATCHER_PERIOD_S: Final = 0.033
-"""How often a page is sent a state, at most: the driver's is also what makes the next input fresh."""
+"""How often a page is sent a state, save that it hears at once when the arm sets off. The driver's is also
+what makes the next input fresh."""
 
 _PROTOCOL_BROKEN: Final = (1002, 1003, 1007, 1009)
 """Codes with which the server below us hangs up: no frame, no text, or far too long."""
@@ -61,14 +64,14 @@ class DriveSocket:
         control: the control process.
         states: what pages see.
         sessions: who is there.
-        welcome: what a page is told first, but for its id.
+        bench: what is recorded, trained and chosen.
     """
 
-    def __init__(self, control: ControlProcess, states: States, sessions: Sessions, welcome: Welcome) -> None:
+    def __init__(self, control: ControlProcess, states: States, sessions: Sessions, bench: Bench) -> None:
         self._control = control
         self._states = states
         self._sessions = sessions
-        self._welcome = welcome
+        self._bench = bench
         self._open = 0
 
     async def __call__(self, socket: WebSocket) -> None:
@@ -96,8 +99,6 @@ class DriveSocket:
                 hello = await _receive(socket, allowance)
             if not isinstance(hello, Hello) or (page := self._sessions.join(hello.name)) is None:
                 raise _ViolationError
-            welcome = self._welcome.model_copy(update={"id": page.id})
-            await socket.send_text(welcome.model_dump_json())
             sender = asyncio.create_task(self._send_states(socket, page))
             while True:
                 self._take(page, await _receive(socket, allowance))
@@ -115,15 +116,28 @@ class DriveSocket:
                 self._wheel_changed("The page of the person who drove has gone.")
 
     async def _send_states(self, socket: WebSocket, page: Page) -> None:
-        """States as fast as the page takes them, always the newest: nothing queues up."""
+        """States as fast as the page takes them, always the newest: nothing queues up.
+
+        Before them what is driven, and what there is in the workshop; again when it has changed.
+        """
         ghosts = GhostMemory()
-        tick = -1
+        stage = None
+        tick = bench = -1
         with suppress(RuntimeError, WebSocketDisconnect):
             while True:
+                if stage is not self._states.stage:
+                    stage = self._states.stage
+                    ghosts = GhostMemory()
+                    await socket.send_text(stage.welcome(page.id).model_dump_json())
+                if bench != self._bench.number:
+                    bench = self._bench.number
+                    await socket.send_text(self._bench.text)
                 tick = await self._states.after(tick)
+                if stage is not self._states.stage:
+                    continue
                 await socket.send_text(self._states.text(page, ghosts))
                 drives = self._sessions.drives(page)
-                await asyncio.sleep(DRIVER_PERIOD_S / 2 if drives else WATCHER_PERIOD_S)
+                await self._states.pause(DRIVER_PERIOD_S if drives else WATCHER_PERIOD_S)
 
     def _take(self, page: Page, message: ClientMessage) -> None:
         """Do what a page asks for; what only the driver may ask for is not heard from others."""
@@ -139,13 +153,18 @@ class DriveSocket:
             self._take_from_driver(page, message)
 
     def _suits(self, message: ClientMessage) -> bool:
-        """Whether an input has no more axes than what is driven."""
-        return not isinstance(message, DriverInput) or len(message.u) <= self._states.input_dim
+        """Whether an input or an answer has no more axes than what is driven."""
+        return (
+            not isinstance(message, DriverInput | AnswerQuestion)
+            or len(message.u) <= self._states.stage.input_dim
+        )
 
     def _take_from_driver(self, page: Page, message: ClientMessage) -> None:
         match message:
             case DriverInput(seq=seq, nonce=nonce, u=u, latched=latched):
                 self._give(seq, nonce, u, latched=latched)
+            case PressEnable() if self._states.loading or self._bench.personalising.standstill:
+                pass
             case PressEnable():
                 self._control.order(Enable(driver=self._sessions.turn, stops=self._control.stops))
             case Mode(mode=mode, axes=axes):
@@ -156,12 +175,20 @@ class DriveSocket:
                 self._control.order(Record(on=on, task=task))
             case ResetArm():
                 self._control.order(Reset())
+            case Train():
+                self._bench.train(message)
+            case CancelTraining():
+                self._bench.cancel()
+            case PickRun(run=run):
+                self._bench.choose_run(run)
             case HandOver(to=to):
                 if self._sessions.hand_over(page, to):
                     self._wheel_changed("The wheel was handed over.")
             case Release():
                 if self._sessions.release(page):
                     self._wheel_changed("The driver has given up the wheel.")
+            case _ if isinstance(message, PersonaliseMessage):
+                self._bench.personalising.take(message)
             case _:
                 pass
 
@@ -171,7 +198,7 @@ class DriveSocket:
         self._control.order(Record(on=False, task=""))
 
     def _give(self, seq: int, nonce: str, u: tuple[float, ...], *, latched: bool) -> None:
-        padded = u + (0.0,) * (self._states.input_dim - len(u))
+        padded = u + (0.0,) * (self._states.stage.input_dim - len(u))
         self._control.give(Given(driver=self._sessions.turn, seq=seq, nonce=nonce, u=padded, latched=latched))
 
 

@@ -10,7 +10,9 @@ from typing import Annotated, Final, Literal, final
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from latentarm.web.channel import Ghosts, Phase, Point
+from latentarm.web.personalise_messages import PersonaliseMessage
 from latentarm.web.setting import ModeName
+from latentarm.web.workshop_messages import CancelTraining, PickRun, Train
 
 VERSION: Final = 1
 FRAME_LIMIT: Final = 4096
@@ -143,6 +145,10 @@ ClientMessage = (
     | TrailClear
     | RecordEpisode
     | ResetArm
+    | Train
+    | CancelTraining
+    | PickRun
+    | PersonaliseMessage
 )
 _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
     Annotated[ClientMessage, Field(discriminator="type")]

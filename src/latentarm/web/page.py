@@ -1,13 +1,16 @@
 """The pages as NiceGUI serves them: semantic HTML, to whose ids the modules in ``static/`` attach."""
 
+import re
 from dataclasses import dataclass
 from html import escape
 from importlib.resources import files
-from typing import final
+from typing import Final, final
 
 from nicegui import ui
 
-_STATIC = files("latentarm.web").joinpath("static")
+_STATIC: Final = files("latentarm.web").joinpath("static")
+_PART: Final = re.compile(r"\{([a-z_]+\.html)\}")
+"""Where a page holds what others hold too: the name of a file in ``static/``."""
 
 
 @final
@@ -30,7 +33,17 @@ class Page:
     styles: tuple[str, ...] = ()
 
 
-PAGES = (Page("/", "Drive", "drive.html", "main.js", ("drive.css",)),)
+PAGES = (
+    Page("/", "Drive", "drive.html", "main.js", ("workbench.css", "drive.css")),
+    Page(
+        "/personalise",
+        "Personalise",
+        "personalise.html",
+        "personalise.js",
+        ("workbench.css", "personalise.css"),
+    ),
+    Page("/teach", "Teach", "teach.html", "teach.js", ("workbench.css", "teach.css")),
+)
 
 _COMMON_STYLES = ("tokens.css", "page.css")
 
@@ -65,7 +78,11 @@ def body_of(page: Page, pages: tuple[Page, ...]) -> str:
         f'<a href="{escape(other.path)}"{_current(other is page)}>{escape(other.title)}</a>'
         for other in pages
     )
-    return _STATIC.joinpath(page.fragment).read_text(encoding="utf-8").replace("{pages}", links)
+    return _PART.sub(lambda name: _text(name[1]), _text(page.fragment)).replace("{pages}", links)
+
+
+def _text(fragment: str) -> str:
+    return _STATIC.joinpath(fragment).read_text(encoding="utf-8")
 
 
 def _current(is_this: bool) -> str:

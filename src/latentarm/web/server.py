@@ -13,17 +13,16 @@ from starlette.responses import JSONResponse, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
-from latentarm.alignment.profile import FOLDER
 from latentarm.web.addresses import TeleopConfig, check_certificate, listen, origin
-from latentarm.web.cockpit import LATCH_MAX_S
 from latentarm.web.drive import DriveSocket
-from latentarm.web.messages import Limits, NamedGoal, Welcome
-from latentarm.web.scene import scene_of
 from latentarm.web.security import ENTRY, STOP, Gate, Keys
 from latentarm.web.sessions import Sessions
 from latentarm.web.setting import Setting, load_setting
+from latentarm.web.shelf import Shelf
+from latentarm.web.stage import Stage
 from latentarm.web.states import States
 from latentarm.web.supervisor import ControlProcess
+from latentarm.web.workshop import Bench
 
 _STATIC: Final = Path(__file__).parent / "static"
 _FRAMEWORK_FRAME_LIMIT: Final = 1 << 16
@@ -91,25 +90,29 @@ def build_app(setting: Setting, control: ControlProcess) -> FastAPI:
         control: drives it.
     """
     sessions = Sessions()
-    states = States(setting, control, sessions)
-    drive = DriveSocket(control, states, sessions, _welcome(setting))
-    scene = scene_of(setting.task)
+    spec = setting.spec
+    shelf = Shelf(spec.out, spec.run)
+    states = States(Stage(setting, shelf.name_of(spec.run)), control, sessions, shelf)
+    bench = Bench(control, states, shelf, spec.out)
+    drive = DriveSocket(control, states, sessions, bench)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
-        following = asyncio.create_task(states.follow())
+        following = [asyncio.create_task(one.follow()) for one in (states, bench)]
         try:
             yield
         finally:
-            following.cancel()
+            for task in following:
+                task.cancel()
+            await bench.close()
 
     app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
 
     async def describe(_: Request) -> Response:
-        return JSONResponse(scene.description)
+        return JSONResponse(states.stage.scene.description)
 
     async def mesh(request: Request) -> Response:
-        content = scene.meshes.get(int(request.path_params["number"]))
+        content = states.stage.scene.meshes.get(int(request.path_params["number"]))
         if content is None:
             return JSONResponse({"detail": "There is no such mesh."}, 404)
         return Response(content, media_type="application/octet-stream")
@@ -171,22 +174,3 @@ def _add_pages(app: FastAPI) -> None:
 
     add_pages()
     ui.run_with(app, title="latentarm", tailwind=False, show_welcome_message=False)
-
-
-def _welcome(setting: Setting) -> Welcome:
-    run = setting.spec.run
-    return Welcome(
-        id="",
-        dof=setting.task.robot.dof,
-        latent_dim=setting.latent_dim,
-        robot=setting.task.robot.name,
-        run=None if run is None else run.resolve().name,
-        profiles=() if run is None else tuple(sorted(path.name for path in (run / FOLDER).glob("*/"))),
-        modes=setting.modes,
-        goals=tuple(
-            NamedGoal(name=goal.name, position=tuple(goal.pose.position.tolist()))
-            for goal in setting.task.goals
-        ),
-        end_effector_modes=setting.axes,
-        limits=Limits(latch_max_s=LATCH_MAX_S),
-    )

@@ -34,6 +34,9 @@ INPUT_GRACE_S: Final = 0.07
 """A person whose connection falters for no longer than this and the above finds the arm slowed down, and need
 not enable it again."""
 
+RELEASE_FRACTION: Final = 0.8
+"""As hard as a stop: whoever lets go finds the arm at rest within 0.15 s."""
+
 COMMAND_PERIODS: Final = 5.0
 """How many periods a command lasts: a shared computer may hold the loop up for 50 ms before the arm stops."""
 
@@ -138,6 +141,7 @@ class Setting:
             SafetyConfig(
                 input_timeout_s=INPUT_TIMEOUT_S,
                 input_grace_s=INPUT_GRACE_S,
+                release_fraction=RELEASE_FRACTION,
                 command_periods=COMMAND_PERIODS,
                 obstacles=tuple(self.task.obstacles),
             ),

@@ -10,7 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -42,9 +42,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
     """One browser for all tests; each opens pages of its own in it."""
-    found = next((path for name in NAMES if (path := shutil.which(name))), None)
-    if found is None:
-        pytest.skip(f"No Chromium is installed: looked for {', '.join(NAMES)}.")
+    found = find_chromium()
     # Chromium does not run sandboxed as root, which is what containers run as.
     sandbox = ("--no-sandbox",) if os.getuid() == 0 else ()
     with sync_playwright() as playwright:
@@ -53,11 +51,18 @@ def chromium() -> Iterator[Browser]:
         browser.close()
 
 
-@pytest.fixture(scope="session")
-def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Where `latentarm teleop RUN` serves its page."""
-    folder = tmp_path_factory.mktemp("teleop")
-    command = [sys.executable, "-m", "latentarm", "teleop", str(trained), "--port", "0", "--out", str(folder)]
+def find_chromium() -> str:
+    """The Chromium of this machine; whoever asks is skipped where there is none."""
+    found = next((path for name in NAMES if (path := shutil.which(name))), None)
+    if found is None:
+        pytest.skip(f"No Chromium is installed: looked for {', '.join(NAMES)}.")
+    return found
+
+
+@contextmanager
+def _started(folder: Path, *arguments: str) -> Iterator[str]:
+    """Where `latentarm teleop` serves its page; recordings go to ``folder``."""
+    command = [sys.executable, "-m", "latentarm", "teleop", *arguments, "--port", "0", "--out", str(folder)]
     with (folder / "said").open("w") as said:
         server = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT)
     try:
@@ -65,6 +70,25 @@ def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     finally:
         server.send_signal(signal.SIGINT)
         server.wait(20)
+
+
+@pytest.fixture(scope="session")
+def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Where `latentarm teleop RUN` serves its page."""
+    with _started(tmp_path_factory.mktemp("teleop"), str(trained)) as address:
+        yield address
+
+
+@pytest.fixture
+def start_server() -> Callable[..., AbstractContextManager[str]]:
+    """A server of its own for a test that changes what is driven."""
+    return _started
+
+
+@pytest.fixture
+def watch() -> Callable[[str], AbstractContextManager[Any]]:
+    """Watches the arm of such a server."""
+    return _watching
 
 
 def _printed_address(server: subprocess.Popen[bytes], said: Path) -> str:
@@ -91,6 +115,7 @@ class Arm:
     def __init__(self) -> None:
         self.state: dict[str, Any] = {}
         self.welcome: dict[str, Any] = {}
+        self.workshop: dict[str, Any] = {}
         self.ghosts: dict[str, list[list[float]]] = {}
         self.states: list[dict[str, Any]] = []
 
@@ -145,6 +170,8 @@ class Arm:
                 message = json.loads(frame)
                 if message["type"] == "welcome":
                     self.welcome = message
+                elif message["type"] == "workshop":
+                    self.workshop = message
                 elif message["type"] == "state":
                     self.ghosts = message["ghosts"] or self.ghosts
                     self.state = message

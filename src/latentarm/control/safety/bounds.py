@@ -41,6 +41,8 @@ class Bounds:
         acceleration: (n,), for ordinary motion, rad/s².
         quickening: (n,), what ordinary motion may gain in one period, rad/s.
         jerk: (n,), for ordinary motion, rad/s³.
+        release_acceleration: (n,), once the person has let go, rad/s².
+        release_jerk: (n,), once the person has let go, rad/s³.
         stop_acceleration: (n,), for stops, rad/s².
         stop_jerk: (n,), for stops, rad/s³.
         hold_s: how long one command lasts, s.
@@ -93,6 +95,8 @@ class Bounds:
         self.acceleration = config.acceleration_fraction * hardware.acceleration
         self.quickening = self.acceleration * dt_s
         self.jerk = config.jerk_fraction * hardware.jerk
+        self.release_acceleration = config.release_fraction * hardware.acceleration
+        self.release_jerk = config.release_fraction * hardware.jerk
         self.stop_acceleration = config.stop_fraction * hardware.acceleration
         self.stop_jerk = config.stop_fraction * hardware.jerk
         self.hold_s = config.command_periods * dt_s

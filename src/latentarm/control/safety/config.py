@@ -53,6 +53,8 @@ class SafetyConfig:
         link_speed: largest speed of any point of the arm, m/s.
         acceleration_fraction: share of the hardware's acceleration for ordinary motion, in (0, 1].
         jerk_fraction: share of the hardware's jerk for ordinary motion, in (0, 1].
+        release_fraction: share of the hardware's acceleration and jerk for slowing down once the person has
+            let go, in (0, 1].
         stop_fraction: share of the hardware's acceleration and jerk for a stop, in (0, 1]. A stop is
             ramped too, only harder.
         joint_margin: distance kept from the hardware's joint limits, rad.
@@ -76,6 +78,7 @@ class SafetyConfig:
     link_speed: float = 0.25
     acceleration_fraction: float = 0.2
     jerk_fraction: float = 0.2
+    release_fraction: float = 0.2
     stop_fraction: float = 0.8
     joint_margin: float = 0.1
     clearance: float = 0.02
@@ -90,10 +93,10 @@ class SafetyConfig:
         for field in fields(self):
             if field.name in _RANGES:
                 object.__setattr__(self, field.name, _figure(field.name, getattr(self, field.name)))
-        if self.stop_fraction < max(self.acceleration_fraction, self.jerk_fraction):
+        if self.stop_fraction < max(self.acceleration_fraction, self.jerk_fraction, self.release_fraction):
             raise UserError(
-                "The safety limit stop_fraction must be at least acceleration_fraction and jerk_fraction:"
-                " a stop may not be softer than ordinary motion."
+                "The safety limit stop_fraction must be at least acceleration_fraction, jerk_fraction and"
+                " release_fraction: a stop may not be softer than ordinary motion."
             )
         _check_workspace(self.workspace)
         object.__setattr__(self, "obstacles", _checked_obstacles(self.obstacles))
@@ -105,6 +108,7 @@ _RANGES: dict[str, tuple[float, float, str]] = {
     "link_speed": (0.0, 5.0, "m/s"),
     "acceleration_fraction": (0.0, 1.0, "of the hardware's"),
     "jerk_fraction": (0.0, 1.0, "of the hardware's"),
+    "release_fraction": (0.0, 1.0, "of the hardware's"),
     "stop_fraction": (0.0, 1.0, "of the hardware's"),
     "joint_margin": (0.0, 1.0, "rad"),
     "clearance": (0.0, 0.5, "m"),

@@ -5,7 +5,6 @@ from typing import final
 import numpy as np
 from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError, Synchronization, Trajectory
 
-from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.filter import SafetyFilter, Situation
 from latentarm.types import FloatArray, Stop
 
@@ -18,18 +17,21 @@ class Ramp(SafetyFilter):
     velocity moves any point faster than the faster of the two.
 
     Args:
-        bounds: the limits.
+        dt_s: the loop's period, s.
+        acceleration: (n,), the limit, rad/s².
+        jerk: (n,), the limit, rad/s³.
     """
 
-    def __init__(self, bounds: Bounds) -> None:
-        self._dt_s = bounds.dt_s
-        self._generator = Ruckig(bounds.dof)
-        self._trajectory = Trajectory(bounds.dof)
-        wanted = InputParameter(bounds.dof)
+    def __init__(self, dt_s: float, acceleration: FloatArray, jerk: FloatArray) -> None:
+        dof = len(acceleration)
+        self._dt_s = dt_s
+        self._generator = Ruckig(dof)
+        self._trajectory = Trajectory(dof)
+        wanted = InputParameter(dof)
         wanted.control_interface = ControlInterface.Velocity
         wanted.synchronization = Synchronization.Phase
-        wanted.max_acceleration = bounds.acceleration.tolist()
-        wanted.max_jerk = bounds.jerk.tolist()
+        wanted.max_acceleration = acceleration.tolist()
+        wanted.max_jerk = jerk.tolist()
         self._wanted = wanted
 
     @property

@@ -68,7 +68,9 @@ class SafetyStack:
         # Sliding along one thing can turn joints towards their limits, or speed one up.
         self._after_sliding: tuple[SafetyFilter, ...] = (position, velocity)
         self._last: tuple[SafetyFilter, ...] = (LinkSpeed(),)
-        self._ramp = Ramp(self.bounds)
+        bounds = self.bounds
+        self._ramp = Ramp(dt_s, bounds.acceleration, bounds.jerk)
+        self._release = Ramp(dt_s, bounds.release_acceleration, bounds.release_jerk)
         self._guard = Guard()
         self._rest = np.zeros(robot.dof)
         # What leaves is also what the next tick goes by: nobody may write to it.
@@ -117,13 +119,17 @@ class SafetyStack:
         if not some(shaped) and self.at_rest:
             self._brake = None
             return Passed(self._rest, tuple(limited_by))
-        for target in (shaped, self._rest):
-            ramped = self._ramp.ramped(target, self._velocity, self._acceleration)
+        first = self._ramp if some(wanted) else self._release
+        for ramp, target in ((first, shaped), (self._ramp, self._rest)):
+            ramped = ramp.ramped(target, self._velocity, self._acceleration)
             if isinstance(ramped, Stop):
                 if self._ramp.name not in limited_by:
                     limited_by.append(self._ramp.name)
                 continue
             velocity, acceleration = ramped
+            if not some(target) and largest(np.abs(velocity)) <= _SAME_RAD_S:
+                # Rounding leaves ever smaller traces of motion, and an arm that never quite rests.
+                velocity, acceleration = np.zeros_like(velocity), np.zeros_like(acceleration)
             objection = self._guard.objection(velocity, self.bounds.brake(velocity, acceleration), situation)
             if objection is None:
                 velocity.flags.writeable = False

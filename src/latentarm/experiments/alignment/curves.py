@@ -22,7 +22,7 @@ from latentarm.experiments.alignment.decoder import LearnedDecoder
 from latentarm.experiments.alignment.preset import Preset
 from latentarm.experiments.alignment.scene import Scene, scene_of
 from latentarm.experiments.alignment.streams import Stream, generator
-from latentarm.experiments.questions import TOO_FEW
+from latentarm.runs.questions import TOO_FEW
 from latentarm.types import FloatArray
 
 AT_RANDOM: Final = "at random"

@@ -28,13 +28,13 @@ from latentarm.experiments.alignment.preset import Preset
 from latentarm.experiments.alignment.streams import Stream, generator
 from latentarm.experiments.asking import SimulatedPerson
 from latentarm.experiments.demo import STATE_NOISE_RAD
-from latentarm.experiments.questions import ENSEMBLE, Scene, ask, shown
 from latentarm.experiments.studies.streams import integer, sequence
 from latentarm.kinematics.chain import Chain
 from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.scaling import CollapseWarning
 from latentarm.operators.expectation import Expectation, displacements, main_directions
+from latentarm.runs.questions import ENSEMBLE, Scene, ask, shown, unwatched
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Demonstrations, FloatArray
 
@@ -151,7 +151,7 @@ def _alignments(
     """Every alignment of one model: with priors and without, from the same answers."""
     drawing, asking = (_generator(cell, use, seed_index) for use in (Stream.CANDIDATES, Stream.ENSEMBLES))
     motions, unlabelled = shown(training, "state", person.chain, drawing)
-    scene = Scene(model, seed_index, person.chain, motions, unlabelled, asking, progress=False)
+    scene = Scene(model, seed_index, person.chain, motions, unlabelled, asking, unwatched)
     count = cell.preset.drives.answers
     # Never enough before all are asked, so that every model has as many answers.
     stopping = StoppingRule(share=0.0, patience=count)

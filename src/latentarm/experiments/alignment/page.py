@@ -31,10 +31,10 @@ from latentarm.experiments.alignment.tables import (
 )
 from latentarm.experiments.alignment.targets import PAPER_MODEL, Target
 from latentarm.experiments.alignment.verdicts import Verdict, verdicts
-from latentarm.experiments.questions import TOO_FEW
 from latentarm.experiments.studies.pages import listed, shown
 from latentarm.experiments.studies.statistics import LEVEL
 from latentarm.files import write_text
+from latentarm.runs.questions import TOO_FEW
 from latentarm.style import look_of
 from latentarm.tasks.pouring.pour import BOWL_M
 from latentarm.tasks.pouring.reach_and_pour import AT_BOWL_M

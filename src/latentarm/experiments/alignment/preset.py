@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Final
 
-from latentarm.experiments.questions import ENSEMBLE, QUICK
+from latentarm.runs.questions import ENSEMBLE, QUICK
 
 
 @dataclass(frozen=True)

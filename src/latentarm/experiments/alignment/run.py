@@ -23,10 +23,10 @@ from latentarm.experiments.alignment.page import write_page
 from latentarm.experiments.alignment.preset import Preset
 from latentarm.experiments.alignment.rows import STUDY, rows_of
 from latentarm.experiments.alignment.targets import PAPER_MODEL, targets
-from latentarm.experiments.checks import check_seed
 from latentarm.experiments.grid import check_processes, run_grid
 from latentarm.experiments.studies.folder import Study, write_json
 from latentarm.metrics.results import write_results
+from latentarm.runs.checks import check_seed
 from latentarm.tasks.pouring.catalogue import POURING_TASKS
 from latentarm.types import Row
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from latentarm.errors import UserError
-from latentarm.experiments.checks import check_count
 from latentarm.models.catalogue import MODELS
+from latentarm.runs.checks import check_count
 
 OURS: Final = "homogeneous"
 """The model that is held against the targets where none is named."""

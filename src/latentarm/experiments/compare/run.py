@@ -10,7 +10,6 @@ from typing import Final
 from rich.console import Console
 
 from latentarm.errors import UserError
-from latentarm.experiments.checks import check_seed
 from latentarm.experiments.compare.cell import Cell, CellResult, measure_cell
 from latentarm.experiments.compare.datasets import Dataset, read_datasets
 from latentarm.experiments.compare.drives import (
@@ -32,6 +31,7 @@ from latentarm.experiments.grid import check_processes, run_grid
 from latentarm.experiments.studies.folder import Study, write_json
 from latentarm.metrics.results import write_results
 from latentarm.models.catalogue import MODELS
+from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import fingerprint
 from latentarm.style import save_figure
 from latentarm.types import Row

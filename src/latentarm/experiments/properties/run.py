@@ -11,7 +11,6 @@ from typing import Final
 from rich.console import Console
 
 from latentarm.errors import UserError
-from latentarm.experiments.checks import check_seed
 from latentarm.experiments.grid import check_processes, run_grid
 from latentarm.experiments.properties.cell import Cell, CellResult, measure_cell
 from latentarm.experiments.properties.figures.draw import FIGURES, draw_figures
@@ -24,6 +23,7 @@ from latentarm.experiments.studies.folder import Study, write_json
 from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.models.catalogue import MODELS
+from latentarm.runs.checks import check_seed
 from latentarm.tasks.planar.catalogue import MOTIONS
 from latentarm.types import Row
 

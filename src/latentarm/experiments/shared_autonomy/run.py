@@ -9,7 +9,6 @@ from typing import Final
 from rich.console import Console
 
 from latentarm.errors import UserError
-from latentarm.experiments.checks import check_seed
 from latentarm.experiments.grid import check_processes, run_grid
 from latentarm.experiments.shared_autonomy.ablations import variants
 from latentarm.experiments.shared_autonomy.cell import (
@@ -31,6 +30,7 @@ from latentarm.experiments.shared_autonomy.preset import Preset
 from latentarm.experiments.shared_autonomy.rows import STUDY, Figure, figures, rows_of
 from latentarm.experiments.studies.folder import Study, write_json
 from latentarm.metrics.results import write_results
+from latentarm.runs.checks import check_seed
 from latentarm.types import Row
 
 MODELS: Final = (MODEL, "cvae", "isometric")

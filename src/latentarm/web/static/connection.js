@@ -1,7 +1,7 @@
 /**
  * The page's line to the server: one WebSocket, JSON both ways, reconnected when it breaks.
  *
- * Events: "welcome", "state", "line" (open or not), "refused"; each carries the message or the truth in `detail`.
+ * Events: "welcome", "otherrun" (another run is driven from now on), "workshop", "state", "line" (open or not), "refused"; each carries the message or the truth in `detail`.
  */
 
 /** How old the newest state may be before inputs are held back, ms: the server would not take them anyway. */
@@ -17,6 +17,8 @@ export class Connection extends EventTarget {
     this.welcome = null;
     /** @type {any} The newest state. */
     this.state = null;
+    /** @type {any} What is learned, tried and kept. */
+    this.workshop = null;
     this.open = false;
     this._sequence = 0;
     this._heardAt = -Infinity;
@@ -92,7 +94,12 @@ export class Connection extends EventTarget {
   /** @param {any} message */
   _heard(message) {
     this._heardAt = performance.now();
-    if (message.type === "welcome") this.welcome = message;
+    if (message.type === "welcome") {
+      const before = this.welcome;
+      this.welcome = message;
+      if (before !== null && before.run !== message.run) this._tell("otherrun", message.run);
+    }
+    if (message.type === "workshop") this.workshop = message;
     // Ghosts are left out while they have not changed.
     if (message.type === "state") {
       this.state = { ...message, ghosts: message.ghosts ?? this.state?.ghosts ?? null };

@@ -8,7 +8,7 @@ export const DIRECTIONS = { up: [0, 1], down: [0, -1], left: [-1, 0], right: [1,
 /**
  * @param {HTMLElement} element the group of buttons
  * @param {HTMLElement} help
- * @param {import("./inputs.js").Inputs} inputs
+ * @param {import("./inputs.js").Inputs | import("./answering.js").Answering} inputs
  * @param {import("./settings.js").Settings} settings
  * @param {() => void} refused said when a press cannot move the arm yet
  */

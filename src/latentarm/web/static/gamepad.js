@@ -6,7 +6,7 @@ const REST = 0.08;
 const IDLE_MS = 100;
 
 /**
- * @param {import("./inputs.js").Inputs} inputs
+ * @param {import("./inputs.js").Inputs | import("./answering.js").Answering} inputs
  * @param {import("./settings.js").Settings} settings
  * @param {{enable: () => void, stop: () => void, press: (number: number, down: boolean) => boolean}} actions
  *   `press` takes a button as a switch, where scanning is on, and says whether it did.

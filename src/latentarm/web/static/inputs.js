@@ -5,15 +5,17 @@
  * closed, a pointer or a gamepad taken away) sends neutral and a stop, and then nothing until Enable is pressed.
  */
 
+import { Held } from "./held.js";
+
 const PERIOD_MS = 20;
 /** Neutral inputs that go ahead of `enable`, ms: the server must have seen the stick at rest. */
 const NEUTRAL_FIRST_MS = 60;
 /** How long an unanswered Enable keeps sending, ms. */
 const PATIENCE_MS = 1500;
 
-/** @typedef {"pointer" | "dpad" | "keyboard" | "gamepad" | "switch"} Source */
+/** @typedef {import("./held.js").Source} Source */
 
-export class Inputs extends EventTarget {
+export class Inputs extends Held {
   /**
    * @param {import("./connection.js").Connection} connection
    * @param {(x: number, y: number) => number[]} shaped from stick (right, up) to what is sent
@@ -22,10 +24,10 @@ export class Inputs extends EventTarget {
     super();
     this._connection = connection;
     this._shaped = shaped;
-    this.neutral();
     this._timer = this._enabling = 0;
     this._wasEngaged = false;
     this._askedAt = -Infinity;
+    this.addEventListener("turned", (event) => this._send(/** @type {CustomEvent} */ (event).detail));
     connection.addEventListener("state", () => this._onState());
     connection.addEventListener("line", () => this.drop());
     window.addEventListener("blur", () => this.halt("this window lost the focus"));
@@ -43,40 +45,6 @@ export class Inputs extends EventTarget {
   /** Whether a press that begins now would move the arm. */
   get live() {
     return this.flowing && this._connection.driving && this._connection.engaged;
-  }
-
-  /**
-   * A source is deflected, or back at rest with (0, 0). While one is deflected the others wait.
-   *
-   * @param {Source} source
-   * @param {number} x to the right, in [-1, 1]
-   * @param {number} y up, in [-1, 1]
-   * @param {boolean} [latched] stays without being held
-   */
-  hold(source, x, y, latched = false) {
-    if (this.source !== null && this.source !== source) return;
-    const began = (this.source === null) !== (x === 0 && y === 0);
-    this.x = x;
-    this.y = y;
-    this.latched = latched;
-    this.source = x === 0 && y === 0 ? null : source;
-    if (began) this._send(source);
-    this.dispatchEvent(new Event("change"));
-  }
-
-  /** @param {Source} source */
-  release(source) {
-    if (this.source === source) this.hold(source, 0, 0);
-  }
-
-  /** Forget what is pressed; every source hears of it and lets go. */
-  neutral() {
-    this.x = this.y = 0;
-    this.latched = false;
-    /** @type {Source | null} */
-    this.source = null;
-    this.dispatchEvent(new Event("dropped"));
-    this.dispatchEvent(new Event("change"));
   }
 
   /** The person's explicit action: neutral inputs first, then `enable`. */

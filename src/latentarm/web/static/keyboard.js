@@ -6,7 +6,7 @@ const ARROWS = { ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowR
 const LETTERS = { KeyW: [0, 1], KeyS: [0, -1], KeyA: [-1, 0], KeyD: [1, 0] };
 
 /**
- * @param {import("./inputs.js").Inputs} inputs
+ * @param {import("./inputs.js").Inputs | import("./answering.js").Answering} inputs
  * @param {import("./settings.js").Settings} settings
  * @param {{enable: () => void, nextMode: () => void, axes: (index: number) => void}} actions
  */

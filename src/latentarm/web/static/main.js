@@ -1,32 +1,27 @@
 /** The Drive page: puts its parts together. */
 
 import { attachBelief } from "./belief.js";
-import { Connection } from "./connection.js";
 import { motionWords, placeWords } from "./directions.js";
 import { attachDpad } from "./dpad.js";
+import { attachFrame, part, write } from "./frame.js";
 import { attachGamepad } from "./gamepad.js";
 import { Inputs } from "./inputs.js";
 import { attachKeyboard } from "./keyboard.js";
 import { attachModes } from "./modes.js";
 import { personal, listGhosts } from "./paths.js";
 import { attachRecording } from "./recording.js";
-import { attachScanning } from "./scanning.js";
-import { attachSeat, seatFirst } from "./seat.js";
-import { NO_PROFILE, Settings } from "./settings.js";
-import { attachSettingsDialog } from "./settings_dialog.js";
-import { attachStatus } from "./status.js";
+import { attachScanning, DIRECTION_CHOICES } from "./scanning.js";
+import { attachSeat } from "./seat.js";
+import { NO_PROFILE } from "./settings.js";
 import { attachStick } from "./stick.js";
-import { attachStop } from "./stop.js";
-import { attachTheme } from "./theme.js";
+import { attachTrialBanner, TRIAL } from "./trial.js";
 
 /** Words beside the views change no more often than this, ms. */
 const WORDS_MS = 250;
 
-/** @param {string} id @returns {any} */
-const part = (id) => document.getElementById(id);
-
-const settings = new Settings();
-const connection = new Connection(settings.name);
+/** @type {import("./drawing.js").Drawing | null} */
+let drawing = null;
+const { settings, connection, status, seat, stop } = attachFrame({ drop: () => inputs.drop(), repaint: () => drawing?.repaint() });
 
 /** From the stick to what is sent, for the mode that is on. @param {number} x @param {number} y @returns {number[]} */
 function shaped(x, y) {
@@ -41,13 +36,7 @@ function shaped(x, y) {
 }
 
 const inputs = new Inputs(connection, shaped);
-const status = attachStatus({ line: part("status"), text: part("status-text") }, connection);
 inputs.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
-const seat = seatFirst(connection);
-const stop = attachStop(connection, () => {
-  seat.forget();
-  inputs.drop();
-});
 
 /** The seat first, if it is free, and then the arm: one press for both. */
 const enable = () => {
@@ -57,15 +46,19 @@ part("enable").addEventListener("click", enable);
 
 const modes = attachModes({ mode: part("mode"), axes: part("axes") }, connection);
 attachSeat({ text: part("seat"), ask: part("ask"), handOver: part("hand-over"), release: part("release") }, connection);
-attachRecording({ button: part("record"), task: part("record-task"), text: part("record-text") }, connection);
-const dialog = attachSettingsDialog(part("settings"), part("settings-open"), settings);
+attachTrialBanner(connection, settings, seat);
+attachRecording({ button: part("record"), task: part("record-task"), text: part("record-text"), teach: part("record-teach") }, connection);
 
 const refused = () => status.halted("the arm is not enabled");
 attachStick(part("stick"), part("stick-value"), inputs, settings);
 attachDpad(part("dpad"), part("dpad-help"), inputs, settings, refused);
 const switches = attachScanning(
   { list: part("scan"), press: part("switch"), next: part("switch-next"), help: part("scan-help") },
-  inputs, settings, { enable, stop, nextMode: modes.next },
+  inputs, settings, () => {
+    const mode = { id: "mode", label: "Other mode", act: modes.next };
+    return inputs.live ? [...DIRECTION_CHOICES, mode, { id: "stop", label: "Stop", act: stop }]
+      : [{ id: "enable", label: "Enable", act: enable }, mode];
+  },
 );
 attachKeyboard(inputs, settings, { enable, nextMode: modes.next, axes: modes.axes });
 attachGamepad(inputs, settings, { enable, stop, press: switches.press });
@@ -82,8 +75,6 @@ for (const radio of document.querySelectorAll("input[name=panel]")) {
   radio.addEventListener("change", () => settings.change({ panel: /** @type {HTMLInputElement} */ (radio).value }));
 }
 
-/** @type {import("./drawing.js").Drawing | null} */
-let drawing = null;
 const loading = import("./drawing.js").then(({ Drawing }) =>
   Drawing.load({ canvas: part("scene"), front: part("view-front"), side: part("view-side") }));
 loading.then(
@@ -97,7 +88,6 @@ loading.then(
     console.error(error);
   },
 );
-attachTheme(part("theme"), settings, () => drawing?.repaint());
 
 /** @returns {import("./dpad.js").Direction[]} */
 function pressed() {
@@ -128,11 +118,6 @@ function show() {
   part("reset").disabled = connection.engaged;
 }
 
-/** @param {HTMLElement} element @param {string} text */
-function write(element, text) {
-  if (element.textContent !== text) element.textContent = text;
-}
-
 function applySettings() {
   const { panel, seat } = settings.values;
   for (const name of ["stick", "dpad", "switch"]) part(`panel-${name}`).hidden = name !== panel;
@@ -141,12 +126,10 @@ function applySettings() {
   part("ghosts").parentElement.hidden = !settings.values.showGhosts;
 }
 
-let name = settings.name;
 settings.addEventListener("change", () => {
   if (settings.values.panel !== lastPanel) inputs.drop();
   lastPanel = settings.values.panel;
   applySettings();
-  if (settings.name !== name) connection.rename((name = settings.name));
   chooseProfile();
   show();
 });
@@ -160,18 +143,15 @@ function chooseProfile() {
   const { state, welcome } = connection;
   const { profile } = settings.values;
   const known = profile === NO_PROFILE || welcome?.profiles.includes(profile);
-  if (!known || !connection.driving || connection.engaged || profile === profileAsked) return;
+  // What is being tried is not put aside by an older choice.
+  if (!known || !connection.driving || connection.engaged || profile === profileAsked || state.profile === TRIAL) return;
   profileAsked = profile;
   const name = profile === NO_PROFILE ? null : profile;
   if (name !== state.profile) connection.send("profile", { name });
 }
 
 connection.addEventListener("welcome", () => {
-  const { robot, run, goals, limits } = connection.welcome;
-  write(part("about"), run ? `${robot}, run ${run}` : `${robot}, tool directions only: no run is loaded`);
-  write(part("latch-max"), String(limits.latch_max_s));
-  belief.name(goals);
-  dialog.offer(connection.welcome.profiles);
+  belief.name(connection.welcome.goals);
 });
 let trail = 0;
 connection.addEventListener("state", () => {

@@ -1,7 +1,10 @@
 /** Recording what is driven into a dataset, one episode at a time. */
 
+/** Samples a second: the control loop's rate. */
+const RATE_HZ = 100;
+
 /**
- * @param {{button: HTMLButtonElement, task: HTMLInputElement, text: HTMLElement}} parts
+ * @param {{button: HTMLButtonElement, task: HTMLInputElement, text: HTMLElement, teach: HTMLElement}} parts
  * @param {import("./connection.js").Connection} connection
  */
 export function attachRecording(parts, connection) {
@@ -18,8 +21,9 @@ export function attachRecording(parts, connection) {
     write(parts.button, on ? "Stop recording" : "Start recording");
     const episodes = recording?.episodes ?? 0;
     const kept = episodes === 0 ? "Nothing recorded yet." : `${episodes} ${episodes === 1 ? "episode" : "episodes"} recorded.`;
+    parts.teach.hidden = on || episodes === 0;
     if (recording?.problem) write(parts.text, recording.problem);
-    else write(parts.text, on ? `Recording: ${recording.samples} samples.` : you ? kept : "The person who drives can record.");
+    else write(parts.text, on ? `Recording episode ${episodes + 1}: ${Math.floor(recording.samples / RATE_HZ)} s.` : you ? kept : "The person who drives can record.");
   });
 }
 

@@ -12,13 +12,16 @@ const LATE_PRESS_MS = 800;
 
 /** @typedef {{id: string, label: string, act?: () => void}} Choice */
 
+/** The four directions to choose from. @type {Choice[]} */
+export const DIRECTION_CHOICES = Object.keys(DIRECTIONS).map((id) => ({ id, label: id[0].toUpperCase() + id.slice(1) }));
+
 /**
  * @param {{list: HTMLElement, press: HTMLButtonElement, next: HTMLButtonElement, help: HTMLElement}} parts
- * @param {import("./inputs.js").Inputs} inputs
+ * @param {import("./inputs.js").Inputs | import("./answering.js").Answering} inputs
  * @param {import("./settings.js").Settings} settings
- * @param {{enable: () => void, stop: () => void, nextMode: () => void}} actions
+ * @param {() => Choice[]} offered what there is to choose from now; what is called like a direction moves
  */
-export function attachScanning(parts, inputs, settings, actions) {
+export function attachScanning(parts, inputs, settings, offered) {
   /** @type {Choice[]} */
   let choices = [];
   let lit = 0;
@@ -61,6 +64,7 @@ export function attachScanning(parts, inputs, settings, actions) {
     }
     if (performance.now() - endedAt < LATE_PRESS_MS) return;
     const choice = choices[lit];
+    if (!choice) return;
     const direction = DIRECTIONS[/** @type {import("./dpad.js").Direction} */ (choice.id)];
     if (direction) {
       inputs.hold("switch", ...direction, true);
@@ -73,12 +77,8 @@ export function attachScanning(parts, inputs, settings, actions) {
     restart();
   };
   const refill = () => {
-    const mode = { id: "mode", label: "Other mode", act: actions.nextMode };
-    const wanted = inputs.live
-      ? [...Object.keys(DIRECTIONS).map((id) => ({ id, label: id[0].toUpperCase() + id.slice(1) })), mode,
-        { id: "stop", label: "Stop", act: actions.stop }]
-      : [{ id: "enable", label: "Enable", act: actions.enable }, mode];
-    if (wanted.length === choices.length) return;
+    const wanted = offered();
+    if (wanted.map(({ id }) => id).join() === choices.map(({ id }) => id).join()) return;
     choices = wanted;
     lit = 0;
     paint();
@@ -89,8 +89,8 @@ export function attachScanning(parts, inputs, settings, actions) {
     parts.next.hidden = !two;
     const keys = two ? `${settings.values.nextKey} goes on, ${settings.values.switchKey} chooses` : `or ${settings.values.switchKey}`;
     parts.help.textContent = two
-      ? `Next goes on, Switch chooses; while the arm moves, Switch stops it. Keys: ${keys}.`
-      : `A press (${keys}) chooses what is lit; while the arm moves, a press stops it.`;
+      ? `Next goes on, Switch chooses; a direction goes on until Switch is pressed again. Keys: ${keys}.`
+      : `A press (${keys}) chooses what is lit; a direction goes on until the next press.`;
     restart();
   };
 

@@ -31,6 +31,12 @@ export class ArmScene {
       return group;
     });
     this.scene.add(...this._bodies);
+    this._shade = new THREE.MeshLambertMaterial({
+      // Behind what it coincides with.
+      transparent: true, opacity: 0.4, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
+    });
+    /** @type {any[] | null} */
+    this._shadows = null;
     this._from = this._bodies.map(() => null);
     /** @type {number[][] | null} */
     this._to = null;
@@ -94,6 +100,27 @@ export class ArmScene {
     return share < 1;
   }
 
+  /** A second arm that can be seen through, or none. @param {number[][] | null} bodies */
+  shadow(bodies) {
+    this._shadows ??= this._bodies.map((/** @type {any} */ body) => {
+      const copy = body.clone();
+      copy.traverse((/** @type {any} */ part) => {
+        if (part.isMesh) part.material = this._shade;
+      });
+      this.scene.add(copy);
+      return copy;
+    });
+    this._shadows.forEach((/** @type {any} */ shadow, /** @type {number} */ index) => {
+      shadow.visible = bodies !== null;
+      if (bodies) place(shadow, bodies[index]);
+    });
+  }
+
+  /** Whether the tool is marked, and where it stands above the table. @param {boolean} shown */
+  markTool(shown) {
+    for (const part of [this._mark, this._plumb, this._foot]) part.visible = shown;
+  }
+
   /** How sure the robot is of each goal: the size of its ring. @param {number[] | null} belief */
   believe(belief) {
     this._rings.forEach((/** @type {any} */ ring, /** @type {number} */ index) => {
@@ -133,6 +160,7 @@ export class ArmScene {
     this._foot.material.color.set(colour("tool"));
     this._trail.material.color.set(colour("trail"));
     this._ball.material.color.set(colour("ring"));
+    this._shade.color.set(colour("way"));
     for (const solid of this._solids) solid.material.color.set(colour("table"));
     for (const ring of this._rings) ring.material.color.set(colour("ring"));
     for (const spot of this._spots) spot.material.color.set(colour("food"));

@@ -3,6 +3,8 @@
 /** A sentence that lasts shorter than this, ms, is not announced: people who nudge would hear nothing else. */
 const SETTLE_MS = 120;
 const SILENT_MS = 400;
+/** What the server says to do next, on pages that have no such button. */
+const NEXT_STEP = / (Let go of the stick, then press|Press) Enable[^.]*\.$/;
 
 /**
  * @param {{line: HTMLElement, text: HTMLElement}} parts
@@ -30,7 +32,7 @@ export function attachStatus(parts, connection) {
     else if (state === null) say("connecting", "Connecting …");
     else if (connection.silenceMs > SILENT_MS) say("lost", "The arm's computer is silent; the arm stops by itself.");
     else if (halted !== null && !connection.engaged) say("disengaged", `Stopped: ${halted}. Press Enable to go on.`);
-    else say(state.phase, state.why);
+    else say(state.phase, document.getElementById("enable") ? state.why : state.why.replace(NEXT_STEP, ""));
   };
 
   connection.addEventListener("state", show);

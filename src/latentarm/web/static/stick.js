@@ -9,7 +9,7 @@ const CELLS = 8;
 /**
  * @param {HTMLElement} element
  * @param {HTMLElement} spoken where the position is put into words
- * @param {import("./inputs.js").Inputs} inputs
+ * @param {import("./inputs.js").Inputs | import("./answering.js").Answering} inputs
  * @param {import("./settings.js").Settings} settings
  */
 export function attachStick(element, spoken, inputs, settings) {
@@ -74,10 +74,18 @@ export function attachStick(element, spoken, inputs, settings) {
   settings.addEventListener("change", outline);
   outline();
   show();
+
+  return {
+    /** A dot that stays, or none. @param {[number, number] | null} at */
+    mark(at) {
+      drawing.mark.setAttribute("visibility", at ? "visible" : "hidden");
+      if (at) drawing.mark.setAttribute("transform", `translate(${at[0] * REACH} ${-at[1] * REACH})`);
+    },
+  };
 }
 
 /** @param {number} x @param {number} y */
-function words(x, y) {
+export function words(x, y) {
   const across = Math.round(Math.abs(x) * 100);
   const along = Math.round(Math.abs(y) * 100);
   const said = [];
@@ -116,9 +124,11 @@ function draw(element) {
     const x = side * (REACH + 17);
     svg.append(part("text", { x, y: 5, "text-anchor": "middle", transform: `rotate(${side * 90} ${x} 0)` }, text));
   }
-  svg.append(knob);
+  const mark = part("g", { class: "mark", visibility: "hidden" });
+  mark.append(part("circle", { class: "mark-edge", r: 13 }), part("circle", { class: "mark-dot", r: 8 }));
+  svg.append(knob, mark);
   element.replaceChildren(svg);
-  return { knob, arm, dead };
+  return { knob, arm, dead, mark };
 }
 
 /** @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */

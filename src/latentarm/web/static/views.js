@@ -11,6 +11,9 @@ const COARSEST = 0.5;
 /** Without a graphics processor, pixels are dear from the start. */
 const SOFTWARE_SHARE = 0.7;
 
+/** What can wait for the next frame waits no longer than this, ms. */
+const SOON_MS = 120;
+
 /** Where each camera looks from, as directions from the middle of the scene. */
 const DIRECTIONS = {
   facing: { front: [1, 0, 0.42], side: [0.08, -1, 0.22] },
@@ -38,7 +41,7 @@ export class Views {
     /** @type {any} Passed by the graphics processor when the last frame is done. */
     this._fence = null;
     this._held = 0;
-    this._pending = 0;
+    this._pending = this._soon = 0;
     /** @type {"facing" | "behind"} */
     this.seat = "facing";
     /** @type {View[]} */
@@ -61,6 +64,12 @@ export class Views {
   invalidate() {
     if (this._pending || document.hidden) return;
     this._pending = requestAnimationFrame((now) => this._frame(now));
+  }
+
+  /** Something has changed that may be drawn with whatever changes next, where each frame takes long. */
+  invalidateSoon() {
+    if (this.smooth) this.invalidate();
+    else this._soon ||= setTimeout(() => this.invalidate(), SOON_MS);
   }
 
   /** Fit the canvas and the cameras to the page. */
@@ -125,6 +134,8 @@ export class Views {
       return;
     }
     this._held = Math.max(this._held - 1, 0);
+    clearTimeout(this._soon);
+    this._soon = 0;
     const gliding = this._scene.advance(now);
     for (const call of this.beforeFrame) call();
     const canvas = this._canvas.getBoundingClientRect();

@@ -16,11 +16,12 @@ from latentarm.assistance.entropy import GoalEntropy
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.errors import UserError
-from latentarm.experiments.checks import check_seed
 from latentarm.kinematics.chain import Chain
 from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
+from latentarm.models.training import Report
 from latentarm.robots.catalogue import ROBOTS, load_robot
+from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import Run, fingerprint, git_commit, run_facts
 from latentarm.types import Demonstrations, Row
 
@@ -51,7 +52,6 @@ class TrainConfig:
         device: where to train.
         end_effector: site, body or link, where the dataset's robot is a model file.
         resume: go on with a training that was cut off.
-        progress: show a bar on standard error.
     """
 
     demonstrations: Path
@@ -70,14 +70,17 @@ class TrainConfig:
     device: Literal["cpu", "cuda", "auto"] = "cpu"
     end_effector: str | None = None
     resume: bool = False
-    progress: bool = False
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
 
 
-def train_run(config: TrainConfig) -> list[Row]:
+def train_run(config: TrainConfig, report: Report | None = None) -> list[Row]:
     """Train a model on a dataset and write its run folder.
+
+    Args:
+        config: what was asked for.
+        report: is told after each epoch.
 
     Returns:
         The normalised loss on the episodes that stopped the training: mean and SD over seeds.
@@ -104,7 +107,7 @@ def train_run(config: TrainConfig) -> list[Row]:
             chain=chain,
             term=_term(config, demonstrations, chain),
             checkpoint=checkpoint,
-            progress=config.progress,
+            report=report,
         )
     run = Run(
         folder=config.out,

@@ -1,5 +1,7 @@
 """Asking a person, question by question, what they mean by their input."""
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from typing import Final, Literal, final
 
@@ -15,11 +17,11 @@ from latentarm.alignment.queries import (
     next_motion,
     novelty,
 )
-from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
+from latentarm.alignment.training import FitConfig, FittedAlignments, Report, fit_alignments, unheard
 from latentarm.errors import UserError
-from latentarm.experiments.asking import Person, Question, Say
 from latentarm.kinematics.chain import Chain
 from latentarm.models.model import LatentActionModel
+from latentarm.runs.person import Person, Question, Say
 from latentarm.types import Demonstrations, FloatArray
 
 CANDIDATES: Final = 100
@@ -37,6 +39,13 @@ ENSEMBLE: Final = 5
 QUICK: Final = FitConfig(steps=150)
 """How an ensemble is learned between two questions, while a person waits."""
 
+Watch = Callable[[], AbstractContextManager[Report]]
+
+
+def unwatched() -> AbstractContextManager[Report]:
+    """A `Watch` without anybody."""
+    return nullcontext(unheard)
+
 
 @final
 @dataclass(frozen=True, eq=False)
@@ -50,7 +59,7 @@ class Scene:
         motions: that may be asked about.
         unlabelled: (M, c).
         rng: of the ensembles.
-        progress: whether learning shows a bar.
+        watch: opened for each fit; says whom to tell how far it is.
     """
 
     model: LatentActionModel
@@ -59,19 +68,20 @@ class Scene:
     motions: Motions
     unlabelled: FloatArray
     rng: np.random.Generator
-    progress: bool
+    watch: Watch
 
     def learn(self, answers: list[Answers], config: FitConfig) -> FittedAlignments:
         """An alignment for each entry, from seeds 0, 1, ..."""
-        return fit_alignments(
-            self.model,
-            self.chain,
-            answers,
-            self.unlabelled,
-            config,
-            seed_index=self.seed_index,
-            progress=self.progress,
-        )
+        with self.watch() as report:
+            return fit_alignments(
+                self.model,
+                self.chain,
+                answers,
+                self.unlabelled,
+                config,
+                seed_index=self.seed_index,
+                report=report,
+            )
 
 
 def shown(
@@ -119,10 +129,17 @@ def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRu
         row = next_motion(novelty(chain, motions, asked), asked)
         asked.append(row)
         motion = motions[np.array([row])]
-        u = person.answer(Question(len(answered) + 1, count, motion, chain, reach_m, scene.model.latent_dim))
-        if u is None:
+        reply = person.answer(
+            Question(len(answered) + 1, count, motion, chain, reach_m, scene.model.latent_dim)
+        )
+        if isinstance(reply, str):
+            for again in asked[-2:]:
+                answered.pop(again, None)
+            del asked[-2:], history[max(len(answered) - TOO_FEW + 1, 0) :]
             continue
-        answered[row] = u
+        if reply is None:
+            continue
+        answered[row] = reply
         if TOO_FEW <= len(answered) < count:
             so_far = _answers(motions, answered)
             ensemble = scene.learn(bootstrap(so_far, ENSEMBLE, scene.rng), QUICK).alignments

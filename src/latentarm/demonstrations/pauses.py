@@ -1,0 +1,62 @@
+"""Drives recorded at a control loop's rate, made into demonstrations to learn from."""
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.types import Demonstrations, Episode, FloatArray
+
+_ROUNDING: Final = 1e-6
+"""Of a sample; a span of a whole number of samples must not get one more."""
+
+
+def without_pauses(demonstrations: Demonstrations, rate_hz: float) -> Demonstrations:
+    """The same motions without the pauses in them, at another rate.
+
+    A person who steers two axes at a time stops to switch and to think. An action is a displacement over
+    time, so pauses would teach the model that the arm crawls wherever somebody paused. Time stands still
+    here while no joint exceeds `STILL_RAD_S`; states are read off at even steps of what is left, by linear
+    interpolation, and the last state is kept. A control loop's rate is no use for learning either: within the
+    5 samples that an action may look ahead, an arm at 100 Hz hardly moves.
+
+    Args:
+        demonstrations: recorded drives. Actions and further features are left out: they are those of the
+            moment, and these moments are gone.
+        rate_hz: samples a second of motion.
+
+    Returns:
+        Episodes of at least two samples; those in which nothing moves are left out.
+
+    Raises:
+        UserError: nothing moves in any episode.
+    """
+    episodes = [_moving(episode, rate_hz) for episode in demonstrations.episodes]
+    kept = tuple(episode for episode in episodes if episode is not None)
+    if not kept:
+        raise UserError("The arm never moves in these episodes, so there is nothing to learn from.")
+    return replace(demonstrations, episodes=kept, rate_hz=rate_hz)
+
+
+def _moving(episode: Episode, rate_hz: float) -> Episode | None:
+    moved_s = _moving_time(episode.state, episode.timestamp)
+    samples = int(np.ceil(moved_s[-1] * rate_hz - _ROUNDING))
+    if samples == 0:
+        return None
+    timestamp = np.arange(samples + 1) / rate_hz
+    # Where the clock stands still, one sample is as good as another.
+    moments, first = np.unique(moved_s, return_index=True)
+    states = episode.state[first]
+    # Beyond the end interpolation stays at the last state, which is not the first one of its moment.
+    states[-1] = episode.state[-1]
+    state = np.stack([np.interp(timestamp, moments, joint) for joint in states.T], axis=1)
+    return Episode(state=state, timestamp=timestamp, task=episode.task)
+
+
+def _moving_time(state: FloatArray, timestamp: FloatArray) -> FloatArray:
+    """(T,), for how long the arm has moved by each sample, s."""
+    step_s = np.diff(timestamp)
+    moves = np.abs(np.diff(state, axis=0)).max(axis=1) > STILL_RAD_S * step_s
+    return np.concatenate([[0.0], np.cumsum(np.where(moves, step_s, 0.0))])

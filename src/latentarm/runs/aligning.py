@@ -1,0 +1,153 @@
+"""A person's alignment with a run: what there is to ask about, and what is made of the answers."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.alignment.affine import fit_affine
+from latentarm.alignment.answers import Answers
+from latentarm.alignment.contract import identity
+from latentarm.alignment.error import relative_alignment_error
+from latentarm.alignment.profile import Profile, model_fingerprint, save_profile
+from latentarm.alignment.training import FitConfig
+from latentarm.demonstrations.split import select_episodes
+from latentarm.errors import UserError
+from latentarm.metrics.results import as_document
+from latentarm.metrics.summary import unit_of
+from latentarm.models.catalogue import load_model
+from latentarm.runs.folder import Run, read_run, robot_of
+from latentarm.runs.person import Kind
+from latentarm.runs.questions import ENSEMBLE, Scene, Watch, shown, unwatched
+from latentarm.runs.training import prepared
+from latentarm.types import Row
+
+ALIGN_STREAM: Final = 3
+"""Keeps these draws apart from everything else that is drawn from the same seed."""
+
+NO_ALIGN: Final = "no_align"
+PROFILE: Final = "profile"
+"""Conditions of the rows: z = u, and as it was learned."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Alignable:
+    """A run that a person can be asked about.
+
+    Attributes:
+        run: what its folder says.
+        fingerprint: of the model and the seed that decodes.
+        scene: what is asked about.
+        seed: of everything random.
+    """
+
+    run: Run
+    fingerprint: str
+    scene: Scene
+    seed: int
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """What was learned of a person.
+
+    Attributes:
+        profile: theirs, for one run.
+        rows: how far the answers themselves are missed: with the profile, with an affine map, and with z = u.
+        about: what the profile's file says besides.
+    """
+
+    profile: Profile
+    rows: list[Row]
+    about: dict[str, object]
+
+    def save(self, folder: Path) -> None:
+        """Write the profile to a new folder, whole or not at all.
+
+        Raises:
+            UserError: the folder is there already, or cannot be written.
+        """
+        save_profile(self.profile, folder, self.about)
+
+
+def alignable(
+    folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | None = None, watch: Watch = unwatched
+) -> Alignable:
+    """Load a run, and choose what may be asked about.
+
+    Args:
+        folder: of the run.
+        seed_index: which of the run's seeds decodes.
+        seed: of everything random.
+        dataset: where the run's dataset lies now, if it was moved.
+        watch: see `Scene`.
+
+    Raises:
+        UserError: the run cannot be aligned.
+    """
+    run = read_run(folder)
+    model = load_model(folder)
+    fingerprint = model_fingerprint(folder, seed_index)
+    chain = robot_of(run).chain
+    decoder = model.decoder(seed_index)
+    if decoder.action_dim != chain.dof:
+        raise UserError(f"{folder} was trained for {decoder.action_dim} joints; its robot has {chain.dof}.")
+    rng = np.random.default_rng([ALIGN_STREAM, seed])
+    demonstrations = prepared(run.dataset(dataset), run.context)
+    training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
+    context = "state_belief" if run.context == "state_belief" else "state"
+    motions, unlabelled = shown(select_episodes(demonstrations, training), context, chain, rng)
+    scene = Scene(model, seed_index, chain, motions, unlabelled, rng, watch)
+    return Alignable(run, fingerprint, scene, seed)
+
+
+def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
+    """Learn a person's alignment from their answers.
+
+    Args:
+        known: what they were asked about.
+        answers: theirs.
+        name: of the person.
+        kind: of person.
+
+    Raises:
+        UserError: the training diverged.
+    """
+    scene = known.scene
+    decoder = scene.model.decoder(scene.seed_index)
+    alignment = scene.learn([answers] * ENSEMBLE, FitConfig()).best
+    alignments = {
+        NO_ALIGN: identity,
+        "manual_align": fit_affine(scene.model, answers, scene.seed_index),
+        PROFILE: alignment,
+    }
+    rows = [
+        Row(
+            study="align",
+            measure="relative_alignment_error",
+            unit=unit_of("relative_alignment_error"),
+            mean=relative_alignment_error(one, decoder, scene.chain, answers),
+            sd=None,
+            n=1,
+            model=known.run.model,
+            condition=condition if kind == "person" else f"{condition}, simulated",
+        )
+        for condition, one in alignments.items()
+    ]
+    about: dict[str, object] = {
+        "name": name,
+        "person": kind,
+        "seed": known.seed,
+        "answers": {
+            "duration_s": answers.motions.duration_s,
+            "start": answers.motions.start.tolist(),
+            "end": answers.motions.end.tolist(),
+            "belief": answers.motions.belief.tolist(),
+            "u": answers.u.tolist(),
+        },
+        **as_document(rows),
+    }
+    return Learned(Profile(alignment, known.fingerprint, scene.seed_index), rows, about)

@@ -1,0 +1,57 @@
+"""Who is asked what they mean by their input, and one question as they get it."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, final
+
+from latentarm.alignment.answers import Motions
+from latentarm.kinematics.chain import Chain
+from latentarm.types import FloatArray
+
+Say = Callable[[str], None]
+"""Shows text to the person."""
+
+Kind = Literal["person", "simulated person"]
+
+Reply = FloatArray | Literal["back"] | None
+"""An input (d,), None where they would not know, or ``back`` to be asked the question before once more."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Question:
+    """One motion, and what a person sees of it.
+
+    Attributes:
+        number: counted from 1.
+        total: how many there may be.
+        motion: one motion.
+        chain: the arm.
+        reach_m: the longest way of a tool in any motion, m.
+        axes: d, numbers that the answer has.
+    """
+
+    number: int
+    total: int
+    motion: Motions
+    chain: Chain
+    reach_m: float
+    axes: int
+
+
+class Person(ABC):
+    """Whoever answers."""
+
+    @property
+    @abstractmethod
+    def kind(self) -> Kind:
+        """As the profile keeps it."""
+
+    @abstractmethod
+    def answer(self, question: Question) -> Reply:
+        """The input by which they would ask for the motion.
+
+        Raises:
+            UserError: there is nobody to ask any more.
+        """

@@ -1,0 +1,206 @@
+"""Slow work in a child process of its own, so that neither the page's server nor the arm waits for it.
+
+The child is polite (one thread, a low priority) and dies with its parent. What the two say to each other is
+JSON of a strict schema over pipes; reading it never makes the parent wait.
+"""
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection, wait
+from types import FrameType
+from typing import Final, Generic, TypeVar, final
+
+from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
+from threadpoolctl import threadpool_limits
+
+from latentarm.errors import UserError
+
+MESSAGE_LIMIT: Final = 1 << 20
+"""The longest message, bytes."""
+
+_NICENESS: Final = 10
+_GRACE_S: Final = 2.0
+"""How long a child may take to tidy up once it is told to end."""
+
+Said = TypeVar("Said", bound=BaseModel)
+Told = TypeVar("Told", bound=BaseModel)
+
+
+class JobMessage(BaseModel):
+    """What a job and its parent say to each other; each kind has a field ``type`` of its own."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+@final
+class _Failed(JobMessage):
+    failed: str
+
+
+@final
+class Wire:
+    """The child's end: it says what it has done, and hears what it shall do.
+
+    Args:
+        hearing: what the parent says comes from here.
+        saying: what the parent hears goes in here.
+    """
+
+    def __init__(self, hearing: Connection, saying: Connection) -> None:
+        self._hearing = hearing
+        self._saying = saying
+
+    def say(self, message: JobMessage) -> None:
+        """Tell the parent.
+
+        Raises:
+            SystemExit: the parent is gone.
+        """
+        try:
+            self._saying.send_bytes(message.model_dump_json().encode())
+        except OSError:
+            sys.exit(1)
+
+    def hear(self, kind: TypeAdapter[Told]) -> Told:
+        """Wait for what the parent says next; what is no message of this kind is left out.
+
+        Raises:
+            SystemExit: the parent is gone.
+        """
+        while True:
+            try:
+                return kind.validate_json(self._hearing.recv_bytes(MESSAGE_LIMIT))
+            except ValidationError:
+                continue
+            except (EOFError, OSError):
+                sys.exit(1)
+
+
+@final
+class Job(Generic[Said]):
+    """A child process at work. Everything here returns at once, save `end`.
+
+    A `UserError` of the work ends it and is kept as `failure`; any other error is printed to standard error,
+    and `failure` says that the work broke off.
+
+    Args:
+        work: a module's function, called in the child with its `Wire` and then ``arguments``. It must not
+            be of a module that loads torch when it is imported: the number of threads is set before.
+        arguments: for ``work``; they are pickled by multiprocessing.
+        kind: what the child says.
+        name: what the work is called in a sentence, such as "The training".
+    """
+
+    def __init__(
+        self, work: Callable[..., None], arguments: tuple[object, ...], kind: TypeAdapter[Said], name: str
+    ) -> None:
+        context = multiprocessing.get_context("spawn")
+        child_hears, self._saying = context.Pipe(duplex=False)
+        self._hearing, child_says = context.Pipe(duplex=False)
+        os.set_blocking(self._saying.fileno(), False)
+        self._kind = kind
+        self._name = name
+        self._heard: deque[Said] = deque()
+        self._failure: str | None = None
+        self._ended = False
+        self._process = context.Process(
+            target=_run, args=(work, arguments, child_hears, child_says), name=name, daemon=True
+        )
+        self._process.start()
+        child_hears.close()
+        child_says.close()
+        # A thread, because a message that is half-written would make its reader wait.
+        self._listener = threading.Thread(target=self._listen, name=name, daemon=True)
+        self._listener.start()
+
+    @property
+    def alive(self) -> bool:
+        """Whether it is at work, or has something to say that has not arrived yet."""
+        return self._listener.is_alive()
+
+    @property
+    def failure(self) -> str | None:
+        """Why it did not come to its end, in a sentence for people; None while it is at work or went well."""
+        return self._failure
+
+    def heard(self) -> list[Said]:
+        """What the child has said since this was last asked, oldest first."""
+        return [self._heard.popleft() for _ in range(len(self._heard))]
+
+    def say(self, message: JobMessage) -> bool:
+        """Tell the child something short.
+
+        Returns:
+            Whether it was taken: not where the child has ended, or has not listened for long.
+        """
+        try:
+            self._saying.send_bytes(message.model_dump_json().encode())
+        except OSError:
+            return False
+        return True
+
+    def end(self) -> None:
+        """End it, by force where it takes longer than two seconds. It is no failure to be ended."""
+        self._ended = True
+        if self._listener.is_alive():
+            self._process.terminate()
+            self._listener.join(_GRACE_S)
+        if self._listener.is_alive():
+            self._process.kill()
+            self._listener.join()
+        self._saying.close()
+
+    def _listen(self) -> None:
+        with self._hearing, suppress(EOFError, OSError):
+            while True:
+                self._take(self._hearing.recv_bytes(MESSAGE_LIMIT))
+        self._process.join()
+        if self._process.exitcode != 0 and self._failure is None and not self._ended:
+            self._failure = f"{self._name} broke off unexpectedly: try it again."
+
+    def _take(self, message: bytes) -> None:
+        with suppress(ValidationError):
+            self._failure = _Failed.model_validate_json(message).failed
+            return
+        with suppress(ValidationError):
+            self._heard.append(self._kind.validate_json(message))
+
+
+def _run(
+    work: Callable[..., None], arguments: tuple[object, ...], hearing: Connection, saying: Connection
+) -> None:
+    """What the child does."""
+    # Ctrl-C in a terminal reaches every process: the server then ends this one in good order.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _tidy_up)
+    threading.Thread(target=_die_with_parent, daemon=True).start()
+    with suppress(OSError, AttributeError):  # a system that has no such thing
+        os.nice(_NICENESS)
+    os.environ["OMP_NUM_THREADS"] = "1"  # read by torch when it is loaded
+    wire = Wire(hearing, saying)
+    with threadpool_limits(1):
+        try:
+            work(wire, *arguments)
+        except UserError as error:
+            wire.say(_Failed(failed=str(error)))
+
+
+def _tidy_up(number: int, frame: FrameType | None) -> None:
+    """Leave through every ``finally``, so that no temporary files stay."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    sys.exit(1)
+
+
+def _die_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        os.kill(os.getpid(), signal.SIGTERM)
+        threading.Event().wait(_GRACE_S)
+    os._exit(1)

@@ -1,0 +1,391 @@
+"""A person is asked over the page's socket, without a browser; and what may go wrong on the way."""
+
+import asyncio
+import json
+import shutil
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from latentarm.alignment.profile import TRIAL, profile_names, trial_folder
+from latentarm.web import personalising
+from latentarm.web.channel import ChooseProfile
+from latentarm.web.messages import parse_message
+from latentarm.web.personalise_job import PersonaliseJob, PersonalisePlan
+from latentarm.web.personalise_messages import (
+    BeginPersonalise,
+    CancelPersonalise,
+    DiscardAlignment,
+    KeepAlignment,
+    Personalise,
+    TryAlignment,
+)
+from latentarm.web.personalising import Driven, Personalising
+from latentarm.web.setting import Spec
+
+BEGIN = {"type": "personalise", "name": "ada", "questions": 3}
+
+
+@pytest.fixture
+def run(trained, tmp_path):
+    """A run of the test's own."""
+    return Path(shutil.copytree(trained, tmp_path / "run"))
+
+
+def wait_for(what, within_s=60.0):
+    end_s = time.monotonic() + within_s
+    while not (found := what()):
+        assert time.monotonic() < end_s
+        time.sleep(0.02)
+    return found
+
+
+# --- the job alone ---
+
+
+@pytest.fixture
+def job(run):
+    job = PersonaliseJob(PersonalisePlan(run, "ada", 2, trial_folder(run)))
+    yield job
+    job.end()
+
+
+def question(job, after):
+    """The next question after the one of this id."""
+
+    def found():
+        state = job.look()
+        return state if state.phase == "asking" and state.question > after else None
+
+    return wait_for(found)
+
+
+def ended(job):
+    return wait_for(lambda: job.look() if job.look().phase in ("learned", "failed") else None)
+
+
+@pytest.mark.slow
+def test_a_person_answers_skips_goes_back_and_is_learned_from(job, run):
+    first = question(job, 0)
+    assert (first.number, first.of, first.back) == (1, 2, False)
+    assert first.motion.duration_s == 0.5
+    assert len(first.motion.frames[0]) == 8
+    assert len(first.motion.tools) == 1
+    job.answer(first.question, (0.5, 0.0))
+    assert job.look().phase == "thinking"
+    job.answer(first.question, (1.0, 1.0))  # the same answer twice counts once
+
+    second = question(job, first.question)
+    assert (second.number, second.back) == (2, True)
+    job.skip(second.question)
+    third = question(job, second.question)
+    assert (third.number, third.motion != second.motion) == (2, True)
+    job.back(third.question)
+    again = question(job, third.question)
+    assert again.motion == second.motion
+    job.answer(again.question, (0.0, -0.5))
+
+    learned = ended(job)
+    assert learned.phase == "learned", learned.why
+    assert learned.answers == 2
+    assert learned.error is not None
+    assert learned.error < 0.5, "the answers themselves are met"
+    about = json.loads((trial_folder(run) / "config.json").read_text())
+    assert (about["name"], about["person"]) == ("ada", "person")
+    assert about["answers"]["u"] == [[0.5, 0.0], [0.0, -0.5]]
+
+
+@pytest.mark.slow
+def test_whoever_knows_nothing_is_told_so(run):
+    job = PersonaliseJob(PersonalisePlan(run, "ada", 1, trial_folder(run)))
+    asked_last = 0
+    while job.look().phase != "failed":
+        if job.look().phase == "asking" and job.look().question > asked_last:
+            asked_last = job.look().question
+            job.skip(asked_last)
+        time.sleep(0.002)
+    assert "No question was answered" in job.look().why
+    assert not trial_folder(run).exists()
+    job.end()
+
+
+@pytest.mark.slow
+def test_a_job_that_dies_says_so(job):
+    question(job, 0)
+    job._job._process.kill()
+    failed = ended(job)
+    assert failed.phase == "failed"
+    assert failed.why.endswith("try it again.")
+    assert failed.motion is None
+
+
+@pytest.mark.slow
+def test_a_run_that_cannot_be_asked_about_says_why(run):
+    (run / "model.safetensors").write_bytes(b"none")
+    job = PersonaliseJob(PersonalisePlan(run, "ada", 2, trial_folder(run)))
+    failed = ended(job)
+    assert failed.phase == "failed"
+    assert "model.safetensors" in failed.why
+    job.end()
+
+
+# --- what the server makes of it, without jobs that take long ---
+
+
+class Control:
+    """Takes orders."""
+
+    def __init__(self):
+        self.orders = []
+        self.stops = []
+
+    def order(self, order):
+        self.orders.append(order)
+        return True
+
+    def stop(self, reason):
+        self.stops.append(reason)
+
+
+class Report:
+    """All that is looked at of a report."""
+
+    def __init__(self, phase="disengaged", profile=None):
+        self.phase = phase
+        self.profile = profile
+
+
+class Desk:
+    """Personalising with everything around it pretended."""
+
+    def __init__(self, run):
+        self.run = run
+        self.latent_dim = 2
+        self.report = Report()
+        self.control = Control()
+        self.personalising = Personalising(
+            lambda: Driven(self.run, self.latent_dim, self.report), self.control
+        )
+
+    def take(self, message):
+        self.personalising.take(message)
+        return self.personalising.look()
+
+
+@pytest.fixture
+def desk(run):
+    return Desk(run)
+
+
+def begin(name="ada"):
+    return BeginPersonalise(type="personalise", name=name, questions=1)
+
+
+@pytest.mark.parametrize("name", ["", "a b", "../ada", TRIAL, "x" * 65, "ada/"])
+def test_a_name_that_is_none_begins_nothing(desk, name):
+    state = desk.take(begin(name))
+    assert state.phase == "failed"
+    assert "no name for a profile" in state.why
+    assert desk.personalising.standstill is None
+
+
+def test_a_name_that_is_taken_begins_nothing(desk, run):
+    (run / "profiles" / "ada").mkdir(parents=True)
+    assert desk.take(begin()).why == "There is an alignment of ada already: choose another name."
+
+
+def test_without_a_run_at_rest_nobody_is_asked(desk):
+    desk.report = Report("ready")
+    assert desk.take(begin()).why == "Stop the arm first."
+    desk.report = Report()
+    desk.latent_dim = 3
+    assert "two axes" in desk.take(begin()).why
+    desk.run = None
+    assert "No run is loaded" in desk.take(begin()).why
+
+
+class Instant:
+    """A job that has learned at once."""
+
+    def __init__(self, plan):
+        plan.out.mkdir(parents=True)
+        (plan.out / "config.json").write_text("{}")
+        self.state = Personalise(phase="learned", name=plan.name, answers=plan.questions)
+        self.under_way = False
+
+    def look(self):
+        return self.state
+
+    def end(self):
+        pass
+
+
+class Asking(Instant):
+    """A job that waits for an answer."""
+
+    def __init__(self, plan):
+        super().__init__(plan)
+        self.state = Personalise(phase="asking", name=plan.name)
+        self.under_way = True
+
+
+@pytest.fixture
+def learned(desk, monkeypatch):
+    """Ada was asked while bob's alignment was in use, and what was learned waits to be kept."""
+    monkeypatch.setattr(personalising, "PersonaliseJob", Instant)
+    desk.report = Report(profile="bob")
+    assert desk.take(begin()).phase == "learned"
+    return desk
+
+
+TRY = TryAlignment(type="try_alignment")
+KEEP = KeepAlignment(type="keep_alignment")
+DISCARD = DiscardAlignment(type="discard_alignment")
+CANCEL = CancelPersonalise(type="cancel_personalise")
+
+
+def test_what_was_learned_is_tried_and_kept(learned, run):
+    learned.take(TRY)
+    assert learned.control.orders == [ChooseProfile(name=TRIAL)]
+    learned.report = Report("moving", TRIAL)
+    assert learned.take(KEEP).why == "Stop the arm first."
+    learned.report = Report("disengaged", TRIAL)
+    assert learned.take(KEEP).phase == "kept"
+    assert learned.control.orders[1:] == [ChooseProfile(name="ada")]
+    assert profile_names(run) == ("ada",)
+    assert not trial_folder(run).exists()
+
+
+def test_what_is_discarded_is_gone_and_all_is_as_before(learned, run):
+    learned.take(TRY)
+    assert learned.take(DISCARD) is None
+    assert learned.control.orders[1:] == [ChooseProfile(name="bob")]
+    assert profile_names(run) == ()
+    assert not trial_folder(run).exists()
+
+
+def test_a_name_taken_meanwhile_loses_nothing(learned, run):
+    other = run / "profiles" / "ada"
+    other.mkdir()
+    (other / "config.json").write_text("{}")
+    state = learned.take(KEEP)
+    assert state.phase == "learned"
+    assert "already exists" in state.why
+    assert trial_folder(run).exists()
+
+
+def test_another_run_has_no_use_for_it(learned, run, tmp_path):
+
+    async def change():
+        learned.run = tmp_path / "other"
+        assert learned.personalising.look() is None
+        await learned.personalising.close()
+
+    asyncio.run(change())
+    assert not trial_folder(run).exists()
+
+
+def test_nobody_drives_while_somebody_is_asked_and_an_end_leaves_nothing(desk, run, monkeypatch):
+    monkeypatch.setattr(personalising, "PersonaliseJob", Asking)
+
+    async def cancel():
+        desk.take(begin())
+        assert desk.control.stops, "an Enable that is on its way counts for nothing"
+        assert "ada is being asked" in desk.personalising.standstill
+        assert desk.take(begin("bob")).name == "ada", "one at a time"
+        assert desk.take(CANCEL) is None
+        await desk.personalising.close()
+
+    asyncio.run(cancel())
+    assert desk.personalising.standstill is None
+    assert not trial_folder(run).exists()
+
+
+def test_being_asked_again_replaces_what_was_tried(learned, run):
+    learned.take(TRY)
+    learned.report = Report("disengaged", TRIAL)
+    (trial_folder(run) / "old").touch()
+    assert learned.take(begin("ada2")).name == "ada2"
+    assert learned.control.orders[1:] == [ChooseProfile(name="bob")]
+    assert not (trial_folder(run) / "old").exists()
+
+
+# --- over the socket ---
+
+
+@pytest.mark.slow
+def test_only_the_driver_is_asked_and_nobody_drives_meanwhile(run, tmp_path, serve):
+    with serve(Spec(run, out=tmp_path / "out")) as site, site.page() as ada, site.page("Bob") as bob:
+        bob.send(**BEGIN)
+        time.sleep(0.5)
+        assert bob.workshop["personalise"] is None
+        ada.send(**BEGIN)
+        wait_for(lambda: bob.workshop["personalise"])
+        assert bob.workshop["personalise"]["name"] == "ada"
+        bob.wait(lambda state: "being asked" in state["why"])
+        ada.u = [0.0, 0.0]
+        before = ada.state
+        time.sleep(0.1)
+        ada.send(type="enable")
+        time.sleep(0.6)
+        assert ada.state["phase"] == "disengaged"
+        assert np.array_equal(before["tool"], ada.state["tool"])
+        for message in ({"type": "cancel_personalise"}, {"type": "skip_question", "question": 1}):
+            bob.send(**message)
+        time.sleep(0.5)
+        assert bob.workshop["personalise"] is not None
+        # The person's page is closed and opened again: the same is asked.
+        wait_for(lambda: bob.workshop["personalise"]["phase"] == "asking")
+        ada.send(type="release")
+        bob.send(type="ask_to_drive")
+        bob.wait(lambda state: state["you"])
+        motion = bob.workshop["personalise"]["motion"]
+        with site.page("Ada again") as back:
+            wait_for(lambda: back.workshop)
+            assert back.workshop["personalise"]["motion"] == motion
+        bob.send(type="cancel_personalise")
+        wait_for(lambda: bob.workshop["personalise"] is None)
+        bob.enable()
+
+
+@pytest.mark.slow
+def test_the_server_removes_what_was_not_kept(run, tmp_path, serve):
+    with serve(Spec(run, out=tmp_path / "out")) as site, site.page() as ada:
+        ada.send(**{**BEGIN, "questions": 1})
+        wait_for(lambda: ada.workshop["personalise"] and ada.workshop["personalise"]["phase"] == "asking")
+        ada.send(type="answer", question=ada.workshop["personalise"]["question"], u=[0.3, 0.4])
+        wait_for(lambda: ada.workshop["personalise"]["phase"] == "learned")
+        ada.send(type="try_alignment")
+        ada.wait(lambda state: state["profile"] == TRIAL)
+        assert trial_folder(run).exists()
+        assert ada.workshop["profiles"] == []
+    assert not trial_folder(run).exists()
+
+
+# --- the schema ---
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {**BEGIN, "questions": 0},
+        {**BEGIN, "questions": 31},
+        {**BEGIN, "questions": "3"},
+        {**BEGIN, "name": None},
+        {**BEGIN, "name": "x" * 201},
+        {**BEGIN, "run": "/etc"},
+        {"type": "answer", "question": 1, "u": [1.5]},
+        {"type": "answer", "question": 1, "u": []},
+        {"type": "answer", "question": 1, "u": [None]},
+        {"type": "answer", "question": -1, "u": [0.5]},
+        {"type": "answer", "u": [0.5]},
+        {"type": "skip_question", "question": 1, "u": [0.5]},
+        {"type": "keep_alignment", "name": "bob"},
+        {"type": "try_alignment", "name": "bob"},
+    ],
+)
+def test_what_is_no_message_is_refused(wrong):
+    with pytest.raises(ValueError):
+        parse_message(json.dumps(wrong))

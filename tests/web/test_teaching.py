@@ -1,0 +1,243 @@
+"""Record, train and drive over the page's socket, without a browser."""
+
+import shutil
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.errors import UserError
+from latentarm.runs.folder import read_run
+from latentarm.types import Command, StepRecord
+from latentarm.web.messages import parse_message
+from latentarm.web.setting import Spec
+from latentarm.web.shelf import Shelf
+from latentarm.web.training_job import FEWEST, TrainingJob, TrainingPlan
+
+JOINTS = tuple(f"joint{number}" for number in range(1, 8))
+
+
+def wait_for(what, within_s=60.0):
+    end_s = time.monotonic() + within_s
+    while not (found := what()):
+        assert time.monotonic() < end_s
+        time.sleep(0.02)
+    return found
+
+
+def journal_of(path, seconds):
+    """Episodes in which a Panda moves for so long."""
+    recorder = Recorder(path)
+    rng = np.random.default_rng(0)
+    start = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8])
+    for span_s in seconds:
+        velocity = rng.normal(scale=0.1, size=7)
+        recorder.begin_episode(EpisodeHeader("panda", JOINTS, 100.0, "wave"))
+        for tick in range(round(100 * span_s) + 1):
+            nothing = np.zeros(7)
+            recorder.record(
+                StepRecord(
+                    time_s=tick / 100,
+                    state=start + velocity * tick / 100,
+                    input=np.zeros(2),
+                    latent=np.zeros(2),
+                    action_human=nothing,
+                    action_assist=nothing,
+                    alpha=0.0,
+                    belief=np.zeros(0),
+                    mode=0,
+                    command=Command(velocity=velocity, duration_s=0.01, stop=None, limited_by=()),
+                    bound_rad=np.nan,
+                )
+            )
+        recorder.end_episode()
+    recorder.close()
+    return path
+
+
+def planned(folder, seconds=(2.0, 2.0, 2.0), name="waving", model="pca", episodes=None):
+    journal = folder / "journal.sqlite"
+    if not journal.exists():
+        journal_of(journal, seconds)
+    chosen = episodes or tuple(range(1, len(seconds) + 1))
+    return TrainingPlan(journal, chosen, name, model, 2, folder)
+
+
+def ended(job):
+    wait_for(lambda: job.look() and not job.under_way)
+    return job.look()
+
+
+@pytest.mark.slow
+def test_a_training_goes_from_the_journal_to_a_run_that_says_what_it_learned_from(tmp_path):
+    job = TrainingJob(planned(tmp_path, model="cae"))
+    heard = []
+    while job.under_way:
+        heard.append(job.look())
+        time.sleep(0.02)
+    done = job.look()
+    job.cancel()
+    assert done.phase == "done"
+    assert {one.phase for one in heard} >= {"exporting", "training"}
+    assert done.epoch > 0
+    assert done.epochs == 30
+    assert done.loss is not None
+    run = read_run(tmp_path / "runs" / "waving")
+    dataset = run.dataset()
+    assert dataset.rate_hz == 10.0
+    assert [len(episode.state) for episode in dataset.episodes] == [21] * 3
+    assert {episode.task for episode in dataset.episodes} == {"wave"}
+    assert Shelf(tmp_path, None).runs() == {"waving": tmp_path / "runs" / "waving"}
+
+
+def test_episodes_that_are_too_short_are_named_in_a_sentence_and_nothing_is_left(tmp_path):
+    job = TrainingJob(planned(tmp_path, (2.0, 2.0, 0.4)))
+    failed = ended(job)
+    assert failed.phase == "failed"
+    assert failed.why == (
+        "The arm moves for at least 1 s in 2 of the 3 chosen episodes: leave the others out, or record longer"
+        " ones."
+    )
+    assert not list(tmp_path.glob("*/waving"))
+
+
+def test_a_full_disk_is_said_and_leaves_nothing(tmp_path):
+    plan = planned(tmp_path)
+    (tmp_path / "datasets").write_text("a file where a folder must be")
+    failed = ended(TrainingJob(plan))
+    assert failed.phase == "failed"
+    assert "datasets" in failed.why
+    assert not (tmp_path / "runs").exists()
+
+
+@pytest.mark.slow
+def test_a_cancelled_training_leaves_nothing(tmp_path):
+    job = TrainingJob(planned(tmp_path, (30.0,) * 5, model="homogeneous"))
+    wait_for(lambda: job.look().phase == "training")
+    job.cancel()
+    assert job.look().phase == "cancelled"
+    assert not list(tmp_path.glob("datasets/*"))
+    assert not list(tmp_path.glob("runs/*"))
+    assert planned(tmp_path, (30.0,) * 5)  # and its name is free again
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "../waving", "a/b", "-x", "x" * 61, "a\nb", " ", "x."])
+def test_a_name_that_is_no_folder_is_refused(tmp_path, name):
+    with pytest.raises(UserError, match="choose another"):
+        planned(tmp_path, name=name)
+
+
+def test_a_name_that_is_taken_and_too_few_episodes_are_refused(tmp_path):
+    (tmp_path / "runs" / "waving").mkdir(parents=True)
+    with pytest.raises(UserError, match="already: choose another name"):
+        planned(tmp_path)
+    with pytest.raises(UserError, match="Training needs at least 3 episodes, and 1 of them is chosen"):
+        planned(tmp_path, name="other", episodes=(2, 2, 2))
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        '{"type":"train","name":"a","model":"pca","latent_dim":3,"episodes":[1]}',
+        '{"type":"train","name":"a","model":"os","latent_dim":2,"episodes":[1]}',
+        '{"type":"train","name":"a","model":"pca","latent_dim":2,"episodes":["1"]}',
+        '{"type":"train","name":"a","model":"pca","latent_dim":2,"episodes":[1],"out":"/tmp"}',
+        '{"type":"run"}',
+        '{"type":"run","run":""}',
+        '{"type":"cancel_training","why":"x"}',
+    ],
+)
+def test_what_is_not_of_the_schema_is_no_message(frame):
+    with pytest.raises(ValueError):
+        parse_message(frame)
+
+
+def test_a_run_has_one_name_however_it_is_reached(tmp_path, monkeypatch):
+    for place in ("out/runs/one", "elsewhere/one", "elsewhere/two"):
+        (tmp_path / place).mkdir(parents=True)
+        (tmp_path / place / "config.json").write_text("{}")
+    monkeypatch.chdir(tmp_path)
+    shelf = Shelf(Path("out"), Path("elsewhere/one"))
+    assert list(shelf.runs()) == ["one", "one (as started)"]
+    assert shelf.name_of(tmp_path / "out" / "runs" / "one") == "one"
+    assert shelf.name_of(tmp_path / "elsewhere" / "one") == "one (as started)"
+    assert shelf.name_of(None) is None
+    assert list(Shelf(Path("elsewhere"), Path("elsewhere/two")).runs()) == ["two"]
+
+
+def record(page, direction):
+    """Drive one way for 1.5 s while an episode is recorded, then put the arm back."""
+    before = (page.state["recording"] or {"episodes": 0})["episodes"]
+    page.send(type="record", on=True, task="push")
+    page.enable()
+    page.u = direction
+    time.sleep(1.5)
+    page.u = [0.0, 0.0]
+    page.wait(lambda state: state["phase"] == "ready")
+    page.send(type="stop")
+    page.wait(lambda state: state["phase"] == "disengaged")
+    page.u = None
+    page.send(type="record", on=False)
+    page.wait(lambda state: state["recording"]["episodes"] == before + 1)
+    page.send(type="reset")
+    time.sleep(0.3)
+
+
+@pytest.mark.slow
+def test_what_is_recorded_is_trained_and_driven_without_a_terminal(tmp_path, serve):
+    with serve(Spec(out=tmp_path)) as site, site.page() as page, site.page("Bob") as bob:
+        assert page.workshop["runs"] == []
+        assert page.welcome["modes"] == ["end_effector"]
+        for direction in ([1.0, 0.3], [1.0, -0.3], [0.9, 0.0]):
+            record(page, direction)
+        wait_for(lambda: len(page.workshop["recordings"]) == FEWEST)
+        assert {one["task"] for one in page.workshop["recordings"]} == {"push"}
+        assert all(1.0 < one["seconds"] < 6.0 for one in page.workshop["recordings"])
+        numbers = [one["number"] for one in page.workshop["recordings"]]
+
+        train = {"type": "train", "name": "pushed", "model": "pca", "latent_dim": 1, "episodes": numbers}
+        bob.send(**train)
+        time.sleep(0.5)
+        assert page.workshop["training"] is None, "only the driver may train"
+        page.send(**(train | {"name": "../pushed"}))
+        wait_for(lambda: bob.workshop["training"])
+        assert bob.workshop["training"]["phase"] == "failed"
+        assert "choose another" in bob.workshop["training"]["why"]
+        page.send(**train)
+        page.send(**(train | {"name": "second"}))
+        wait_for(lambda: page.workshop["training"]["phase"] == "done")
+        assert page.workshop["training"]["run"] == "pushed"
+        wait_for(lambda: bob.workshop["runs"] == ["pushed"])
+
+        page.enable()
+        page.send(type="run", run="pushed")
+        page.wait(lambda state: "Stop the arm first" in state["why"])
+        page.send(type="stop")
+        page.u = None
+        page.wait(lambda state: state["phase"] == "disengaged")
+        page.send(type="run", run="../pushed")
+        bob.send(type="run", run="pushed")
+        time.sleep(0.5)
+        assert page.welcome["run"] is None, "a run is named as it is listed, and by the driver"
+        page.send(type="run", run="pushed")
+        wait_for(lambda: page.welcome["run"] == bob.welcome["run"] == "pushed")
+        assert page.welcome["latent_dim"] == 1
+        page.wait(lambda state: state["mode"] == "latent")
+        wait_for(lambda: page.workshop["run"] == "pushed")
+        before = np.array(page.state["tool"])
+        page.enable()
+        page.u = [1.0]
+        page.wait(lambda state: np.linalg.norm(np.array(state["tool"]) - before) > 0.03)
+
+
+def test_a_run_that_has_gone_is_not_driven_and_the_arm_stays_as_it_was(tmp_path, serve, trained):
+    shutil.copytree(trained, tmp_path / "runs" / "copy")
+    with serve(Spec(trained, out=tmp_path)) as site, site.page() as page:
+        assert page.workshop["runs"] == ["copy", "run"]
+        (tmp_path / "runs" / "copy" / "model.safetensors").write_bytes(b"broken")
+        page.send(type="run", run="copy")
+        page.wait(lambda state: "model.safetensors" in state["why"])
+        assert page.welcome["run"] == "run"
+        page.enable()
