@@ -92,6 +92,10 @@ def by_buttons(page):
 
 
 def by_one_switch(page):
+    # Long enough for a press on a busy computer to arrive while its choice is still lit.
+    page.get_by_role("button", name="Settings").click()
+    page.get_by_label("Time on each choice").fill("2")
+    page.get_by_role("button", name="Done").click()
     page.get_by_role("radio", name="Switch").check()
     lit = page.locator("#scan li[aria-current=true]")
     switch = page.get_by_role("button", name="Switch", exact=True)
@@ -105,6 +109,8 @@ def by_one_switch(page):
 
 
 def by_gamepad(page):
+    # Where switches answer, a gamepad's first button is one.
+    page.get_by_role("radio", name="Stick").check()
     page.evaluate("pad.axes = [-1, 0]")
     says_left(page)
     for way in (-0.6, -0.2, 0):

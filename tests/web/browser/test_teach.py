@@ -9,6 +9,11 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
 
 WAY_M = 0.05
+WATCH_PROGRESS = """() => {
+  window.said = [];
+  const look = () => said.push(document.getElementById("training-text")?.textContent ?? "");
+  new MutationObserver(look).observe(document.body, { subtree: true, childList: true, characterData: true });
+}"""
 
 
 # Other tests share a server with a run; this one begins with none and loads one.
@@ -86,12 +91,14 @@ def test_the_arm_learns_on_the_page_what_it_was_shown(open_page, arm, push, tmp_
         assert found(page) == []
     page.get_by_label("Name of what is learned").fill("pushing")
     page.get_by_role("radio", name="One axis").check()
+    page.evaluate(WATCH_PROGRESS)
     train.click()
     expect(page.get_by_role("progressbar")).to_have_attribute(
         "aria-valuenow", re.compile("[1-9]"), timeout=60_000
     )
-    expect(page.locator("#training-text")).to_have_text(re.compile(r"Pass \d+ of"), timeout=60_000)
     expect(page.locator("#training-title")).to_have_text("pushing is trained.", timeout=60_000)
+    # It may be over before anybody looks.
+    assert any(re.match(r"Pass \d+ of", said) for said in page.evaluate("said"))
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         assert found(page) == []
