@@ -79,7 +79,7 @@ def test_commands_of_the_study_run(line: str, tmp_path: Path, monkeypatch: pytes
 
 @pytest.mark.slow
 @pytest.mark.skipif(not SHARED.exists(), reason="the recorded demonstrations are not beside this clone")
-@pytest.mark.parametrize("page", ["results.md", "models.md"])
+@pytest.mark.parametrize("page", ["comparison.md", "models.md", "results.md"])
 def test_commands_on_recorded_demonstrations_run(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
