@@ -2,6 +2,7 @@
 
 import shutil
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from latentarm.types import Command, StepRecord
 from latentarm.web.messages import parse_message
 from latentarm.web.setting import Spec
 from latentarm.web.shelf import Shelf
-from latentarm.web.training_job import FEWEST, TrainingJob, TrainingPlan
+from latentarm.web.training_job import FEWEST, TrainingJob, TrainingPlan, train_as_planned
 
 JOINTS = tuple(f"joint{number}" for number in range(1, 8))
 
@@ -27,13 +28,13 @@ def wait_for(what, within_s=60.0):
     return found
 
 
-def journal_of(path, seconds):
-    """Episodes in which a Panda moves for so long."""
+def journal_of(path, seconds, *, alike=False):
+    """Episodes in which a Panda moves for so long, each its own way unless all are alike."""
     recorder = Recorder(path)
     rng = np.random.default_rng(0)
     start = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8])
     for span_s in seconds:
-        velocity = rng.normal(scale=0.1, size=7)
+        velocity = np.full(7, 0.1) if alike else rng.normal(scale=0.1, size=7)
         recorder.begin_episode(EpisodeHeader("panda", JOINTS, 100.0, "wave"))
         for tick in range(round(100 * span_s) + 1):
             nothing = np.zeros(7)
@@ -101,6 +102,24 @@ def test_episodes_that_are_too_short_are_named_in_a_sentence_and_nothing_is_left
         " ones."
     )
     assert not list(tmp_path.glob("*/waving"))
+
+
+class Listener:
+    """Hears what a training says, in the same process."""
+
+    def __init__(self):
+        self.said = []
+
+    def say(self, message):
+        self.said.append(message)
+
+
+def test_an_axis_that_moves_nothing_is_said_in_the_words_of_the_page(tmp_path):
+    plan = planned(tmp_path)
+    journal_of(tmp_path / "alike.sqlite", (2.0, 2.0, 2.0), alike=True)
+    wire = Listener()
+    train_as_planned(wire, replace(plan, journal=tmp_path / "alike.sqlite"))
+    assert "choose one axis" in wire.said[-1].warned
 
 
 def test_a_full_disk_is_said_and_leaves_nothing(tmp_path):

@@ -123,8 +123,8 @@ def train_run(config: TrainConfig, report: Report | None = None) -> list[Row]:
     facts = run_facts(run) | {"goal_entropy": config.goal_entropy}
     model.save(config.out, run={**facts, "warnings": said, "git_commit": git_commit()})
     checkpoint.unlink(missing_ok=True)
-    for sentence in said:
-        warnings.warn(sentence, stacklevel=2)
+    for warning in caught:
+        warnings.warn(warning.message, stacklevel=2)
     loss = model.held_out_loss_
     spread = float(loss.std(ddof=1)) if len(loss) > 1 else None
     return [Row("train", "held_out_loss", "1", float(loss.mean()), spread, len(loss), model=config.model)]
