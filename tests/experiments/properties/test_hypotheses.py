@@ -154,7 +154,7 @@ def test_p_is_corrected_over_the_papers_models_and_over_the_others_apart():
 def test_verdicts_name_the_task_and_what_failed_there():
     rng = np.random.default_rng(0)
     good = verdicts(compare_models(study(rng)))
-    assert [(one.in_paper, one.supported) for one in good] == [(True, True), (False, True)]
+    assert [(one.about, one.supported) for one in good] == [(True, True), (False, True)]
     assert good[0].by_task == {"sine": "supported", "reach": "supported"}
     bad, further = verdicts(compare_models(study(rng, reach_mean=65.0)))
     assert not bad.supported

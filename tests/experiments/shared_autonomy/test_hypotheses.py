@@ -117,4 +117,4 @@ def test_models_are_families_of_their_own_and_ablations_no_part_of_it():
     tests = compare_methods(both, PRESET)
     assert {test.model for test in tests} == {"cae", "cvae"}
     assert len(tests) == 2 * len(compare_methods(results_of({}), PRESET))
-    assert [verdict.model for verdict in verdicts(tests)] == ["cae"] * 3 + ["cvae"] * 3
+    assert [verdict.about for verdict in verdicts(tests)] == ["cae"] * 3 + ["cvae"] * 3

@@ -30,9 +30,10 @@ from latentarm.experiments.alignment.tables import (
     target_table,
 )
 from latentarm.experiments.alignment.targets import PAPER_MODEL, Target
-from latentarm.experiments.alignment.verdicts import Verdict, verdicts
+from latentarm.experiments.alignment.verdicts import verdicts
 from latentarm.experiments.studies.pages import listed, shown
 from latentarm.experiments.studies.statistics import LEVEL
+from latentarm.experiments.studies.verdicts import Verdict
 from latentarm.files import write_text
 from latentarm.runs.questions import TOO_FEW
 from latentarm.style import look_of
@@ -143,9 +144,9 @@ def _in_short(tests: Sequence[Comparison], reached: Sequence[Target]) -> list[st
     ]
 
 
-def _verdict_lines(verdict: Verdict) -> str:
+def _verdict_lines(verdict: Verdict[str]) -> str:
     """A hypothesis with one model, and below it what each task says of it."""
-    lines = [f"**{verdict.hypothesis}**, {HYPOTHESES[verdict.hypothesis]}; {look_of(verdict.model).label}:\n"]
+    lines = [f"**{verdict.hypothesis}**, {HYPOTHESES[verdict.hypothesis]}; {look_of(verdict.about).label}:\n"]
     lines += [f"- {look_of(task).label}: {said}" for task, said in verdict.by_task.items()]
     return "\n".join(lines) + "\n"
 

@@ -8,7 +8,6 @@ from typing import Final
 
 from rich.console import Console
 
-from latentarm.errors import UserError
 from latentarm.experiments.alignment.cell import Cell, CellResult, measure_cell
 from latentarm.experiments.alignment.curves import CurveCell, CurveResult, measure_curve
 from latentarm.experiments.alignment.decoder import DecoderCell, LearnedDecoder, learn_decoder
@@ -25,6 +24,7 @@ from latentarm.experiments.alignment.rows import STUDY, rows_of
 from latentarm.experiments.alignment.targets import PAPER_MODEL, targets
 from latentarm.experiments.grid import check_processes, run_grid
 from latentarm.experiments.studies.folder import Study, write_json
+from latentarm.experiments.studies.tasks import check_tasks
 from latentarm.metrics.results import write_results
 from latentarm.runs.checks import check_seed
 from latentarm.tasks.pouring.catalogue import POURING_TASKS
@@ -82,12 +82,7 @@ class AlignmentConfig:
     def __post_init__(self) -> None:
         check_seed(self.seed)
         check_processes(self.jobs, self.backend)
-        known = ", ".join(TASKS)
-        for task in self.tasks:
-            if task not in TASKS:
-                raise UserError(f"There is no task {task!r}: choose from {known}.")
-        if not self.tasks or len(set(self.tasks)) < len(self.tasks):
-            raise UserError(f"Name at least one task, and none twice: choose from {known}.")
+        check_tasks(self.tasks, TASKS)
 
     @property
     def pouring_tasks(self) -> tuple[str, ...]:

@@ -14,9 +14,10 @@ from latentarm.experiments.properties.tables import (
     noise_table,
     paper_table,
 )
-from latentarm.experiments.properties.verdicts import Verdict, verdicts
+from latentarm.experiments.properties.verdicts import verdicts
 from latentarm.experiments.studies.pages import shown
 from latentarm.experiments.studies.statistics import LEVEL
+from latentarm.experiments.studies.verdicts import Verdict
 from latentarm.files import write_text
 from latentarm.style import look_of
 from latentarm.tasks.planar.motion import SAMPLES, STEP_S
@@ -118,9 +119,9 @@ def _in_short(rows: Sequence[Row], tests: Sequence[Comparison], tasks: Sequence[
     return "\n".join(lines)
 
 
-def _verdict_lines(verdict: Verdict) -> str:
+def _verdict_lines(verdict: Verdict[bool]) -> str:
     """A hypothesis, and below it what each task says of it."""
-    of = "the paper's models" if verdict.in_paper else "conditioned models that the paper does not have"
+    of = "the paper's models" if verdict.about else "conditioned models that the paper does not have"
     lines = [f"**{verdict.hypothesis}**, {HYPOTHESES[verdict.hypothesis]}; {of}:\n"]
     return "\n".join([*lines, *(f"- {task}: {said}" for task, said in verdict.by_task.items())]) + "\n"
 

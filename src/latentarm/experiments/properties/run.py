@@ -10,7 +10,6 @@ from typing import Final
 
 from rich.console import Console
 
-from latentarm.errors import UserError
 from latentarm.experiments.grid import check_processes, run_grid
 from latentarm.experiments.properties.cell import Cell, CellResult, measure_cell
 from latentarm.experiments.properties.figures.draw import FIGURES, draw_figures
@@ -20,6 +19,7 @@ from latentarm.experiments.properties.page import write_page
 from latentarm.experiments.properties.paper import with_paper
 from latentarm.experiments.properties.preset import Preset
 from latentarm.experiments.studies.folder import Study, write_json
+from latentarm.experiments.studies.tasks import check_tasks
 from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.models.catalogue import MODELS
@@ -71,12 +71,7 @@ class PropertiesConfig:
     def __post_init__(self) -> None:
         check_seed(self.seed)
         check_processes(self.jobs, self.backend)
-        known = ", ".join(MOTIONS)
-        for task in self.tasks:
-            if task not in MOTIONS:
-                raise UserError(f"There is no task {task!r}: choose from {known}.")
-        if not self.tasks or len(set(self.tasks)) < len(self.tasks):
-            raise UserError(f"Name at least one task, and none twice: choose from {known}.")
+        check_tasks(self.tasks, MOTIONS)
 
 
 def run_properties(config: PropertiesConfig) -> list[Row]:

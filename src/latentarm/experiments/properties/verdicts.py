@@ -1,70 +1,38 @@
 """What the tests of the hypotheses come to: for each family of tests, one short line per task."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from latentarm.experiments.properties.hypotheses import Comparison
+from latentarm.experiments.studies import verdicts as of_study
 from latentarm.experiments.studies.pages import listed
 from latentarm.experiments.studies.statistics import Direction
+from latentarm.experiments.studies.verdicts import Verdict
 from latentarm.style import look_of
 
-LONGEST: Final = 140
+LONGEST: Final = 125
 """Characters in which a task's verdict says what failed; where that takes more, it counts what failed."""
 
 SIDES: Final[Mapping[Direction, str]] = {"less": "below", "greater": "above"}
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """What the tests say of one hypothesis.
-
-    Attributes:
-        hypothesis: ``H1`` or ``H2``.
-        in_paper: whether it is about the paper's models or about the further ones.
-        supported: whether every comparison holds.
-        by_task: task -> ``supported`` or ``not supported: why``, in the tasks' order.
-    """
-
-    hypothesis: str
-    in_paper: bool
-    supported: bool
-    by_task: Mapping[str, str]
+def verdicts(comparisons: Sequence[Comparison]) -> list[Verdict[bool]]:
+    """One verdict for each hypothesis, about the paper's models (`Verdict.about`) and about further ones."""
+    return of_study.verdicts(comparisons, lambda one: one.in_paper, _why_not)
 
 
-def verdicts(comparisons: Sequence[Comparison]) -> list[Verdict]:
-    """One verdict for each family of tests, in their order; a task supports where all its tests do."""
-    families = dict.fromkeys((one.hypothesis, one.in_paper) for one in comparisons)
-    return [
-        _verdict([one for one in comparisons if (one.hypothesis, one.in_paper) == family])
-        for family in families
-    ]
-
-
-def _verdict(family: Sequence[Comparison]) -> Verdict:
-    tasks = dict.fromkeys(one.task for one in family)
-    return Verdict(
-        hypothesis=family[0].hypothesis,
-        in_paper=family[0].in_paper,
-        supported=all(one.holds for one in family),
-        by_task={task: _said([one for one in family if one.task == task]) for task in tasks},
-    )
-
-
-def _said(tests: Sequence[Comparison]) -> str:
-    """What all tests of one task come to."""
+def _why_not(tests: Sequence[Comparison]) -> str:
+    """What failed; where that takes too many words, how much did."""
     failing = [one for one in tests if not one.holds]
-    if not failing:
-        return "supported"
     reasons = [
         _not_beyond([one for one in failing if one.p is not None]),
         _untested([one for one in failing if one.p is None]),
     ]
-    said = f"not supported: {'; '.join(filter(None, reasons))}"
+    said = "; ".join(filter(None, reasons))
     if len(said) <= LONGEST:
         return said
     measures = listed(one.measure for one in failing)
-    return f"not supported: {len(failing)} of {len(tests)} tests do not hold, in {measures}"
+    return f"{len(failing)} of {len(tests)} tests do not hold, in {measures}"
 
 
 def _not_beyond(failing: Sequence[Comparison]) -> str:

@@ -22,9 +22,10 @@ from latentarm.experiments.shared_autonomy.tables import (
     people_table,
     reconstruction_table,
 )
-from latentarm.experiments.shared_autonomy.verdicts import Verdict, verdicts
+from latentarm.experiments.shared_autonomy.verdicts import verdicts
 from latentarm.experiments.studies.pages import listed, shown
 from latentarm.experiments.studies.statistics import LEVEL
+from latentarm.experiments.studies.verdicts import Verdict
 from latentarm.files import write_text
 from latentarm.style import look_of
 
@@ -123,9 +124,9 @@ def _in_short(tests: Sequence[Comparison]) -> str:
     return "\n".join(["## In short\n", *(_verdict_lines(verdict) for verdict in verdicts(tests))])
 
 
-def _verdict_lines(verdict: Verdict) -> str:
+def _verdict_lines(verdict: Verdict[str]) -> str:
     """A hypothesis with one model, and below it what each arm says of it."""
-    lines = [f"**{verdict.hypothesis}**, {HYPOTHESES[verdict.hypothesis]}; {look_of(verdict.model).label}:\n"]
+    lines = [f"**{verdict.hypothesis}**, {HYPOTHESES[verdict.hypothesis]}; {look_of(verdict.about).label}:\n"]
     lines += [f"- {look_of(task).label}: {said}" for task, said in verdict.by_task.items()]
     return "\n".join(lines) + "\n"
 

@@ -8,7 +8,6 @@ from typing import Final
 
 from rich.console import Console
 
-from latentarm.errors import UserError
 from latentarm.experiments.grid import check_processes, run_grid
 from latentarm.experiments.shared_autonomy.ablations import variants
 from latentarm.experiments.shared_autonomy.cell import (
@@ -29,6 +28,7 @@ from latentarm.experiments.shared_autonomy.paper import MODEL
 from latentarm.experiments.shared_autonomy.preset import Preset
 from latentarm.experiments.shared_autonomy.rows import STUDY, Figure, figures, rows_of
 from latentarm.experiments.studies.folder import Study, write_json
+from latentarm.experiments.studies.tasks import check_tasks
 from latentarm.metrics.results import write_results
 from latentarm.runs.checks import check_seed
 from latentarm.types import Row
@@ -79,12 +79,7 @@ class SharedAutonomyConfig:
     def __post_init__(self) -> None:
         check_seed(self.seed)
         check_processes(self.jobs, self.backend)
-        known = ", ".join(TASKS)
-        for task in self.tasks:
-            if task not in TASKS:
-                raise UserError(f"There is no task {task!r}: choose from {known}.")
-        if not self.tasks or len(set(self.tasks)) < len(self.tasks):
-            raise UserError(f"Name at least one task, and none twice: choose from {known}.")
+        check_tasks(self.tasks, TASKS)
 
 
 def run_shared_autonomy(config: SharedAutonomyConfig) -> list[Row]:
