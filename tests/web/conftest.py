@@ -29,6 +29,15 @@ from latentarm.web.setting import PERIOD_S, Setting, Spec, load_setting
 from latentarm.web.supervisor import ControlProcess
 
 
+def wait_for(what: Callable[[], Any], within_s: float = 60.0) -> Any:
+    """What there is once there is something."""
+    end_s = time.monotonic() + within_s
+    while not (found := what()):
+        assert time.monotonic() < end_s
+        time.sleep(0.02)
+    return found
+
+
 @pytest.fixture(scope="session")
 def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run for the table: principal components of a few demonstrations."""

@@ -25,6 +25,8 @@ from latentarm.web.personalise_messages import (
 from latentarm.web.personalising import Driven, Personalising
 from latentarm.web.setting import Spec
 
+from .conftest import wait_for
+
 BEGIN = {"type": "personalise", "name": "ada", "questions": 3}
 
 
@@ -32,14 +34,6 @@ BEGIN = {"type": "personalise", "name": "ada", "questions": 3}
 def run(trained, tmp_path):
     """A run of the test's own."""
     return Path(shutil.copytree(trained, tmp_path / "run"))
-
-
-def wait_for(what, within_s=60.0):
-    end_s = time.monotonic() + within_s
-    while not (found := what()):
-        assert time.monotonic() < end_s
-        time.sleep(0.02)
-    return found
 
 
 # --- the job alone ---

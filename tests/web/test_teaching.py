@@ -17,15 +17,9 @@ from latentarm.web.setting import Spec
 from latentarm.web.shelf import Shelf
 from latentarm.web.training_job import FEWEST, TrainingJob, TrainingPlan, train_as_planned
 
+from .conftest import wait_for
+
 JOINTS = tuple(f"joint{number}" for number in range(1, 8))
-
-
-def wait_for(what, within_s=60.0):
-    end_s = time.monotonic() + within_s
-    while not (found := what()):
-        assert time.monotonic() < end_s
-        time.sleep(0.02)
-    return found
 
 
 def journal_of(path, seconds, *, alike=False):
