@@ -1,0 +1,33 @@
+"""Options that several commands share."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from tyro.conf import arg
+
+ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "isometric", "homogeneous"]
+
+Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
+Seed = Annotated[int, arg(help="Seed of everything random.")]
+RobotName = Annotated[
+    str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")
+]
+EndEffector = Annotated[
+    str | None, arg(help="Site, body or link of the model file that is the end-effector.", metavar="NAME")
+]
+Dataset = Annotated[Path, arg(metavar="DST", help="Folder of a native dataset.")]
+MovedDataset = Annotated[
+    Path | None, arg(metavar="DST", help="Where the run's dataset lies now, if it was moved.")
+]
+Jobs = Annotated[int, arg(help="Processes that measure side by side; -1 is one per core.")]
+Backend = Annotated[
+    Literal["joblib", "ray", "dask"],
+    arg(
+        help="Processes of this machine, or a cluster: that of RAY_ADDRESS or DASK_SCHEDULER_ADDRESS,"
+        " or else a new one here."
+    ),
+]
+PresetName = Annotated[
+    Literal["paper", "smoke"],
+    arg(help="The sizes of the paper, or small ones that only show that it runs."),
+]

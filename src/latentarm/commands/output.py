@@ -1,0 +1,53 @@
+"""What commands print: rows as a table or as one JSON document, and sentences."""
+
+import json as json_format
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from latentarm.types import Row
+
+
+def show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
+    """Print rows as one JSON document, or as the tables given, or else as a table of all rows."""
+    if json:
+        print(json_format.dumps([row.as_json() for row in rows], indent=2))
+    elif tables:
+        print_renderables(*tables)
+    else:
+        from rich.console import Console
+
+        from latentarm.metrics.table import rich_tables
+
+        print_renderables(rich_tables(rows, width=Console().width))
+
+
+def tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
+    """One table per task, of the rows without a condition."""
+    from rich.console import Console
+
+    from latentarm.metrics.table import rich_tables
+
+    width = Console().width
+    main_rows = [row for row in rows if row.condition is None]
+    return [
+        rich_tables([row for row in main_rows if row.task == task], title=f"{task}, simulated", width=width)
+        for task in dict.fromkeys(row.task for row in main_rows)
+    ]
+
+
+def say(sentence: str, json: bool) -> None:
+    """Tell a person; with ``--json`` on standard error, so that standard output stays one document."""
+    print(sentence, file=sys.stderr if json else sys.stdout)
+
+
+def print_renderables(*renderables: "RenderableType") -> None:
+    """Print tables and other things that rich can draw."""
+    from rich.console import Console
+
+    console = Console()
+    for renderable in renderables:
+        console.print(renderable)

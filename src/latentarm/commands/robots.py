@@ -1,0 +1,30 @@
+"""`latentarm robots`: what is known of a robot."""
+
+import json as json_format
+from typing import Annotated
+
+from tyro.conf import Positional, arg
+
+from latentarm.commands.options import EndEffector, Json
+from latentarm.commands.output import print_renderables
+
+
+def robots(
+    robot: Annotated[
+        Positional[str | None],
+        arg(metavar="ROBOT", help="One robot, by name or path; all known ones without."),
+    ] = None,
+    end_effector: EndEffector = None,
+    json: Json = False,
+) -> int:
+    """List the robots, or show one: joints, limits and end-effector.
+
+    For example: latentarm robots panda
+    """
+    from latentarm.experiments.robot_sheet import describe, sheets
+
+    if json:
+        print(json_format.dumps(describe(robot, end_effector), indent=2))
+    else:
+        print_renderables(*sheets(robot, end_effector))
+    return 0

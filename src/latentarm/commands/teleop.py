@@ -1,0 +1,50 @@
+"""`latentarm teleop`: the web page."""
+
+import json as json_format
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from tyro.conf import Positional, arg
+
+from latentarm.commands.options import Json, Seed
+from latentarm.commands.output import say
+
+
+def teleop(
+    run: Annotated[
+        Positional[Path | None],
+        arg(metavar="RUN", help="A trained run; without one, the end-effector is driven."),
+    ] = None,
+    host: Annotated[
+        str, arg(help="The address that people open; off this machine they need a link that works once.")
+    ] = "127.0.0.1",
+    port: Annotated[int, arg(help="0 takes any that is free.")] = 8460,
+    profile: Annotated[
+        str | None, arg(metavar="NAME", help="A person that `latentarm align` has asked; z = u without.")
+    ] = None,
+    certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
+    keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
+    seed: Seed = 0,
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for what is recorded.")] = Path("teleop"),
+    json: Json = False,
+) -> int:
+    """Drive a simulated arm from a web page: stick, buttons, keyboard, gamepad or switches.
+
+    Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
+    """
+    from latentarm.web.addresses import TeleopConfig
+    from latentarm.web.server import serve
+    from latentarm.web.setting import Spec
+
+    def announce(sentence: str) -> None:
+        say(sentence, json)
+        sys.stdout.flush()  # whoever reads us through a pipe waits for the address
+
+    def ready(address: str) -> None:
+        if json:
+            print(json_format.dumps({"address": address}), flush=True)
+
+    config = TeleopConfig(Spec(run, profile, seed, out), host, port, certfile, keyfile)
+    serve(config, announce, ready)
+    return 0

@@ -1,0 +1,78 @@
+"""`latentarm train`: a latent action model from a dataset."""
+
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+from tyro.conf import arg
+
+from latentarm.commands.options import Dataset, EndEffector, Json, ModelName, Seed
+from latentarm.commands.output import say, show
+
+
+def train(
+    demonstrations: Dataset,
+    model: Annotated[ModelName, arg(help="The latent action model.")] = "cvae",
+    latent_dim: Annotated[int, arg(help="d, the number of axes of the person's interface.")] = 2,
+    context: Annotated[
+        Literal["state", "state_belief"], arg(help="What the decoder sees: c = s, or c = (s, b).")
+    ] = "state",
+    seeds: Annotated[int, arg(help="Models trained side by side, from different seeds.")] = 5,
+    seed: Seed = 0,
+    window: Annotated[int, arg(help="An action leads to a state at most this many samples away.")] = 5,
+    state_noise_rad: Annotated[
+        float, arg(help="SD of noise on the state that the decoder sees, rad.")
+    ] = 0.01,
+    held_out: Annotated[float, arg(help="Share of the episodes kept for evaluation.")] = 0.2,
+    epochs: Annotated[
+        int | None, arg(help="At most this many passes over the pairs; the model's own number by default.")
+    ] = None,
+    kl_weight: Annotated[
+        float | None, arg(help="lambda of equations 7 and 8, for vae and cvae; below 1.")
+    ] = None,
+    goal_entropy: Annotated[
+        float,
+        arg(
+            help="lambda_2 of equation 16: how much it counts that every goal stays open, with the context"
+            " state_belief; 0 leaves it out, 5 lets people change their mind."
+        ),
+    ] = 0.0,
+    device: Annotated[Literal["cpu", "cuda", "auto"], arg(help="Where to train.")] = "cpu",
+    end_effector: EndEffector = None,
+    out: Annotated[
+        Path | None, arg(metavar="DIR", help="Folder of the run; runs/<dataset>-<model> by default.")
+    ] = None,
+    resume: Annotated[bool, arg(help="Go on with a training that was cut off.")] = False,
+    json: Json = False,
+) -> int:
+    """Learn a latent action model from a dataset.
+
+    For example: latentarm train --demonstrations pour --model cae --latent-dim 2 --seeds 5
+    """
+    from latentarm.models.training import epoch_bar
+    from latentarm.runs.training import TrainConfig, train_run
+
+    config = TrainConfig(
+        demonstrations=demonstrations,
+        model=model,
+        latent_dim=latent_dim,
+        context=context,
+        seeds=seeds,
+        seed=seed,
+        window=window,
+        state_noise_rad=state_noise_rad,
+        held_out=held_out,
+        epochs=epochs,
+        kl_weight=kl_weight,
+        goal_entropy=goal_entropy,
+        device=device,
+        end_effector=end_effector,
+        out=out or Path("runs") / f"{demonstrations.resolve().name}-{model}",
+        resume=resume,
+    )
+    with epoch_bar(not json and sys.stderr.isatty()) as report:
+        rows = train_run(config, report)
+
+    show(rows, json)
+    say(f"The run is {config.out}/; next: latentarm evaluate {config.out}", json)
+    return 0
