@@ -1,0 +1,1 @@
+"""What other people and programs wrote: read within bounds, and shown without being obeyed."""
