@@ -6,6 +6,10 @@ from dataclasses import fields
 import numpy as np
 import pytest
 import torch
+from sklearn.base import clone
+from sklearn.exceptions import NotFittedError
+from sklearn.utils import estimator_checks
+from sklearn.utils.validation import check_is_fitted
 
 from latentarm.errors import UserError
 from latentarm.models.catalogue import MODELS, load_model
@@ -35,6 +39,59 @@ def test_all_models_take_the_same_parameters(name):
     assert common <= {entry.name for entry in fields(MODELS[name]) if entry.init}
 
 
+@pytest.mark.parametrize(
+    "check",
+    [
+        estimator_checks.check_parameters_default_constructible,
+        estimator_checks.check_no_attributes_set_in_init,
+        estimator_checks.check_do_not_raise_errors_in_init_or_set_params,
+        estimator_checks.check_get_params_invariance,
+        estimator_checks.check_set_params,
+        estimator_checks.check_estimator_cloneable,
+        estimator_checks.check_estimator_repr,
+        estimator_checks.check_mixin_order,
+        estimator_checks.check_estimator_tags_renamed,
+        estimator_checks.check_valid_tag_types,
+    ],
+    ids=lambda check: check.__name__,
+)
+def test_scikit_learn_finds_an_estimator(name, check):
+    """The checks of scikit-learn that do not call fit: ours takes demonstrations, not a table."""
+    check(MODELS[name].__name__, MODELS[name]())
+
+
+def test_the_constructor_stores_what_it_is_given_even_where_fit_will_refuse_it(name):
+    given = {key: object() for key in MODELS[name]().get_params()}
+    assert MODELS[name](**given).get_params() == given
+
+
+def test_a_clone_is_unfitted_and_the_same_seed_fits_the_same_model(model, demonstrations, samples):
+    context, z = samples
+    again = clone(model)
+    assert type(again) is type(model)
+    assert again.get_params() == model.get_params()
+    with pytest.raises(NotFittedError):
+        check_is_fitted(again)
+    np.testing.assert_array_equal(again.fit(demonstrations).decode(z, context), model.decode(z, context))
+    check_is_fitted(again)
+
+
+def test_fit_uses_what_set_params_set(name, demonstrations):
+    changed = clone(MODELS[name](**SMALL)).set_params(latent_dim=1, seeds=1, epochs=1)
+    changed.fit(demonstrations)
+    assert changed.decoder().latent_dim == 1
+    assert changed.seed_numbers == (0,)
+    with pytest.raises(ValueError, match="Invalid parameter 'depth'"):
+        changed.set_params(depth=3)
+
+
+def test_the_representation_is_the_call_that_makes_the_model(name):
+    made = MODELS[name](**SMALL)
+    again = eval(repr(made), {MODELS[name].__name__: MODELS[name]})  # noqa: S307
+    assert again.get_params() == made.get_params()
+    assert repr(MODELS[name]()) == f"{MODELS[name].__name__}()"
+
+
 def test_shapes(model, samples):
     context, z = samples
     action = np.ones((30, 4))
@@ -53,12 +110,6 @@ def test_a_stack_of_latents_decodes_seed_by_seed(model, samples):
     np.testing.assert_array_equal(both[1], model.decode(-z, context)[1])
 
 
-def test_the_same_seed_gives_the_same_model(name, model, demonstrations, samples):
-    context, z = samples
-    again = MODELS[name](**SMALL).fit(demonstrations)
-    np.testing.assert_array_equal(again.decode(z, context), model.decode(z, context))
-
-
 def test_different_seeds_give_different_models(name, model, samples):
     context, z = samples
     first, second = model.decode(z, context)
@@ -70,7 +121,7 @@ def test_saved_and_loaded_is_the_same(name, model, samples, tmp_path):
     model.save(tmp_path, run={"dataset": "ring"})
     loaded = load_model(tmp_path)
     assert type(loaded) is MODELS[name]
-    assert loaded.parameters() == model.parameters()
+    assert loaded.get_params() == model.get_params()
     np.testing.assert_array_equal(loaded.decode(z, context), model.decode(z, context))
     np.testing.assert_array_equal(
         loaded.encode(context, z @ np.ones((2, 4))), model.encode(context, z @ np.ones((2, 4)))
@@ -181,8 +232,9 @@ def test_unfitted_says_so(name, samples, tmp_path):
         lambda: fresh.save(tmp_path),
         lambda: fresh.collapsed_,
     ):
-        with pytest.raises(UserError, match="not fitted yet"):
+        with pytest.raises(UserError, match="not fitted yet") as refused:
             use()
+        assert isinstance(refused.value, NotFittedError)
     assert not list(tmp_path.iterdir())
 
 

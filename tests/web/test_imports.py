@@ -1,16 +1,16 @@
-"""torch and its seconds stay out of the processes that drive."""
+"""torch and scikit-learn, and their seconds, stay out of the processes that drive."""
 
 import subprocess
 import sys
 
 
-def test_neither_the_server_nor_the_control_process_loads_torch(trained):
+def test_neither_the_server_nor_the_control_process_loads_torch_or_scikit_learn(trained):
     code = (
         "import sys; from pathlib import Path;"
         "import latentarm.web.server, latentarm.web.page, latentarm.web.control_process;"
         "from latentarm.web.setting import Spec, load_setting;"
         f"load_setting(Spec(Path({str(trained)!r}))).step();"
-        "print('torch' in sys.modules)"
+        "print({'torch', 'sklearn'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "False\n"
+    assert done.stdout == "set()\n"

@@ -15,7 +15,7 @@ from latentarm.models.objectives import kl_divergence, reconstruction_error, sam
 
 
 @final
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class AE(NeuralModel):
     """Autoencoder: minimises ``‖a - phi(psi(c, a))‖^2`` (equation 6)."""
 
@@ -34,7 +34,7 @@ class AE(NeuralModel):
 
 
 @final
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class VAE(NeuralModel):
     """Variational autoencoder: ``‖a - phi(z)‖^2 + lambda KL[N(mu, sigma) ‖ N(0, 1)]`` (equation 7).
 
@@ -60,7 +60,7 @@ class VAE(NeuralModel):
 
 
 @final
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class CAE(NeuralModel):
     """Conditioned autoencoder: ``‖a - phi(z, c)‖^2`` (equation 8 with lambda = 0)."""
 
@@ -79,7 +79,7 @@ class CAE(NeuralModel):
 
 
 @final
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class CVAE(NeuralModel):
     """Conditioned variational autoencoder (equation 8): ``‖a - phi(z, c)‖^2 + lambda KL``.
 

@@ -45,7 +45,7 @@ def principal_start(data: TrainingData, dimensions: Dimensions) -> dict[str, Flo
 
 
 @final
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class Homogeneous(NeuralModel):
     """Homogeneous latent actions: ``phi(z, c) = v r R(c, z / r)`` with r = ‖z‖.
 

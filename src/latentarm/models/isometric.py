@@ -54,7 +54,7 @@ def principal_start(data: TrainingData, dimensions: Dimensions) -> dict[str, Flo
 
 
 @final
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class Isometric(NeuralModel):
     """Isometric latent actions: ``phi(z, c) = g(r) R(c, r) z / r`` with r = ‖z‖.
 

@@ -14,7 +14,7 @@ from latentarm.models.objectives import reconstruction_error
 
 
 @final
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class SCL(NeuralModel):
     """State-conditioned linear decoder ``phi(z, c) = M(c) z`` (Przystupa et al., arXiv 2410.21441).
 

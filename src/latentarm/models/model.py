@@ -2,13 +2,14 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar, Final, Literal, Self
 from warnings import warn
 
 import numpy as np
 import torch
+from sklearn.base import BaseEstimator
 from torch import Tensor
 
 from latentarm.demonstrations.pairs import make_pairs
@@ -36,6 +37,7 @@ from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.torch_decoder import TorchDecoder
 from latentarm.models.trained import TrainedModel, TrainingSummary
 from latentarm.models.training import Report, TrainingResult
+from latentarm.models.unfitted import UnfittedError
 from latentarm.robots.catalogue import load_robot
 from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs
 
@@ -48,13 +50,14 @@ AHEAD_S: Final = 0.1
 Weights = Mapping[str, FloatArray]
 
 
-@dataclass(kw_only=True, eq=False)
-class LatentActionModel(ABC):
+@dataclass(kw_only=True, eq=False, repr=False)
+class LatentActionModel(BaseEstimator, ABC):
     """A decoder ``phi: (z, c) -> a`` and an encoder ``psi: (c, a) -> z``, learned for S seeds at once.
 
-    Follows scikit-learn: the constructor stores parameters, `fit` learns, attributes that end in
-    ``_`` exist after it. z is given and returned in input units: u in [-1, 1] on each axis spans what
-    the demonstrations used. Arrays are float64.
+    A scikit-learn estimator: the constructor stores parameters as they are, `fit` checks them and learns,
+    attributes that end in ``_`` exist after it, and `sklearn.base.clone` and ``set_params`` work. z is
+    given and returned in input units: u in [-1, 1] on each axis spans what the demonstrations used.
+    Arrays are float64.
 
     All models take the same parameters, so that they can be compared with one set of them; PCA has
     no use for those of the networks and their training.
@@ -108,7 +111,7 @@ class LatentActionModel(ABC):
     patience: int = 10
     device: Literal["cpu", "cuda", "auto"] = "cpu"
     checkpoint_interval_s: float = 5.0
-    trained_: TrainedModel | None = field(default=None, init=False, repr=False)
+    trained_: TrainedModel = field(init=False)
 
     @abstractmethod
     def _learn(
@@ -168,7 +171,7 @@ class LatentActionModel(ABC):
         Warns:
             CollapseWarning: a latent dimension moves nothing; ``collapsed_`` says which.
         """
-        check_parameters(self.parameters())
+        check_parameters(self.get_params(deep=False))
         if held_out is None:
             rng = np.random.default_rng([self.data_seed, 0])
             held_out = [
@@ -260,10 +263,6 @@ class LatentActionModel(ABC):
             UserError: the model is not fitted, or the files cannot be written.
         """
         write_model(folder, self._fitted(), run or {})
-
-    def parameters(self) -> dict[str, object]:
-        """What the model was constructed with, by name."""
-        return {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.init}
 
     @property
     def seed_numbers(self) -> tuple[int, ...]:
@@ -370,7 +369,7 @@ class LatentActionModel(ABC):
         )
         return TrainedModel(
             kind=self.kind,
-            parameters=self.parameters(),
+            parameters=self.get_params(deep=False),
             dimensions=dimensions,
             tensors={
                 **weights,
@@ -406,8 +405,10 @@ class LatentActionModel(ABC):
         return _in_rows(lambda rows: self._decode(weights, latent[:, rows], context[rows]), len(context))
 
     def _fitted(self) -> TrainedModel:
-        if self.trained_ is None:
-            raise UserError(f"This {self.kind} model is not fitted yet: call fit first, or load a saved one.")
+        if not hasattr(self, "trained_"):
+            raise UnfittedError(
+                f"This {self.kind} model is not fitted yet: call fit first, or load a saved one."
+            )
         return self.trained_
 
 

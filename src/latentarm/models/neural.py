@@ -25,7 +25,7 @@ Start = Callable[[TrainingData, Dimensions], dict[str, FloatArray]]
 """From the training pairs to weights to begin with, by name."""
 
 
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class NeuralModel(LatentActionModel, ABC):
     """A latent action model whose encoder and decoder are small networks.
 
@@ -55,7 +55,7 @@ class NeuralModel(LatentActionModel, ABC):
     ) -> TrainingResult:
         layout = LAYOUTS[self.kind]
         apart = ("device", "checkpoint_interval_s")
-        identity = {name: value for name, value in self.parameters().items() if name not in apart}
+        identity = {name: value for name, value in self.get_params(deep=False).items() if name not in apart}
         if term is not None:
             identity["term"] = dict(term.term.settings)
         return train(

@@ -19,7 +19,7 @@ from latentarm.types import FloatArray
 
 
 @final
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class PCA(LatentActionModel):
     """PCA: minimises equation 6 among linear maps that see no context.
 

@@ -13,7 +13,7 @@ from latentarm.models.objectives import reconstruction_error
 
 
 @final
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class CAEZero(NeuralModel):
     """cAE with a penalty on motion at zero input: ``‖a - phi(z, c)‖^2 + lambda_0 ‖phi(0, c)‖^2``.
 
