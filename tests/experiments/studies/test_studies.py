@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from latentarm.errors import UserError
 from latentarm.experiments.studies.folder import CONFIG, Study, write_json
 from latentarm.experiments.studies.pages import listed, markdown_table, shown
-from latentarm.experiments.studies.statistics import format_p, holm, spreads
+from latentarm.experiments.studies.statistics import compare_means, format_p, holm, one_sample, spreads
 from latentarm.experiments.studies.streams import integer, sequence
 
 STUDY = Study("tides", ("tides.png",))
@@ -75,3 +75,22 @@ def test_parts_of_a_page():
         "a and b",
         "a, b and c",
     ]
+
+
+def test_welch_by_hand():
+    found = compare_means(np.array([1.0, 2.0, 3.0]), np.array([4.0, 6.0, 8.0, 10.0]), "less")
+    # Variances 1 and 20/3: t = -5 / sqrt(1/3 + 5/3); Welch-Satterthwaite; pooled SD sqrt((2 + 20) / 5).
+    assert found.test == "Welch"
+    assert found.t == pytest.approx(-5.0 / np.sqrt(2.0))
+    assert found.dof == pytest.approx(2.0**2 / ((1 / 3) ** 2 / 2 + (5 / 3) ** 2 / 3))
+    assert found.hedges_g == pytest.approx(5.0 / np.sqrt(22 / 5) * (1 - 3 / (4 * 7 - 9)))
+    assert 0.005 < found.p < 0.02  # t(3.8) = -3.54, one-sided
+
+
+def test_pairs_by_hand():
+    found = one_sample(np.array([1.0, 2.0, 3.0]), 0.0, "greater")
+    assert found.t == pytest.approx(2.0 * np.sqrt(3.0))
+    assert found.dof == 2
+    # The distribution of t with two degrees of freedom has a closed form.
+    assert found.p == pytest.approx(0.5 - found.t / (2 * np.sqrt(2 + found.t**2)))
+    assert found.hedges_g == pytest.approx(2.0 * (1 - 3 / (4 * 4 - 9)))

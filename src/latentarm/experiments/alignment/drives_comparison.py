@@ -5,16 +5,16 @@ start and chances. Whether the goal is reached is tested by McNemar's exact test
 both are one-sided, and corrected by Holm's method over all tests with one kind of model.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Final, cast
+from typing import Final
 
 import numpy as np
 
 from latentarm.experiments.alignment.conditions import ALL_PRIORS, NO_ALIGN, WITHOUT_PRIORS
 from latentarm.experiments.alignment.drives import DRIVEN, DrivesResult
 from latentarm.experiments.alignment.drives_learning import TASK
-from latentarm.experiments.studies.statistics import LEVEL, holm, spreads
+from latentarm.experiments.studies.statistics import LEVEL, holm, one_sample, spreads
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import FloatArray, Row
@@ -146,10 +146,7 @@ def _mcnemar(own: FloatArray, other: FloatArray) -> tuple[str, float | None]:
 
 def _paired_t(own: FloatArray, other: FloatArray) -> tuple[str, float | None]:
     """Whether drives are shorter."""
-    import pingouin  # takes a second, and only a finished study needs it
-
     more = own - other
     if not spreads(more):
         return "none: no spread", None
-    ttest = cast(Callable[..., Any], pingouin.ttest)
-    return "paired t", float(ttest(more, 0.0, alternative="less").iloc[0]["p_val"])
+    return "paired t", one_sample(more, 0.0, "less").p

@@ -13,9 +13,9 @@ Two methods are compared seed by seed (paired t): the same demonstrations, start
 initial weights. H1 also asks that their 95 % intervals are apart.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Final, Literal, cast
+from typing import Final, Literal
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from latentarm.experiments.shared_autonomy.intervals import interval
 from latentarm.experiments.shared_autonomy.measures import ARRIVED
 from latentarm.experiments.shared_autonomy.people import Person, learner, of_fixed_expertise
 from latentarm.experiments.shared_autonomy.preset import Preset
-from latentarm.experiments.studies.statistics import LEVEL, holm, spreads
+from latentarm.experiments.studies.statistics import LEVEL, holm, one_sample, spreads
 from latentarm.types import FloatArray
 
 MEASURE: Final = "final_state_error"
@@ -197,23 +197,12 @@ def _test(claim: _Claim, task: str, model: str, errors: Errors) -> Comparison:
 
 def _with_statistics(comparison: Comparison, values: FloatArray, against: FloatArray) -> Comparison:
     """The comparison with its statistic, p and effect size, from seeds (S,) of both sides."""
-    import pingouin  # takes a second, and only a finished study needs it
-
     if len(values) < 2:
         return comparison
     # Of a paired test this is the one-sample test of the differences.
     more = values - against
     if not spreads(more):
         return replace(comparison, test="none: no spread")
-    ttest = cast(Callable[..., Any], pingouin.ttest)
-    effect = cast(Callable[..., float], pingouin.compute_effsize)
-    row = ttest(more, 0.0, alternative=comparison.direction).iloc[0]
-    sign = 1.0 if comparison.direction == "greater" else -1.0
-    return replace(
-        comparison,
-        test="one-sample t" if comparison.against is None else "paired t",
-        t=float(row["T"]),
-        dof=float(row["dof"]),
-        p=float(row["p_val"]),
-        hedges_g=sign * effect(more, 0.0, eftype="hedges") if len(more) > 2 else None,
-    )
+    found = one_sample(more, 0.0, comparison.direction)
+    test = "one-sample t" if comparison.against is None else "paired t"
+    return replace(comparison, test=test, t=found.t, dof=found.dof, p=found.p, hedges_g=found.hedges_g)

@@ -15,7 +15,7 @@ from latentarm.runs.folder import git_commit
 CONFIG: Final = "config.json"
 """What was asked for; it is written first and tells a study's folders from others."""
 
-PACKAGES: Final = ("latentarm", "numpy", "pingouin", "scikit-learn", "scipy", "torch")
+PACKAGES: Final = ("latentarm", "numpy", "scikit-learn", "scipy", "statsmodels", "torch")
 """Those whose versions the figures may hang on."""
 
 

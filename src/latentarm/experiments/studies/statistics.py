@@ -1,7 +1,7 @@
 """What the tests of all studies have in common."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Final, Literal, cast
 
 import numpy as np
@@ -47,40 +47,61 @@ def compare_means(values: FloatArray, reference: FloatArray, direction: Directio
 
     Welch's test where both sides have spread; where one has none, it is a fixed figure to the other.
     """
-    import pingouin  # takes a second, and only a finished study needs it
-
     if not spreads(values) and not spreads(reference):
         return Statistic("none: no spread on either side")
-    # The side with spread is the sample; where that is the reference, the question is turned round.
-    turned = not spreads(values)
-    sample, other = (reference, values) if turned else (values, reference)
-    welch = spreads(other)
-    tested_against = other if welch else float(other.mean())
-    asked = {"less": "greater", "greater": "less"}[direction] if turned else direction
-    ttest = cast(Callable[..., Any], pingouin.ttest)
-    effect = cast(Callable[..., float], pingouin.compute_effsize)
-    row = ttest(sample, tested_against, correction=True, alternative=asked).iloc[0]
-    # Positive means "as the hypothesis has it": two reversals cancel.
-    sign = (-1.0 if turned else 1.0) * (1.0 if direction == "greater" else -1.0)
-    g = sign * effect(sample, tested_against, eftype="hedges") if welch or len(sample) > 2 else None
-    return Statistic(
-        test="Welch" if welch else "one-sample",
-        t=float(row["T"]) * (-1.0 if turned else 1.0),
-        dof=float(row["dof"]),
-        p=float(row["p_val"]),
-        hedges_g=g,
-    )
+    if not spreads(values):
+        # The reference is the sample then, and the question is turned round.
+        asked: Direction = "greater" if direction == "less" else "less"
+        turned = one_sample(reference, float(values.mean()), asked)
+        return replace(turned, t=None if turned.t is None else -turned.t)
+    if not spreads(reference):
+        return one_sample(values, float(reference.mean()), direction)
+    return _welch(values, reference, direction)
+
+
+def one_sample(values: FloatArray, fixed: float, direction: Direction) -> Statistic:
+    """Test whether figures (n,) that spread are less, or greater, than a fixed one, on average.
+
+    On differences of pairs against 0 this is the paired test.
+    """
+    from scipy.stats import ttest_1samp  # takes a second, and only a finished study needs it
+
+    result = ttest_1samp(values, fixed, alternative=direction)
+    d = (float(values.mean()) - fixed) / float(values.std(ddof=1))
+    # As if against a sample of one: the correction is 0 for two figures and so says nothing of them.
+    g = _hedges(d, len(values) + 1) if len(values) > 2 else None
+    return _statistic("one-sample", result, direction, g)
+
+
+def _welch(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
+    from scipy.stats import ttest_ind  # takes a second, and only a finished study needs it
+
+    result = ttest_ind(values, reference, equal_var=False, alternative=direction)
+    n, m = len(values), len(reference)
+    pooled = ((n - 1) * values.var(ddof=1) + (m - 1) * reference.var(ddof=1)) / (n + m - 2)
+    d = float((values.mean() - reference.mean()) / np.sqrt(pooled))
+    return _statistic("Welch", result, direction, _hedges(d, n + m))
+
+
+def _hedges(d: float, n: int) -> float:
+    """Cohen's d without its bias in small samples of n figures in all (Hedges 1981)."""
+    return d * (1.0 - 3.0 / (4.0 * n - 9.0))
+
+
+def _statistic(test: str, result: Any, direction: Direction, g: float | None) -> Statistic:
+    """SciPy's result with an effect size that is positive in the direction that was asked for."""
+    signed = g if g is None or direction == "greater" else -g
+    return Statistic(test, float(result.statistic), float(result.df), float(result.pvalue), signed)
 
 
 def holm(p: Sequence[float | None]) -> list[float | None]:
     """p-values of one family after Holm's correction; None is what was not tested, and does not count."""
-    import pingouin  # takes a second, and only a finished study needs it
+    from statsmodels.stats.multitest import multipletests  # takes a second, as above
 
     tested = [one for one in p if one is not None]
     if not tested:
         return list(p)
-    multicomp = cast(Callable[..., tuple[Any, FloatArray]], pingouin.multicomp)
-    corrected = iter(multicomp(np.array(tested), alpha=LEVEL, method="holm")[1])
+    corrected = iter(cast(FloatArray, multipletests(tested, alpha=LEVEL, method="holm")[1]))
     return [None if one is None else float(next(corrected)) for one in p]
 
 
