@@ -1,3 +1,5 @@
+import tracemalloc
+
 import mujoco
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 from latentarm.kinematics.capsules import segment_distance
 from latentarm.kinematics.reader import read
 from latentarm.robots.catalogue import load_robot
-from latentarm.robots.shapes import bounding_capsule, read_capsules
+from latentarm.robots.shapes import bounding_capsule, convex_hull_vertices, read_capsules
 
 
 def distance_to(capsule, points):
@@ -32,6 +34,26 @@ def test_a_capsule_is_its_own_bounding_capsule():
     capsule = bounding_capsule(np.stack([start, end]), np.array([0.05, 0.05]))
     assert capsule[2] == pytest.approx(0.05)
     assert {tuple(point.round(9)) for point in capsule[:2]} == {tuple(start), tuple(end)}
+
+
+def test_memory_grows_with_the_points_and_not_with_their_square():
+    points = np.random.default_rng(0).normal(size=(30_000, 3))
+    tracemalloc.start()
+    bounding_capsule(points, np.zeros(len(points)))
+    _, peak_bytes = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak_bytes < 50e6
+
+
+@given(
+    arrays(np.float64, st.tuples(st.integers(1, 40), st.just(3)), elements=st.floats(-1, 1)),
+    st.sampled_from([(1, 1, 1), (1, 1, 0), (1, 0, 0)]),
+)
+def test_the_capsule_around_the_hull_covers_every_vertex(points, flatten):
+    points = points * flatten
+    hull = convex_hull_vertices(points)
+    capsule = bounding_capsule(hull, np.zeros(len(hull)))
+    assert (distance_to(capsule, points) <= capsule[2] + 1e-9).all()
 
 
 def test_a_long_box_becomes_a_capsule_along_it():

@@ -21,6 +21,7 @@ def assemble(
     home: FloatArray,
     tool_speed_limit: float,
     model_path: str | None = None,
+    model: mujoco.MjModel | None = None,
 ) -> Robot:
     """Read a robot's kinematics and shape from its model, and add what the model does not say.
 
@@ -33,6 +34,7 @@ def assemble(
         home: (n,), rad.
         tool_speed_limit: m/s.
         model_path: the file that the model was read from.
+        model: compiled from ``mjcf``, where the caller has it: large meshes take seconds to compile.
 
     Returns:
         The robot.
@@ -40,7 +42,8 @@ def assemble(
     Raises:
         UserError: see `latentarm.kinematics.reader.read`.
     """
-    model = mujoco.MjModel.from_xml_string(mjcf)
+    if model is None:
+        model = mujoco.MjModel.from_xml_string(mjcf)
     reading = read(model, end_effectors)
     capsules = read_capsules(model, reading)
     return Robot(

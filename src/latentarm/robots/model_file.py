@@ -83,7 +83,7 @@ def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
         limits = _limits(model, reading, velocity)
         home = _home(model, reading, limits)
         whole_path = str(path.resolve())
-        return assemble(whole_path, mjcf, [tool], limits, home, TOOL_SPEED_LIMIT, whole_path)
+        return assemble(whole_path, mjcf, [tool], limits, home, TOOL_SPEED_LIMIT, whole_path, model)
     except UserError as error:
         raise UserError(f"{path}: {error}") from error
 

@@ -4,6 +4,7 @@ from itertools import combinations
 
 import mujoco
 import numpy as np
+from scipy.spatial import ConvexHull, QhullError
 
 from latentarm.kinematics.capsules import Capsules
 from latentarm.kinematics.reader import Reading
@@ -79,12 +80,27 @@ def bounding_capsule(centres: FloatArray, radii: FloatArray) -> tuple[FloatArray
     spread = centres - centres.mean(axis=0)
     farthest = spread[np.argmax(np.vecdot(spread, spread))]
     longest = centres[np.argmax(np.linalg.norm(centres - centres.mean(axis=0) - farthest, axis=1))]
-    candidates = [*np.linalg.svd(spread, full_matrices=True)[2], *np.eye(3)]
+    candidates = [*np.linalg.svd(spread, full_matrices=False)[2], *np.eye(3)]
     direction = longest - centres.mean(axis=0) - farthest
     if np.linalg.norm(direction) > 0.0:
         candidates.append(direction / np.linalg.norm(direction))
     found = [_capsule_along(axis, centres, radii) for axis in candidates]
     return min(found, key=_volume)
+
+
+def convex_hull_vertices(points: FloatArray) -> FloatArray:
+    """The points that span the convex hull: whatever convex covers them covers all.
+
+    Args:
+        points: (K, 3), m. A mesh has tens of thousands, its hull some hundreds.
+
+    Returns:
+        (H, 3), m; all points where they lie in one plane or on one line.
+    """
+    try:
+        return points[ConvexHull(points).vertices]
+    except (QhullError, ValueError):  # flat, or fewer than four points
+        return points
 
 
 def _capsule_along(
@@ -164,8 +180,8 @@ def _balls(model: mujoco.MjModel, geom: int, body_transform: FloatArray) -> Ball
     elif kind == _MESH:
         mesh = int(model.geom_dataid[geom])
         first = int(model.mesh_vertadr[mesh])
-        centres = model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])].astype(np.float64)
-        radius = 0.0
+        vertices = model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])].astype(np.float64)
+        centres, radius = convex_hull_vertices(vertices), 0.0
     else:
         middle, half = model.geom_aabb[geom][:3], model.geom_aabb[geom][3:]
         signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
