@@ -122,7 +122,7 @@ def test_damaged_files_are_refused(run):
     with pytest.raises(UserError, match="cannot be read"):
         load_profile(run, "ada")
     (run / CONFIG).write_text("{")
-    with pytest.raises(UserError, match="not a JSON file"):
+    with pytest.raises(UserError, match="not a JSON document"):
         load_profile(run, "ada")
 
 

@@ -257,7 +257,7 @@ MALFORMED: dict[str, tuple[Callable[[Path], Path], str]] = {
     "no version": (dataset(info(codebase_version=None)), "the entry 'codebase_version' is missing"),
     "no state feature": (dataset(info(features={})), "has no observation.state"),
     "fps zero": (dataset(info(fps=0)), "rate is 0 Hz"),
-    "fps huge": (dataset(info(fps=10**400)), "'fps' is missing or not a sensible number"),
+    "fps huge": (dataset(info(fps=10**400)), "a whole number of more than 20 digits"),
     "episodes absurd": (dataset(info(total_episodes=1 << 40)), "over the limit"),
     "fps text": (dataset(info(fps="ten")), "'fps' is missing or not a sensible number"),
     "zero episodes": (dataset(info(total_episodes=0)), "there are no episodes in it"),
@@ -399,6 +399,7 @@ def test_what_may_not_be_read_is_not_called_damaged(tmp_path: Path, monkeypatch:
     monkeypatch.setattr(Path, "is_dir", refuse)
     with pytest.raises(UserError, match=r"source\.npz cannot be read: Permission denied"):
         import_demonstrations(tmp_path / "source.npz")
-    monkeypatch.setattr(Path, "is_file", refuse)
+    monkeypatch.setattr(Path, "lstat", refuse)
+    monkeypatch.setattr(Path, "stat", refuse)
     with pytest.raises(UserError, match=r"info\.json cannot be read: Permission denied"):
         read_dataset(tmp_path)

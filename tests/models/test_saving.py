@@ -78,20 +78,20 @@ def retyped(tensors):
 
 FAULTS = {
     "no config": (lambda folder: (folder / CONFIG).unlink(), "config.json cannot be read"),
-    "config is not JSON": (lambda folder: (folder / CONFIG).write_text("{"), "is not a JSON file"),
+    "config is not JSON": (lambda folder: (folder / CONFIG).write_text("{"), "is not a JSON document"),
     "config is not text": (
         lambda folder: (folder / CONFIG).write_bytes(b"\xff\xfe\x00"),
-        "is not a JSON file",
+        "is not a JSON document",
     ),
     "config is a list": (lambda folder: (folder / CONFIG).write_text("[1]"), "not an object"),
     "config nests without end": (
         lambda folder: (folder / CONFIG).write_text("[" * 100_000),
-        "is not a JSON file",
+        "is nested deeper",
     ),
     "config of something else": (lambda folder: (folder / CONFIG).write_text('{"a": 1}'), "has no 'model'"),
     "config is huge": (
         lambda folder: (folder / CONFIG).write_text(" " * (17 * 2**20)),
-        "is the most that is read",
+        "is too large",
     ),
     "another schema": (lambda folder: change_config(folder, put("schema", 1)), "has schema 1"),
     "no schema": (lambda folder: change_config(folder, lambda model: model.pop("schema")), "has no 'schema'"),
@@ -111,7 +111,7 @@ FAULTS = {
     ),
     "loss is NaN": (
         lambda folder: change_config(folder, put_in("training", "held_out_loss", [float("nan"), 1.0])),
-        "'held_out_loss' must be a list of finite numbers",
+        "holds NaN",
     ),
     "collapsed has another shape": (
         lambda folder: change_config(folder, put("collapsed", [[False]])),

@@ -17,8 +17,16 @@ from latentarm.demonstrations.folders import check_vacant, staged_folder
 from latentarm.errors import UserError
 from latentarm.files import sync_folder, write_text, written_whole
 from latentarm.models.reading import Section
-from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, WEIGHTS_NAME, read_tensors
+from latentarm.models.saving import (
+    CONFIG_LIMIT,
+    CONFIG_NAME,
+    MOST_LAYERS,
+    WEIGHTS_LIMIT,
+    WEIGHTS_NAME,
+    read_tensors,
+)
 from latentarm.types import FloatArray
+from latentarm.untrusted.opening import read_bytes
 
 FOLDER: Final = "profiles"
 ALIGNMENT_NAME: Final = "alignment.safetensors"
@@ -56,10 +64,7 @@ def model_fingerprint(run: Path, seed_index: int) -> str:
         UserError: the run has no model.
     """
     path = run / WEIGHTS_NAME
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
+    content = read_bytes(path, WEIGHTS_LIMIT)
     return hashlib.sha256(content + f"seed {seed_index}".encode()).hexdigest()
 
 
@@ -178,7 +183,9 @@ def load_profile(run: Path, name: str) -> Profile:
             f"The profile '{name}' was learned for another model than {run}: align the person again."
         )
     shapes = tensor_shapes(
-        section.integer("latent", 1), section.integer("context", 1), tuple(section.integers("hidden", 1))
+        section.integer("latent", 1),
+        section.integer("context", 1),
+        tuple(section.integers("hidden", 1, longest=MOST_LAYERS)),
     )
     tensors = read_tensors(folder / ALIGNMENT_NAME, shapes, section.text("sha256"))
     return Profile(LearnedAlignment(tensors), fingerprint, seed_index)

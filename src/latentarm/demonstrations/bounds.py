@@ -8,11 +8,20 @@ from latentarm.errors import UserError
 MAX_VALUES: Final = 1 << 27
 """Numbers in one dataset: 1 GiB as float64, or 19 million samples of seven joints."""
 
+MAX_EPISODES: Final = 100_000
+"""Episodes in one dataset."""
+
+MAX_COLUMNS: Final = 1024
+"""Columns of a table."""
+
 MAX_TEXT_BYTES: Final = 1 << 28
 """Bytes of a CSV file: 256 MiB."""
 
-MAX_JSON_BYTES: Final = 1 << 24
-"""Bytes of a metadata document: 16 MiB."""
+MAX_LINE: Final = 1 << 16
+"""Characters of a line in a CSV file."""
+
+MAX_FILE_BYTES: Final = 1 << 34
+"""Bytes of any other file: 16 GiB; pictures in it are not read."""
 
 
 def check_values(source: Path, what: str, count: int) -> None:
@@ -30,17 +39,3 @@ def check_values(source: Path, what: str, count: int) -> None:
         raise UserError(
             f"{source}: {what} declares {count:,} numbers, over the limit of {MAX_VALUES:,}; split the file."
         )
-
-
-def check_bytes(source: Path, limit: int) -> None:
-    """Refuse a file that is longer than ``limit`` bytes, or that cannot be read.
-
-    Raises:
-        UserError: see above.
-    """
-    try:
-        size = source.stat().st_size
-    except OSError as error:
-        raise UserError(f"{source} cannot be read: {error.strerror or error}.") from error
-    if size > limit:
-        raise UserError(f"{source} has {size:,} bytes, over the limit of {limit:,}; split the file.")

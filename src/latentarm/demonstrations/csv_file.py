@@ -8,20 +8,25 @@ order; otherwise every column that is not named above is a joint, in the order o
 """
 
 import csv
+import io
 import math
 from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final, final
+from typing import Final, TextIO, final
 
 import numpy as np
 
-from latentarm.demonstrations.bounds import MAX_TEXT_BYTES, check_bytes
+from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_EPISODES, MAX_LINE, MAX_TEXT_BYTES
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
+from latentarm.untrusted.opening import opened
 
 ACTION_PREFIX: Final = "action."
+
+MAX_RECORD_LINES: Final = 100
+"""Lines that one record may have, where its texts hold line breaks."""
 
 
 @final
@@ -51,7 +56,6 @@ def read_csv(
     Raises:
         UserError: naming the file and the line that cannot be understood.
     """
-    check_bytes(source, MAX_TEXT_BYTES)
     lines = _lines(source)
     header = [name.strip() for name in next(lines, (0, []))[1]]
     joints = _joints(header, joint_names, source)
@@ -69,17 +73,60 @@ def read_csv(
 
 def _lines(source: Path) -> Iterator[tuple[int, list[str]]]:
     """Line numbers, from one, and fields."""
-    try:
-        with source.open(encoding="utf-8-sig", newline="") as stream:
-            reader = csv.reader(stream, strict=True)
+    with opened(source, MAX_TEXT_BYTES) as stream:
+        lines = _Lines(io.TextIOWrapper(stream, encoding="utf-8-sig", newline=""), source)
+        reader = csv.reader(lines, strict=True)
+        try:
             for fields in reader:
+                lines.in_record = 0
                 if fields:
                     yield reader.line_num, fields
-    except (UnicodeDecodeError, csv.Error, OSError) as error:
-        raise UserError(f"{source} is not a readable CSV file in UTF-8.") from error
+        except (UnicodeDecodeError, csv.Error) as error:
+            raise UserError(
+                f"{source} is not a readable CSV file in UTF-8, from about line {reader.line_num + 1} on."
+            ) from error
+
+
+@final
+class _Lines:
+    """Lines of bounded length: the parser takes as much as it is given.
+
+    Args:
+        stream: the file.
+        source: its path.
+
+    Attributes:
+        in_record: lines since this was last set to zero; a text in quotation marks may go over several.
+    """
+
+    def __init__(self, stream: TextIO, source: Path) -> None:
+        self._stream = stream
+        self._source = source
+        self._number = 0
+        self.in_record = 0
+
+    def __iter__(self) -> "_Lines":
+        return self
+
+    def __next__(self) -> str:
+        line = self._stream.readline(MAX_LINE + 1)
+        if not line:
+            raise StopIteration
+        self._number += 1
+        self.in_record += 1
+        if len(line) > MAX_LINE:
+            raise UserError(f"{self._source}: line {self._number} has more than {MAX_LINE:,} characters.")
+        if self.in_record > MAX_RECORD_LINES:
+            raise UserError(
+                f"{self._source}: the text that begins in line {self._number - MAX_RECORD_LINES} has no end;"
+                " a quotation mark is missing."
+            )
+        return line
 
 
 def _joints(header: list[str], joint_names: Sequence[str], source: Path) -> tuple[str, ...]:
+    if len(header) > MAX_COLUMNS:
+        raise UserError(f"{source} has {len(header):,} columns, over the limit of {MAX_COLUMNS:,}.")
     repeated = sorted({name for name in header if header.count(name) > 1})
     if repeated:
         raise UserError(f"{source}: the column {repeated[0]!r} occurs twice.")
@@ -114,6 +161,8 @@ def _runs(
         if not runs or runs[-1].label != label:
             if label in seen:
                 raise UserError(f"{source}: line {number} goes back to episode {label!r}, which had ended.")
+            if len(seen) == MAX_EPISODES:
+                raise UserError(f"{source} has more than {MAX_EPISODES:,} episodes; split the file.")
             seen.add(label)
             runs.append(_Run(label, fields[place["task"]] if "task" in place else task))
         for name, index in zip(columns, wanted, strict=True):

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final, Literal
 
+from latentarm.demonstrations.bounds import MAX_FILE_BYTES
 from latentarm.demonstrations.csv_file import read_csv
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.folders import check_vacant
@@ -14,6 +15,7 @@ from latentarm.demonstrations.validation import validate
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations
+from latentarm.untrusted.opening import opened
 
 FOREIGN: Final = {
     b"\x80": "a pickle, which is never opened",
@@ -105,10 +107,10 @@ def _beginning(source: Path) -> bytes | None:
     try:
         if source.is_dir():
             return None
-        with source.open("rb") as stream:
-            return stream.read(16)
     except OSError as error:
         raise UserError(f"{source} cannot be read: {error.strerror or error}.") from error
+    with opened(source, MAX_FILE_BYTES) as stream:
+        return stream.read(16)
 
 
 def _as_recorded_on(robot: Robot, demonstrations: Demonstrations, source: Path) -> Demonstrations:

@@ -12,9 +12,11 @@ from typing import Any, Final, TypeVar, cast, final
 
 import numpy as np
 
-from latentarm.demonstrations.bounds import MAX_JSON_BYTES, check_bytes, check_values
+from latentarm.demonstrations.bounds import check_values
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Goal, Pose
+from latentarm.untrusted.documents import read_object
+from latentarm.untrusted.opening import is_missing
 
 CODEBASE_VERSION: Final = "v3.0"
 STATE: Final = "observation.state"
@@ -157,18 +159,9 @@ def read_info(root: Path) -> Info:
             promises more than an import may hold.
     """
     path = root / INFO_PATH
-    try:
-        if not path.is_file():
-            raise UserError(f"{root} is not a dataset: it has no {INFO_PATH}.")
-        check_bytes(path, MAX_JSON_BYTES)
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
-    except (ValueError, RecursionError) as error:
-        raise UserError(f"{path} is damaged: it is not a JSON document.") from error
-    if not isinstance(document, dict):
-        raise UserError(f"{path} is damaged: it is not a JSON object.")
-    mapping = cast(Mapping[str, Any], document)
+    if is_missing(path):
+        raise UserError(f"{root} is not a dataset: it has no {INFO_PATH}.")
+    mapping = read_object(path)
     version = _field(mapping, "codebase_version", str, path)
     if not version.startswith("v3."):
         raise UserError(

@@ -10,7 +10,6 @@ The HDF5 library is not hardened: a file that was damaged on purpose may end the
 then nothing is left at the destination of an import, which is written only after all was read.
 """
 
-import json
 import math
 import re
 from collections.abc import Mapping
@@ -20,10 +19,11 @@ from typing import Any, Final, Literal, cast
 import h5py
 import numpy as np
 
-from latentarm.demonstrations.bounds import MAX_JSON_BYTES, check_values
+from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.info import MAX_RATE_HZ, default_joint_names
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
+from latentarm.untrusted.documents import parse_object
 
 STATE_KEYS: Final = ("robot0_joint_pos", "joint_states")
 SECOND_ARM_KEY: Final = "robot1_joint_pos"
@@ -106,15 +106,10 @@ def _declared_count(demo: h5py.Group) -> int:
 
 def _environment(data: h5py.Group, source: Path) -> Mapping[str, Any]:
     text = data.attrs.get("env_args", "{}")
-    try:
-        if isinstance(text, bytes):
-            text = text.decode()
-        if not isinstance(text, str) or len(text) > MAX_JSON_BYTES:
-            raise ValueError
-        arguments = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise UserError(f"{source}: the attribute env_args of data is not a JSON document.") from error
-    return cast(Mapping[str, Any], arguments) if isinstance(arguments, dict) else {}
+    where = f"{source}: the attribute env_args of data"
+    if not isinstance(text, str | bytes):
+        raise UserError(f"{where} is not a text.")
+    return parse_object(text, where)
 
 
 def _nested(mapping: Mapping[str, Any], *keys: str) -> Any:

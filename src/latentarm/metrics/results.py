@@ -9,6 +9,7 @@ from typing import Any, cast
 from latentarm.errors import UserError
 from latentarm.files import write_text
 from latentarm.types import Row
+from latentarm.untrusted.documents import read_object
 
 TEXT_FIELDS = ("study", "measure", "unit", "task", "model", "condition")
 NUMBER_FIELDS = ("mean", "sd", "paper_mean", "paper_sd")
@@ -41,13 +42,7 @@ def read_results(path: Path) -> list[Row]:
     Raises:
         UserError: the file is missing, is no JSON, or holds anything but rows.
     """
-    try:
-        document: object = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
-    except (ValueError, RecursionError) as error:
-        raise UserError(f"{path} is not a file of results: it is no JSON.") from error
-    rows = cast(dict[str, Any], document).get("rows") if isinstance(document, dict) else None
+    rows = read_object(path).get("rows")
     if not isinstance(rows, list):
         raise UserError(f"{path} is not a file of results: it has no list called 'rows'.")
     return [_row(path, index, entry) for index, entry in enumerate(cast(list[object], rows))]

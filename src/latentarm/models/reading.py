@@ -1,6 +1,5 @@
 """Reading untrusted JSON: every value is asked for with the type and size that it must have."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
+from latentarm.untrusted.documents import read_object
 
 
 @final
@@ -34,20 +34,9 @@ class Section:
             limit: bytes that it may have at most.
 
         Raises:
-            UserError: the file is missing, too large, or not a JSON object.
+            UserError: see `read_object`.
         """
-        try:
-            size = path.stat().st_size
-            if size > limit:
-                raise UserError(f"{path} is {size} bytes long; {limit} is the most that is read.")
-            values = json.loads(path.read_bytes())
-        except OSError as error:
-            raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
-        except (ValueError, RecursionError) as error:
-            raise UserError(f"{path} is not a JSON file.") from error
-        if not isinstance(values, dict):
-            raise UserError(f"{path} is JSON but not an object with named fields.")
-        return Section(str(path), cast(dict[str, Any], values))
+        return Section(str(path), read_object(path, limit))
 
     def section(self, key: str) -> "Section":
         """The object under a key."""
@@ -77,14 +66,18 @@ class Section:
             raise self._wrong(key, f"a whole number of at least {least}")
         return value
 
-    def integers(self, key: str, least: int, *, length: int | None = None) -> list[int]:
-        """The list of whole numbers under a key, of the given length if there is one."""
+    def integers(
+        self, key: str, least: int, *, length: int | None = None, longest: int | None = None
+    ) -> list[int]:
+        """The list of whole numbers under a key, of the given length or at most the given one."""
         value = self._get(key)
         if not isinstance(value, list):
             raise self._wrong(key, "a list of whole numbers")
         entries = cast(list[Any], value)
         if not all(_is_integer(entry, least) for entry in entries) or length not in (None, len(entries)):
             raise self._wrong(key, f"a list of whole numbers of at least {least}" + _of_length(length))
+        if longest is not None and len(entries) > longest:
+            raise self._wrong(key, f"a list of at most {longest} whole numbers")
         return entries
 
     def array(self, key: str, shape: tuple[int | None, ...], *, gaps: bool = False) -> FloatArray:

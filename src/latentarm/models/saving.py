@@ -23,12 +23,14 @@ from latentarm.models.layout import LAYOUTS, Dimensions, Shape, tensor_shapes
 from latentarm.models.reading import Section
 from latentarm.models.trained import TrainedModel, TrainingSummary
 from latentarm.types import FloatArray
+from latentarm.untrusted.opening import read_bytes
 
 CONFIG_NAME: Final = "config.json"
 WEIGHTS_NAME: Final = "model.safetensors"
 SCHEMA: Final = 2
 CONFIG_LIMIT: Final = 16 * 2**20
 """Bytes; a config with the training curves of a hundred seeds stays far below."""
+MOST_LAYERS: Final = 64
 HEADER_LIMIT: Final = 2**20
 WEIGHTS_LIMIT: Final = 2**30
 LINKS: Final = ("chain.parent", "chain.tool_link")
@@ -104,7 +106,7 @@ def read_model(folder: Path) -> TrainedModel:
         latent=sizes.integer("latent", 1),
         context=sizes.integer("context", 1),
         action=sizes.integer("action", 1),
-        hidden=tuple(sizes.integers("hidden", 1)),
+        hidden=tuple(sizes.integers("hidden", 1, longest=MOST_LAYERS)),
         tools=sizes.integer("tools", 0),
     )
     if LAYOUTS[kind].decoder == "isometry" and (
@@ -146,19 +148,13 @@ def read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[s
         raise UserError(
             f"{path.parent / CONFIG_NAME} asks for {payload:.3g} bytes of weights: it is not a model's."
         )
-    try:
-        size = path.stat().st_size
-        with path.open("rb") as stream:
-            header = int.from_bytes(stream.read(8), "little")
-            if header > HEADER_LIMIT or size != 8 + header + payload:
-                raise UserError(
-                    f"{path} is not what its {CONFIG_NAME} describes: it has {size} bytes, a header of "
-                    f"{header}, and {payload} bytes of weights belong in it."
-                )
-            stream.seek(0)
-            content = stream.read(size)
-    except OSError as error:
-        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
+    content = read_bytes(path, 8 + HEADER_LIMIT + payload)
+    header = int.from_bytes(content[:8], "little")
+    if header > HEADER_LIMIT or len(content) != 8 + header + payload:
+        raise UserError(
+            f"{path} is not what its {CONFIG_NAME} describes: it has {len(content)} bytes, a header of "
+            f"{header}, and {payload} bytes of weights belong in it."
+        )
     if hashlib.sha256(content).hexdigest() != sha256:
         raise UserError(
             f"{path} does not have the SHA-256 that its {CONFIG_NAME} holds: one of the two was changed."

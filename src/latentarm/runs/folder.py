@@ -1,20 +1,20 @@
 """What a run folder says of itself: the dataset, the robot, the episodes that the model never saw."""
 
 import hashlib
-import json
 import subprocess
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
 
 import numpy as np
 
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.errors import UserError
+from latentarm.models.reading import Section
+from latentarm.models.saving import CONFIG_LIMIT
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations
+from latentarm.untrusted.opening import is_missing
 
 
 @dataclass(frozen=True)
@@ -92,24 +92,20 @@ def read_run(folder: Path) -> Run:
     Raises:
         UserError: the folder is not a run, or its ``config.json`` is damaged.
     """
-    config = _read_config(folder)
-    try:
-        end_effector = config["end_effector"]
-        return Run(
-            folder=folder,
-            demonstrations=Path(str(config["demonstrations"])),
-            held_out=tuple(int(index) for index in cast(list[int], config["held_out"])),
-            model=str(config["kind"]),
-            context=str(config["context"]),
-            robot=str(config["robot"]),
-            end_effector=None if end_effector is None else str(end_effector),
-            fingerprint=str(config["fingerprint"]),
-        )
-    except (KeyError, TypeError, ValueError) as error:
-        raise UserError(
-            f"{folder / 'config.json'} does not describe a run ({error} is missing or damaged):"
-            " train it anew with `latentarm train`."
-        ) from error
+    path = folder / "config.json"
+    if is_missing(path):
+        raise UserError(f"{folder} is not a run: it has no config.json (see `latentarm train`).")
+    config = Section.of_file(path, CONFIG_LIMIT)
+    return Run(
+        folder=folder,
+        demonstrations=Path(config.text("demonstrations")),
+        held_out=tuple(config.integers("held_out", 0)),
+        model=config.text("kind"),
+        context=config.text("context"),
+        robot=config.text("robot"),
+        end_effector=None if config.plain().get("end_effector") is None else config.text("end_effector"),
+        fingerprint=config.text("fingerprint"),
+    )
 
 
 def robot_of(run: Run) -> Robot:
@@ -133,18 +129,3 @@ def git_commit() -> str | None:
     except (OSError, subprocess.TimeoutExpired):
         return None
     return done.stdout.strip() if done.returncode == 0 else None
-
-
-def _read_config(folder: Path) -> Mapping[str, object]:
-    path = folder / "config.json"
-    try:
-        config: object = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise UserError(f"{folder} is not a run: it has no config.json (see `latentarm train`).") from error
-    except OSError as error:
-        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
-    except ValueError as error:
-        raise UserError(f"{path} is damaged: it is no JSON. Train the run anew.") from error
-    if not isinstance(config, dict):
-        raise UserError(f"{path} does not describe a run: train it anew with `latentarm train`.")
-    return cast(Mapping[str, object], config)

@@ -84,6 +84,17 @@ def read_bytes(path: Path, limit: int) -> bytes:
     return content
 
 
+def is_missing(path: Path) -> bool:
+    """Whether there is nothing at ``path``, for a sentence of one's own; what is there may be no file."""
+    try:
+        path.lstat()
+    except (FileNotFoundError, NotADirectoryError):
+        return True
+    except OSError:
+        return False
+    return False
+
+
 def _check(path: Path, status: os.stat_result, limit: int) -> None:
     if not stat.S_ISREG(status.st_mode):
         kind = _KINDS.get(stat.S_IFMT(status.st_mode), "something else")

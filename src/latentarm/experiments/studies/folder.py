@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import Final, cast
+from typing import Final
 
 from latentarm.errors import UserError
 from latentarm.files import write_text
 from latentarm.runs.folder import git_commit
+from latentarm.untrusted.documents import read_object
 
 CONFIG: Final = "config.json"
 """What was asked for; it is written first and tells a study's folders from others."""
@@ -58,10 +59,9 @@ class Study:
     def _wrote(self, out: Path) -> bool:
         """Whether a folder says of itself that it is of this study."""
         try:
-            config: object = json.loads((out / CONFIG).read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+            return read_object(out / CONFIG).get("study") == self.name
+        except UserError:
             return False
-        return isinstance(config, dict) and cast(dict[str, object], config).get("study") == self.name
 
 
 def write_json(path: Path, document: object) -> None:
