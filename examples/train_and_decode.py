@@ -2,13 +2,12 @@
 
 import numpy as np
 
-from latentarm.models.autoencoders import CVAE
-from latentarm.tasks.table_top import TableTop
+import latentarm as la
 
-task = TableTop()
+task = la.TableTop()
 demonstrations = task.demonstrate(12, np.random.default_rng(0))
 
-model = CVAE(latent_dim=2, seeds=2, epochs=3, state_noise_rad=0.01)
+model = la.CVAE(latent_dim=2, seeds=2, epochs=3, state_noise_rad=0.01)
 model.fit(demonstrations)
 decoder = model.decoder(seed=0)
 
