@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all check format bench clean
+.PHONY: help demo test test-all check format bench docs clean
 
 help: ## Show what can be made.
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -36,6 +36,10 @@ test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of app
 
 bench: $(VENV)/installed ## The online step and the batched fit, as ratios in one run.
 	$(BIN)/latentarm bench
+
+docs: $(VENV)/installed ## The documentation as a site, in site/; any warning is an error.
+	$(PIP) --editable '.[docs]'
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --site-dir site
 
 format: $(VENV)/installed-dev ## Format and fix what can be fixed by machine.
 	$(BIN)/ruff check --fix .

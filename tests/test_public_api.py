@@ -9,12 +9,20 @@ import pytest
 
 import latentarm as la
 
+PAGES = Path(__file__).parents[1] / "docs" / "api"
 STUB = Path(la.__file__).with_suffix(".pyi")
 
 
 @pytest.mark.parametrize("name", la.__all__)
 def test_a_name_of_the_api_is_there_and_documented(name):
     assert getattr(la, name).__doc__, name
+
+
+@pytest.mark.skipif(not PAGES.exists(), reason="the documentation is not beside this installation")
+def test_the_site_documents_every_name():
+    text = "".join(page.read_text() for page in PAGES.glob("*.md"))
+    documented = {line.rpartition(".")[2] for line in text.splitlines() if line.startswith(":::")}
+    assert documented == set(la.__all__)
 
 
 def test_type_checkers_see_the_same_names():
