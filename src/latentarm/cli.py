@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import tyro
 from tyro.extras import SubcommandApp
 
+from latentarm import __version__
 from latentarm.commands.align import align
 from latentarm.commands.bench import bench
 from latentarm.commands.compare import compare
@@ -54,13 +55,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a terminal without "±" or "…" shows "?" instead
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    if words == ["--version"]:
+        print(f"latentarm {__version__}")
+        return 0
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _warn
             code = app.cli(
                 prog="latentarm",
-                description="Steer a high-DoF assistive arm with a low-DoF input, by latent actions.",
-                args=arguments,
+                description="Steer a high-DoF assistive arm with a low-DoF input, by latent actions. "
+                "`latentarm --version` prints the version.",
+                args=words,
                 config=(tyro.conf.FlagCreatePairsOff,),
             )
             sys.stdout.flush()  # a full disk shows here and not after the exit code

@@ -2,7 +2,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable, Iterable
-from importlib.metadata import entry_points
+from importlib.metadata import entry_points, version
 
 import pytest
 
@@ -51,6 +51,10 @@ def test_the_list_of_commands(run: Run) -> None:
     code, out, _ = run("--help")
     assert code == 0
     assert "{" + ",".join(COMMANDS) + "}" in out
+
+
+def test_the_version(run: Run) -> None:
+    assert run("--version") == (0, f"latentarm {version('latentarm')}\n", "")
 
 
 def test_the_list_of_studies(run: Run) -> None:

@@ -11,8 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
-from latentarm.demonstrations.dataset import append_episode, is_dataset, read_dataset, write_dataset
-from latentarm.demonstrations.folders import locked
+from latentarm.demonstrations.dataset import (
+    LOCK_FILE,
+    append_episode,
+    is_dataset,
+    read_dataset,
+    write_dataset,
+)
+from latentarm.demonstrations.folders import locked, staged_folder
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, Goal, Pose
 
@@ -141,9 +147,30 @@ def test_what_a_killed_writer_left_is_cleared(
 
 
 def test_two_writers_do_not_meet(tmp_path: Path, demonstrations: Demonstrations) -> None:
+    path = tmp_path / "data"
+    write_dataset(demonstrations, path)
+    before = sorted(path.rglob("*"))
+    with locked(path, path / LOCK_FILE), pytest.raises(UserError, match="written by another program"):
+        append_episode(path, demonstrations.episodes[0])
+    assert sorted(path.rglob("*")) == before
+    append_episode(path, demonstrations.episodes[0])
+    assert not (path / LOCK_FILE).exists()
+
+
+def test_two_programs_do_not_write_the_same_new_dataset(tmp_path: Path) -> None:
+    with staged_folder(tmp_path / "data") as staging:
+        (staging / "mine").write_text("mine")
+        with pytest.raises(UserError, match="written by another program"), staged_folder(tmp_path / "data"):
+            pytest.fail("both are writing")
+        assert (staging / "mine").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["data"]
+
+
+def test_the_lock_of_a_killed_writer_holds_nobody_up(tmp_path: Path, demonstrations: Demonstrations) -> None:
     write_dataset(demonstrations, tmp_path / "data")
-    with locked(tmp_path / "data"), pytest.raises(UserError, match="written by another program"):
-        append_episode(tmp_path / "data", demonstrations.episodes[0])
+    (tmp_path / "data" / LOCK_FILE).touch()
+    append_episode(tmp_path / "data", demonstrations.episodes[0])
+    assert len(read_dataset(tmp_path / "data").episodes) == len(demonstrations.episodes) + 1
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ episode that was being appended, and the next append overwrites what is left of 
 
 from dataclasses import replace
 from pathlib import Path
-from typing import cast
+from typing import Final, cast
 
 import numpy as np
 import pyarrow as pa
@@ -42,6 +42,9 @@ from latentarm.demonstrations.validation import check_same_features, validate, v
 from latentarm.errors import UserError
 from latentarm.files import write_text, written_whole
 from latentarm.types import Demonstrations, Episode
+
+LOCK_FILE: Final = ".lock"
+"""In a dataset's folder while an episode is appended."""
 
 
 def is_dataset(path: Path) -> bool:
@@ -108,7 +111,7 @@ def append_episode(path: Path, episode: Episode) -> None:
     Raises:
         UserError: the episode is unfit, ``path`` is no dataset of ours, or it is being written.
     """
-    with locked(path):
+    with locked(path, path / LOCK_FILE):
         info = _native_info(path)
         validate_episode(episode, info.episodes, info.joint_names, str(path))
         _check_features(path, info, episode)

@@ -1,40 +1,43 @@
 """Folders that appear whole or not at all, and that one program writes at a time."""
 
-import fcntl
 import os
 import shutil
 from collections.abc import Generator, Iterable
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+
+from filelock import FileLock, Timeout
 
 from latentarm.errors import UserError
 from latentarm.files import sync_folder
 
 
 @contextmanager
-def locked(folder: Path) -> Generator[None]:
+def locked(folder: Path, lock_file: Path) -> Generator[None]:
     """Keep other writers out of ``folder``. The lock goes with the process, however it ends.
 
+    Args:
+        folder: what is written.
+        lock_file: what all its writers lock; made here and removed afterwards.
+
     Raises:
-        UserError: another program is writing there, or the folder has gone.
+        UserError: another program is writing there, or the lock file cannot be made.
     """
+    if not lock_file.parent.is_dir():
+        raise UserError(f"{folder} cannot be opened: there is no such folder.")
+    lock = FileLock(lock_file, blocking=False)
     try:
-        descriptor = os.open(folder, os.O_RDONLY)
+        lock.acquire()
+    except Timeout as error:
+        raise UserError(f"{folder} is being written by another program; wait for it.") from error
     except OSError as error:
-        raise UserError(f"{folder} cannot be opened: {error.strerror or error}.") from error
+        raise UserError(f"{folder} cannot be locked: {error.strerror or error}.") from error
     try:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            same = os.path.samestat(os.fstat(descriptor), folder.stat())
-        except (BlockingIOError, FileNotFoundError) as error:
-            raise UserError(f"{folder} is being written by another program; wait for it.") from error
-        except OSError as error:
-            raise UserError(f"{folder} cannot be locked: {error.strerror or error}.") from error
-        if not same:
-            raise UserError(f"{folder} is being written by another program; wait for it.")
         yield
     finally:
-        os.close(descriptor)
+        with suppress(OSError):  # Windows removes no open file; filelock does it there on release
+            lock_file.unlink()
+        lock.release()
 
 
 def check_vacant(destination: Path) -> None:
@@ -57,8 +60,9 @@ def check_vacant(destination: Path) -> None:
 def staged_folder(destination: Path) -> Generator[Path]:
     """Yield a folder beside ``destination``; on success rename it there.
 
-    On any error nothing is left behind. After a kill the staging folder ``.NAME.part`` stays, is
-    taken for nothing, and the next attempt at the same destination clears it.
+    On any error nothing is left behind. After a kill the staging folder ``.NAME.part`` and the lock
+    file ``.NAME.lock`` stay, are taken for nothing, and the next attempt at the same destination
+    clears them.
 
     Raises:
         UserError: the destination is taken, or cannot be written.
@@ -67,9 +71,11 @@ def staged_folder(destination: Path) -> Generator[Path]:
     check_vacant(destination)
     staging = destination.parent / f".{destination.name}.part"
     try:
-        staging.mkdir(parents=True, exist_ok=True)
-        with locked(staging):
+        destination.parent.mkdir(parents=True, exist_ok=True)
+        # Beside the staging folder, because Windows renames no folder that holds an open file.
+        with locked(destination, destination.parent / f".{destination.name}.lock"):
             try:
+                staging.mkdir(exist_ok=True)
                 _clear(staging)
                 yield staging
                 check_vacant(destination)

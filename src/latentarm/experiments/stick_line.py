@@ -3,8 +3,6 @@
 import os
 import re
 import sys
-import termios
-import tty
 from collections.abc import Callable
 from typing import Final
 
@@ -61,17 +59,31 @@ def parse(line: str, axes: int) -> FloatArray | None:
 def read_line(axes: int) -> str:
     """A line from standard input. At a terminal the arrow keys push a stick that is shown meanwhile.
 
+    Windows has no POSIX terminal: there, as from a pipe, a line is numbers.
+
     Args:
         axes: d.
 
     Raises:
         EOFError: there is none.
     """
-    if not sys.stdin.isatty():
-        line = sys.stdin.readline()
-        if not line:
-            raise EOFError
-        return line.rstrip("\n")
+    if sys.platform != "win32" and sys.stdin.isatty():
+        return _read_terminal(axes)
+    line = sys.stdin.readline()
+    if not line:
+        raise EOFError
+    return line.rstrip("\n")
+
+
+def _read_terminal(axes: int) -> str:
+    """A line typed at a POSIX terminal, key by key.
+
+    Raises:
+        EOFError: the input ends, or the person ends it.
+    """
+    import termios
+    import tty
+
     descriptor = sys.stdin.fileno()
     before = termios.tcgetattr(descriptor)
     tty.setcbreak(descriptor, termios.TCSAFLUSH)  # what was typed before the question is no answer to it
