@@ -28,6 +28,7 @@ from latentarm.commands.robots import robots
 from latentarm.commands.teleop import teleop
 from latentarm.commands.train import train
 from latentarm.errors import UserError
+from latentarm.untrusted.terminal import one_line
 
 app = SubcommandApp()
 app.command(demo)
@@ -86,13 +87,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _refuse(sentence: str) -> int:
     """Say what the user can mend; the exit code for that."""
-    print(f"latentarm: {sentence}", file=sys.stderr)
+    print(f"latentarm: {one_line(sentence)}", file=sys.stderr)
     return 2
 
 
 def _warn(message: Warning | str, *where: object) -> None:
     """A warning as the sentence that it is, without the line of code that gave it."""
-    print(f"latentarm: warning: {message}", file=sys.stderr)
+    print(f"latentarm: warning: {one_line(str(message))}", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from latentarm.files import written_whole
+from latentarm.untrusted.terminal import visible
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,6 +81,11 @@ def tidy(axes: "Axes") -> None:
     axes.title.set_fontsize(FONT_SIZE)
     axes.xaxis.label.set_fontsize(FONT_SIZE)
     axes.yaxis.label.set_fontsize(FONT_SIZE)
+
+
+def literal(text: str) -> str:
+    """Text that others wrote, for a figure: Matplotlib would read what is between dollars as a formula."""
+    return visible(text).replace("$", "\\$")
 
 
 def look_of(name: str) -> Look:

@@ -46,11 +46,10 @@ def compare(
     """
     from dataclasses import replace
 
-    from rich.console import Console
-
     from latentarm.experiments.compare.preset import OURS, PRESETS
     from latentarm.experiments.compare.run import CompareConfig, run_compare
     from latentarm.experiments.compare.tables import terminal_tables
+    from latentarm.untrusted.console import VisibleConsole
 
     usual = PRESETS[preset]
     sizes = replace(
@@ -67,6 +66,6 @@ def compare(
     )
     rows = run_compare(config)
     names = [path.resolve().name for path in demonstrations]
-    show(rows, json, *terminal_tables(rows, names, sizes.noises_rad, Console().width))
+    show(rows, json, *terminal_tables(rows, names, sizes.noises_rad, VisibleConsole().width))
     say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
     return 0

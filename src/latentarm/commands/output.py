@@ -5,6 +5,8 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from latentarm.untrusted.terminal import visible
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
@@ -18,20 +20,18 @@ def show(rows: "Sequence[Row]", json: bool, *tables: "RenderableType") -> None:
     elif tables:
         print_renderables(*tables)
     else:
-        from rich.console import Console
-
         from latentarm.metrics.table import rich_tables
+        from latentarm.untrusted.console import VisibleConsole
 
-        print_renderables(rich_tables(rows, width=Console().width))
+        print_renderables(rich_tables(rows, width=VisibleConsole().width))
 
 
 def tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
     """One table per task, of the rows without a condition."""
-    from rich.console import Console
-
     from latentarm.metrics.table import rich_tables
+    from latentarm.untrusted.console import VisibleConsole
 
-    width = Console().width
+    width = VisibleConsole().width
     main_rows = [row for row in rows if row.condition is None]
     return [
         rich_tables([row for row in main_rows if row.task == task], title=f"{task}, simulated", width=width)
@@ -41,13 +41,13 @@ def tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
 
 def say(sentence: str, json: bool) -> None:
     """Tell a person; with ``--json`` on standard error, so that standard output stays one document."""
-    print(sentence, file=sys.stderr if json else sys.stdout)
+    print(visible(sentence), file=sys.stderr if json else sys.stdout)
 
 
 def print_renderables(*renderables: "RenderableType") -> None:
     """Print tables and other things that rich can draw."""
-    from rich.console import Console
+    from latentarm.untrusted.console import VisibleConsole
 
-    console = Console()
+    console = VisibleConsole()
     for renderable in renderables:
         console.print(renderable)

@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 
 from latentarm.files import written_whole
 from latentarm.robots.limits import JointLimits
-from latentarm.style import FIGURE_DPI, tidy
+from latentarm.style import FIGURE_DPI, literal, tidy
 from latentarm.types import Demonstrations
 
 LINE: Final = "#0072B2"
@@ -55,7 +55,7 @@ def draw_trajectories(demonstrations: Demonstrations, path: Path, limits: JointL
         figure.legend(
             handles=_key(limits is not None), loc="outside lower center", ncols=3, frameon=False, fontsize=8
         )
-        figure.suptitle(_title(demonstrations), fontsize=10)
+        figure.suptitle(literal(_title(demonstrations)), fontsize=10)
         with written_whole(path) as part:
             figure.savefig(part, format="png")
 
@@ -81,7 +81,7 @@ def _draw_joint(axes: Axes, demonstrations: Demonstrations, joint: int, limits: 
     for episode in demonstrations.episodes:
         time = episode.timestamp - episode.timestamp[0]
         axes.plot(time, episode.state[:, joint], color=LINE, alpha=alpha, linewidth=0.9)
-    axes.set_title(demonstrations.joint_names[joint], loc="left", pad=3)
+    axes.set_title(literal(demonstrations.joint_names[joint]), loc="left", pad=3)
     if limits is None:
         return
     lower, upper = float(limits.lower[joint]), float(limits.upper[joint])

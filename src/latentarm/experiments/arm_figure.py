@@ -7,7 +7,7 @@ import numpy as np
 
 from latentarm.experiments.drive_figures import GOAL_COLOURS, GOAL_MARKERS
 from latentarm.robots.robot import Robot
-from latentarm.style import SMALL_FONT_SIZE, new_figure, save_figure
+from latentarm.style import SMALL_FONT_SIZE, literal, new_figure, save_figure
 from latentarm.tasks.task import Task
 from latentarm.types import Demonstrations, FloatArray
 
@@ -49,7 +49,7 @@ def draw_task(task: Task, demonstrations: Demonstrations, path: Path) -> None:
             marker=GOAL_MARKERS[index % len(GOAL_MARKERS)],
             markeredgecolor="black",
             linestyle="none",
-            label=goal.name,
+            label=literal(goal.name),
             zorder=4,
         )
     frame(axes, np.concatenate(places))

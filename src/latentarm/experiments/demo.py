@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
 
 from latentarm.assistance.blending import Arbitration, FixedAlpha
 from latentarm.control.controller import Controller
@@ -39,6 +38,7 @@ from latentarm.runs.training import TrainConfig, train_run
 from latentarm.style import save_figure
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Row
+from latentarm.untrusted.console import VisibleConsole
 
 MODELS = ("cvae", "scl")
 TIME_LIMIT_S = 60.0
@@ -88,7 +88,7 @@ def run_demo(config: DemoConfig) -> list[Row]:
         UserError: the folder holds something else, or cannot be written.
     """
     _clear(config.out)
-    console = Console(stderr=True, quiet=config.quiet)
+    console = VisibleConsole(stderr=True, quiet=config.quiet)
     task = TableTop()
     console.print(f"1/3  A simulated person demonstrates eating {config.episodes} times.")
     demonstrations = task.demonstrate(config.episodes, np.random.default_rng(config.seed))

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, cast
 
 from joblib import Parallel, delayed
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from latentarm.errors import UserError
 from latentarm.experiments.backends import BACKENDS
+from latentarm.untrusted.console import VisibleConsole
 
 Cell = TypeVar("Cell")
 Result = TypeVar("Result")
@@ -138,7 +138,7 @@ def _bar(shown: bool) -> Progress:
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        console=Console(stderr=True),
+        console=VisibleConsole(stderr=True),
         disable=not shown,
         transient=True,
     )

@@ -10,7 +10,6 @@ from typing import Final
 
 import numpy as np
 import torch
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from torch import Tensor
 
@@ -21,6 +20,7 @@ from latentarm.models.layout import Shape
 from latentarm.models.networks import FlatNetworks, Networks
 from latentarm.models.optimiser import FlatAdam, falling_rate
 from latentarm.types import FloatArray, IntArray
+from latentarm.untrusted.console import VisibleConsole
 
 Report = Callable[[int, int, float], None]
 """Is told after each epoch: how many are done, how many there are at most, and the held-out loss so far."""
@@ -196,7 +196,7 @@ def progress_bar(shown: bool, unit: str) -> Progress:
         TextColumn(unit),
         TextColumn("{task.fields[loss]}"),
         TimeRemainingColumn(),
-        console=Console(stderr=True),
+        console=VisibleConsole(stderr=True),
         disable=not shown,
         transient=True,
     )

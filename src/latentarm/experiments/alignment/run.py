@@ -6,8 +6,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Final
 
-from rich.console import Console
-
 from latentarm.experiments.alignment.cell import Cell, CellResult, measure_cell
 from latentarm.experiments.alignment.curves import CurveCell, CurveResult, measure_curve
 from latentarm.experiments.alignment.decoder import DecoderCell, LearnedDecoder, learn_decoder
@@ -29,6 +27,7 @@ from latentarm.metrics.results import write_results
 from latentarm.runs.checks import check_seed
 from latentarm.tasks.pouring.catalogue import POURING_TASKS
 from latentarm.types import Row
+from latentarm.untrusted.console import VisibleConsole
 
 MODELS: Final = (PAPER_MODEL, "scl", "isometric")
 """The paper's decoder, the state-conditioned linear one, and ours."""
@@ -104,7 +103,7 @@ def run_alignment(config: AlignmentConfig) -> list[Row]:
             cell cannot be measured as asked; then it says which.
     """
     Study(STUDY, MADE).claim(config.out, _about(config))
-    console = Console(stderr=True, quiet=config.quiet)
+    console = VisibleConsole(stderr=True, quiet=config.quiet)
     began = perf_counter()
     wanted = [
         DecoderCell(task, model, config.preset, config.seed)

@@ -7,8 +7,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Final
 
-from rich.console import Console
-
 from latentarm.errors import UserError
 from latentarm.experiments.compare.cell import Cell, CellResult, measure_cell
 from latentarm.experiments.compare.datasets import Dataset, read_datasets
@@ -35,6 +33,7 @@ from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import fingerprint
 from latentarm.style import save_figure
 from latentarm.types import Row
+from latentarm.untrusted.console import VisibleConsole
 
 MADE: Final = (
     "results.json",
@@ -114,7 +113,7 @@ def run_compare(config: CompareConfig) -> list[Row]:
     datasets = read_datasets(config.demonstrations, config.preset.folds, config.seed)
     about = _about(config, datasets)
     Study(STUDY, MADE).claim(config.out, about)
-    console, preset = Console(stderr=True, quiet=config.quiet), config.preset
+    console, preset = VisibleConsole(stderr=True, quiet=config.quiet), config.preset
     cells = _cells(config, datasets)
     console.print(
         f"1/3  {len(preset.models)} models on {', '.join(one.name for one in datasets)},"

@@ -8,8 +8,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Final
 
-from rich.console import Console
-
 from latentarm.experiments.grid import check_processes, run_grid
 from latentarm.experiments.properties.cell import Cell, CellResult, measure_cell
 from latentarm.experiments.properties.figures.draw import FIGURES, draw_figures
@@ -26,6 +24,7 @@ from latentarm.models.catalogue import MODELS
 from latentarm.runs.checks import check_seed
 from latentarm.tasks.planar.catalogue import MOTIONS
 from latentarm.types import Row
+from latentarm.untrusted.console import VisibleConsole
 
 STUDY: Final = "properties"
 
@@ -88,7 +87,7 @@ def run_properties(config: PropertiesConfig) -> list[Row]:
             cell cannot be measured as asked; then it says which.
     """
     Study(STUDY, MADE).claim(config.out, _about(config))
-    console = Console(stderr=True, quiet=config.quiet)
+    console = VisibleConsole(stderr=True, quiet=config.quiet)
     cells = _cells(config)
     console.print(
         f"1/2  {len(MODELS)} models on {', '.join(config.tasks)} at {len(config.preset.noises_rad)} levels of"

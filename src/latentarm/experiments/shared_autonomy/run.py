@@ -6,8 +6,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Final
 
-from rich.console import Console
-
 from latentarm.experiments.grid import check_processes, run_grid
 from latentarm.experiments.shared_autonomy.ablations import variants
 from latentarm.experiments.shared_autonomy.cell import (
@@ -32,6 +30,7 @@ from latentarm.experiments.studies.tasks import check_tasks
 from latentarm.metrics.results import write_results
 from latentarm.runs.checks import check_seed
 from latentarm.types import Row
+from latentarm.untrusted.console import VisibleConsole
 
 MODELS: Final = (MODEL, "cvae", "isometric")
 """The paper's model, that of its equation 16 in full, and ours."""
@@ -96,7 +95,7 @@ def run_shared_autonomy(config: SharedAutonomyConfig) -> list[Row]:
             cell cannot be measured as asked; then it says which.
     """
     Study(STUDY, MADE).claim(config.out, _about(config))
-    console = Console(stderr=True, quiet=config.quiet)
+    console = VisibleConsole(stderr=True, quiet=config.quiet)
     cells = _cells(config)
     console.print(
         f"1/2  {len(MODELS)} models, with entropy and without, {len(config.preset.people)} kinds of people,"

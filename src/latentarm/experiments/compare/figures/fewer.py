@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 from latentarm.experiments.compare.figures.scale import logarithmic_with_zero
 from latentarm.experiments.compare.rows import condition, with_demonstrations
 from latentarm.experiments.studies.panels import title
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, literal, look_of, new_figure, tidy
 from latentarm.types import Row
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def fewer_figure(
         line[0].set_ylabel(label, fontsize=FONT_SIZE)
         logarithmic_with_zero(line[0])
     for axes, dataset in zip(panels[0], datasets, strict=True):
-        title(axes, dataset)
+        title(axes, literal(dataset))
     for axes in panels[-1]:
         axes.set_xlabel("training demonstrations", fontsize=FONT_SIZE)
         axes.set_xticks(range(len(counts)), [str(count) for count in counts])
