@@ -5,10 +5,10 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all check format bench docs clean
+.PHONY: help demo test test-all test-thorough check format bench docs clean
 
 help: ## Show what can be made.
-	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 $(VENV)/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -33,6 +33,9 @@ test: check ## Everything that must hold, in minutes.
 
 test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of approaches.
 	$(BIN)/python -m pytest
+
+test-thorough: $(VENV)/installed-dev ## 10,000 Hypothesis examples for motion and geometry (hours; nightly).
+	$(BIN)/python -m pytest --hypothesis-profile=thorough tests/control tests/kinematics tests/robots
 
 bench: $(VENV)/installed ## The online step and the batched fit, as ratios in one run.
 	$(BIN)/latentarm bench

@@ -35,7 +35,7 @@ def test_a_belief_stays_a_distribution_above_its_floor(rule, prior, u, state, ma
     assert (belief >= 0.02).all()
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=5)
 @given(rules, seeds, st.integers(1, 3), st.floats(0, 0.3))
 def test_ten_thousand_steps_leave_it_sound(rule, seed, axes, floor):
     rng = np.random.default_rng(seed)

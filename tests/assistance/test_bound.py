@@ -92,7 +92,7 @@ def all_moments(seed):
         yield moments(seed + goals, MOMENTS // 9 + 1, goals, joints=(2, 5, 7)[goals % 3])
 
 
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=3)
 @given(st.integers(0, 2**31))
 def test_wherever_it_certifies_the_error_shrinks(seed):
     held = np.zeros(3, dtype=int)
@@ -106,7 +106,7 @@ def test_wherever_it_certifies_the_error_shrinks(seed):
     assert (held < 0.9 * MOMENTS).all()
 
 
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=3)
 @given(st.integers(0, 2**31))
 def test_wherever_a_step_is_certified_it_ends_nearer(seed):
     held = 0
@@ -119,7 +119,7 @@ def test_wherever_a_step_is_certified_it_ends_nearer(seed):
     assert 1000 < held < 0.9 * MOMENTS
 
 
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=3)
 @given(st.integers(0, 2**31))
 def test_each_form_certifies_what_the_one_before_does(seed):
     for drawn in all_moments(seed):
@@ -131,7 +131,7 @@ def test_each_form_certifies_what_the_one_before_does(seed):
         assert (deltas[1] >= deltas[2] - 1e-12 * abs(deltas[1])).all()
 
 
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=3)
 @given(st.integers(0, 2**31))
 def test_the_paper_s_forms_hold_for_steps_too_unless_help_alone_would_overshoot(seed):
     """Where alpha k b(g*) dt <= 1, equations 13 and 14 need no correction for the length of the step."""
@@ -144,7 +144,7 @@ def test_the_paper_s_forms_hold_for_steps_too_unless_help_alone_would_overshoot(
     assert counted > 1000
 
 
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=3)
 @given(st.integers(0, 2**31))
 def test_where_a_step_is_not_certified_some_person_could_hold_the_arm_off(seed):
     for drawn in all_moments(seed):
@@ -157,7 +157,7 @@ def test_where_a_step_is_not_certified_some_person_could_hold_the_arm_off(seed):
         assert (after >= bound.lyapunov(drawn.state, drawn.wanted) * (1 - 1e-9))[~sure].all()
 
 
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=3)
 @given(st.integers(0, 2**31))
 def test_with_known_help_no_smaller_delta_would_hold(seed):
     for drawn in all_moments(seed):

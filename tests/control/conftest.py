@@ -1,9 +1,7 @@
-import os
 from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
-from hypothesis import settings
 
 from latentarm.control.controller import Controller
 from latentarm.kinematics.capsules import segment_distance
@@ -14,10 +12,6 @@ from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray
-
-settings.register_profile("thorough", max_examples=10_000, deadline=None)
-if os.environ.get("HYPOTHESIS_PROFILE") == "thorough":
-    settings.load_profile("thorough")
 
 
 @pytest.fixture(scope="session")

@@ -1,7 +1,7 @@
 """The stop: exact, straight, within limits, and never longer than the config was checked for."""
 
 import numpy as np
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -16,7 +16,6 @@ accelerations = arrays(np.float64, 3, elements=st.floats(-6.0, 6.0))
 
 @given(velocities, accelerations)
 @example(np.zeros(3), np.array([0.0078125, 0.0, 0.0]))
-@settings(deadline=None)
 def test_ends_at_rest_without_jumps(velocity, acceleration):
     brake = Brake(velocity, acceleration, A, J)
     times = np.linspace(0.0, brake.duration_s * 1.01, 400)
@@ -34,7 +33,6 @@ def test_ends_at_rest_without_jumps(velocity, acceleration):
 @example(
     np.zeros(3), np.array([0.296875, 0.0, 0.0])
 )  # hardly moves: a ramp of a few hundredths of a millisecond
-@settings(deadline=None)
 def test_brakes_in_proportion_on_a_straight_line_and_covers_half_its_time(velocity, acceleration):
     brake = Brake(velocity, acceleration, A, J)
     times = brake.settle_s + (np.arange(2000) + 0.5) * brake.ramp_s / 2000
@@ -54,7 +52,6 @@ def test_brakes_in_proportion_on_a_straight_line_and_covers_half_its_time(veloci
 
 
 @given(velocities, accelerations)
-@settings(deadline=None)
 def test_commands_sampled_from_it_never_pass_its_end(velocity, acceleration):
     brake = Brake(velocity, acceleration, A, J)
     for dt in (0.005, 0.01, 0.02):

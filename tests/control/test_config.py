@@ -4,7 +4,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.control.safety.bounds import STOPPED_WITHIN_S, Bounds
@@ -78,7 +78,6 @@ def test_absurd_periods_are_refused(arm, dt):
     st.floats(0.005, 0.14),
     st.sampled_from([0.005, 0.01, 0.02, 0.05]),
 )
-@settings(deadline=None)
 def test_a_config_that_is_accepted_stops_in_time(arm, speed, stop, timeout, dt):
     bounds = None
     config = SafetyConfig(

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -96,7 +96,6 @@ def test_joint_position_slows_before_a_limit_and_stops_at_it(surroundings, veloc
 
 
 @given(asked_velocity, states)
-@settings(deadline=None)
 def test_link_speed_slows_every_point_and_keeps_the_direction(surroundings, oracle, velocity, seed):
     here = situation(surroundings, seed)
     drift = np.random.default_rng(seed).normal(size=7) * 0.01
@@ -110,7 +109,6 @@ def test_link_speed_slows_every_point_and_keeps_the_direction(surroundings, orac
 
 
 @given(asked_velocity, states)
-@settings(deadline=None)
 def test_clearance_damps_every_approach(surroundings, oracle, velocity, seed):
     here = situation(surroundings, seed)
     drift = np.random.default_rng(seed).normal(size=7) * 0.007
@@ -129,7 +127,6 @@ def test_clearance_damps_every_approach(surroundings, oracle, velocity, seed):
 
 
 @given(asked_velocity, states)
-@settings(deadline=None)
 def test_workspace_damps_every_way_out(surroundings, oracle, velocity, seed):
     here = situation(surroundings, seed)
     result = WorkspaceBox().apply(velocity, here)
@@ -153,7 +150,6 @@ def test_without_a_workspace_nothing_is_changed(arm):
 
 
 @given(st.lists(asked_velocity, min_size=1, max_size=20), st.integers(1, 15))
-@settings(deadline=None)
 def test_ramp_keeps_acceleration_and_jerk_and_arrives(surroundings, wanted, ticks):
     bounds, dt = surroundings.bounds, 0.01
     ramp = Ramp(bounds.dt_s, bounds.acceleration, bounds.jerk)

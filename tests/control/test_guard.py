@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import event, given, settings
+from hypothesis import event, given
 from hypothesis import strategies as st
 
 from latentarm.control.safety.body import Body, Placement
@@ -61,7 +61,6 @@ def path_states(q, velocity, brake, hold_s):
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["arm", "two_arms", "gantry"]))
-@settings(deadline=None)
 def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, name):
     robot = {"arm": arm, "two_arms": two_arms, "gantry": gantry}[name]
     rng = np.random.default_rng(seed)

@@ -64,7 +64,7 @@ def any_demonstrations(draw: st.DrawFn) -> Demonstrations:
 
 
 @given(given_demonstrations=any_demonstrations())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_what_is_written_is_read_again(given_demonstrations: Demonstrations, equal: Equal) -> None:
     with tempfile.TemporaryDirectory() as folder:
         write_dataset(given_demonstrations, Path(folder) / "data")

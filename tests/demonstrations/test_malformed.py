@@ -347,7 +347,7 @@ def edited(content: bytes, edits: list[tuple[float, bytes]]) -> bytes:
 
 
 @given(kind=st.sampled_from(["header", "npz", "csv", "info"]), edits=BYTES)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_no_edit_of_a_source_is_more_than_refused(kind: str, edits: list[tuple[float, bytes]]) -> None:
     """Whatever bytes a source holds, it imports or is refused in one sentence: nothing else."""
     with tempfile.TemporaryDirectory() as name:

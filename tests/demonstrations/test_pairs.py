@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.demonstrations.pairs import make_pairs
@@ -103,7 +103,6 @@ def test_an_arm_that_never_moves_teaches_nothing() -> None:
     samples=st.lists(st.integers(2, 12), min_size=1, max_size=4),
     seed=st.integers(0, 2**32 - 1),
 )
-@settings(deadline=None)
 def test_every_pair_ends_where_the_demonstration_was(window: int, samples: list[int], seed: int) -> None:
     """From a pair's state, its action leads to a state of the same episode within the window."""
     dice = np.random.default_rng(seed)

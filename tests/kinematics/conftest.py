@@ -2,14 +2,9 @@ import importlib.util
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
 
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-
-# On a busy machine a single example may take long without anything being wrong.
-settings.register_profile("latentarm", deadline=None)
-settings.load_profile("latentarm")
 
 # A slide, an anchor off the joint's frame, a reference angle, two joints on one body, a frozen
 # finger on the way to nothing, and a fork in the tree: what the catalogue's robots do not have.

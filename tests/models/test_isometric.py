@@ -68,7 +68,7 @@ def tool_speed(model, action, state, arm):
     return np.sqrt(action @ metric(arm.chain, state) @ action) / model.trained_.tensors["action.scale"][0]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     state=arrays(np.float64, 4, elements=coordinate),
     other=arrays(np.float64, 4, elements=coordinate),
@@ -88,7 +88,7 @@ def test_the_same_push_moves_the_tool_equally_fast_everywhere_and_in_every_direc
     assert tool_speed(rough, decoder.decode(0.5 * z, state), state, arm) < here
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(state=arrays(np.float64, 4, elements=coordinate), data=st.data())
 def test_rest_is_rest_and_the_opposite_input_is_the_opposite_motion(rough, state, data):
     z = data.draw(arrays(np.float64, rough.latent_dim, elements=push))
@@ -97,7 +97,7 @@ def test_rest_is_rest_and_the_opposite_input_is_the_opposite_motion(rough, state
     np.testing.assert_array_equal(decoder.decode(-z, state), -decoder.decode(z, state))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(state=arrays(np.float64, 4, elements=coordinate))
 def test_the_axes_are_at_right_angles_in_the_metric_where_nothing_bends(rough, state):
     """At half a push the bend is zero, whatever the weights."""

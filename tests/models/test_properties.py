@@ -57,7 +57,7 @@ def test_pca_is_scikit_learns(trained, demonstrations, unseen):
 finite = st.floats(-2, 2, allow_nan=False, width=32)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     context=arrays(np.float64, (3, 4), elements=finite),
     z=arrays(np.float64, (2, 3, 2), elements=finite),
@@ -71,7 +71,7 @@ def test_scl_is_linear_in_z_in_every_context(trained, context, z, weights):
     assert not decoder.decode(np.zeros((3, 2)), context).any()
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(context=arrays(np.float64, (4,), elements=finite))
 def test_the_columns_of_scl_are_orthonormal(trained, context):
     """A Gram-Schmidt that returns its input would pass every other test here."""

@@ -3,14 +3,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
 
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-
-# On a busy machine a single example may take long without anything being wrong.
-settings.register_profile("latentarm", deadline=None)
-settings.load_profile("latentarm")
 
 
 def inside(package: str, file: str) -> Path:

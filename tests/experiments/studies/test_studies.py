@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.errors import UserError
@@ -39,7 +39,6 @@ def test_a_figure_that_is_no_number_is_not_written(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@settings(deadline=None)  # the first call imports the statistics
 @given(st.lists(st.one_of(st.none(), st.floats(0.0, 1.0)), max_size=8))
 def test_holm_by_its_definition(p):
     tested = sorted(one for one in p if one is not None)
