@@ -12,6 +12,7 @@ from latentarm.control.loop import ControlLoop
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.errors import UserError
+from latentarm.robots.arm import Arm
 from latentarm.robots.simulated import SimulatedArm
 from latentarm.types import Input
 
@@ -198,3 +199,17 @@ def test_statistics_are_about_the_last_window_and_count_all():
     assert found.median_s == pytest.approx(0.0025)
     assert found.worst_start_s == pytest.approx(0.025)
     assert found.overruns == 1
+
+
+def test_a_real_arm_is_not_driven_within_assumed_limits(gantry, scripted):
+    class RealArm(Arm):
+        simulated = False
+
+        def state(self):
+            return gantry.home
+
+        velocity = send = stop = state
+
+    step = Step(gantry, scripted(np.full((1, 4), 0.2)), SafetyConfig())
+    with pytest.raises(UserError, match=r"gantry is a real arm.*assumed"):
+        ControlLoop(step, RealArm(), Stick(), SimulatedClock([]))

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.errors import UserError
-from latentarm.robots.limits import JointLimits
+from latentarm.robots.limits import JointLimits, LimitSources
 
 GOOD = {"lower": [-1.0, -2.0], "upper": [1.0, 2.0], "velocity": [1.0, 1.0]}
 GOOD |= {"acceleration": [5.0, 5.0], "jerk": [50.0, 50.0]}
@@ -57,3 +57,15 @@ def test_limits_cannot_be_changed_afterwards():
 def test_violation_is_how_far_outside():
     q = np.array([[0.0, 0.0], [1.5, -2.25]])
     np.testing.assert_allclose(limits().violation(q), [[0, 0], [0.5, 0.25]])
+
+
+def test_a_limit_of_which_nothing_is_said_is_assumed():
+    assert limits().assumed == dict.fromkeys(("position", "velocity", "acceleration", "jerk"), (0, 1))
+    known = LimitSources(position=("model", "model"), velocity=("model", "assumed"))
+    given = JointLimits(**{name: np.array(value) for name, value in GOOD.items()}, sources=known)
+    assert given.assumed == {"velocity": (1,), "acceleration": (0, 1), "jerk": (0, 1)}
+
+
+def test_sources_for_other_than_every_joint_are_refused():
+    with pytest.raises(UserError, match="sources of the joint limits' jerk are 3"):
+        JointLimits(**{n: np.array(v) for n, v in GOOD.items()}, sources=LimitSources(jerk=("model",) * 3))

@@ -10,7 +10,7 @@ from latentarm.control.clock import Clock
 from latentarm.control.deadlines import DeadlineLog, DeadlineStatistics
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
-from latentarm.robots.arm import Arm
+from latentarm.robots.arm import Arm, check_limits
 from latentarm.types import StepRecord, Stop
 
 
@@ -34,6 +34,9 @@ class ControlLoop:
         source: where inputs come from.
         clock: the time.
         observers: called with every record, in the loop's thread.
+
+    Raises:
+        UserError: the arm is a real one whose limits are assumed.
     """
 
     def __init__(
@@ -44,6 +47,7 @@ class ControlLoop:
         clock: Clock,
         observers: Sequence[Callable[[StepRecord], None]] = (),
     ) -> None:
+        check_limits(arm, step.robot)
         self._step = step
         self._arm = arm
         self._source = source

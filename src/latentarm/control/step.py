@@ -73,6 +73,7 @@ class Step:
         dt_s: float = 0.01,
     ) -> None:
         self._shared = SharedAutonomy(robot.dof, controller, goals, belief, arbitration, dt_s)
+        self._robot = robot
         self._dof = robot.dof
         self._lowest = (robot.limits.lower - _ASTRAY).tolist()
         self._highest = (robot.limits.upper + _ASTRAY).tolist()
@@ -85,6 +86,11 @@ class Step:
         self._engagement = Engagement()
         self._mode = 0
         self._switch_held = False
+
+    @property
+    def robot(self) -> Robot:
+        """The arm that the limits are those of."""
+        return self._robot
 
     @property
     def dt_s(self) -> float:

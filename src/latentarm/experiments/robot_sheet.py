@@ -3,11 +3,22 @@
 from typing import TYPE_CHECKING
 
 from latentarm.robots.catalogue import ROBOTS, load_robot
+from latentarm.robots.limits import QUANTITIES, Quantity
+from latentarm.robots.notices import notices
 
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from latentarm.robots.limits import Source
     from latentarm.robots.robot import Robot
+    from latentarm.types import FloatArray
+
+_SOURCES: "dict[Source, str]" = {
+    "model": "from the model",
+    "manufacturer": "from the manufacturer",
+    "limits_file": "from the limits file",
+    "assumed": "assumed",
+}
 
 
 def describe(name: str | None, end_effector: str | None = None) -> list[dict[str, object]]:
@@ -48,6 +59,7 @@ def _facts(robot: "Robot") -> dict[str, object]:
         "name": robot.name,
         "end_effectors": [tool.name for tool in robot.chain.tools],
         "tool_speed_limit_m_per_s": robot.tool_speed_limit,
+        "tool_speed_source": robot.tool_speed_source,
         "joints": [
             {
                 "name": joint,
@@ -58,11 +70,13 @@ def _facts(robot: "Robot") -> dict[str, object]:
                 "acceleration": float(limits.acceleration[index]),
                 "jerk": float(limits.jerk[index]),
                 "home": float(robot.home[index]),
+                "source": {quantity: limits.sources.of(quantity)[index] for quantity in QUANTITIES},
             }
             for index, joint in enumerate(robot.joint_names)
         ],
         "capsules": len(robot.capsules.name),
         "self_pairs": len(robot.self_pairs),
+        "notices": notices(robot),
     }
 
 
@@ -73,20 +87,34 @@ def _sheet(robot: "Robot") -> "Table":
     for heading in ("joint", "lower", "upper", "home", "velocity", "acceleration", "jerk"):
         table.add_column(heading, justify="left" if heading == "joint" else "right")
     limits = robot.limits
+    figures: tuple[tuple[FloatArray, Quantity | None], ...] = (
+        (limits.lower, "position"),
+        (limits.upper, "position"),
+        (robot.home, None),
+        (limits.velocity, "velocity"),
+        (limits.acceleration, "acceleration"),
+        (limits.jerk, "jerk"),
+    )
     for index, joint in enumerate(robot.joint_names):
-        figures = (
-            limits.lower,
-            limits.upper,
-            robot.home,
-            limits.velocity,
-            limits.acceleration,
-            limits.jerk,
-        )
-        table.add_row(joint, *(f"{figure[index]:.4g}" for figure in figures))
+        cells: list[str] = []
+        for figure, quantity in figures:
+            assumed = quantity is not None and limits.sources.of(quantity)[index] == "assumed"
+            cells.append(f"{figure[index]:.4g}{' assumed' if assumed else ''}")
+        table.add_row(joint, *cells)
     tools = ", ".join(tool.name for tool in robot.chain.tools)
+    assumed = " (assumed)" if robot.tool_speed_source == "assumed" else ""
     table.caption = (
-        f"end-effector: {tools}; hardware limits in rad, rad/s, rad/s², rad/s³ (m for a sliding joint);"
-        f" tool at most {robot.tool_speed_limit:g} m/s; {len(robot.capsules.name)} capsules,"
-        f" {len(robot.self_pairs)} pairs of them watched"
+        f"end-effector: {tools}; limits in rad, rad/s, rad/s², rad/s³ (m for a sliding joint);"
+        f" {_known_from(robot)}; tool at most {robot.tool_speed_limit:g} m/s{assumed};"
+        f" {len(robot.capsules.name)} capsules, {len(robot.self_pairs)} pairs of them watched"
     )
     return table
+
+
+def _known_from(robot: "Robot") -> str:
+    """How the limits are known, such as "position: from the model; jerk: assumed"."""
+    texts: dict[str, list[str]] = {}
+    for quantity in QUANTITIES:
+        sources = dict.fromkeys(robot.limits.sources.of(quantity))
+        texts.setdefault(" or ".join(_SOURCES[source] for source in sources), []).append(quantity)
+    return "; ".join(f"{', '.join(quantities)}: {text}" for text, quantities in texts.items())

@@ -2,6 +2,9 @@
 
 from abc import ABC, abstractmethod
 
+from latentarm.errors import UserError
+from latentarm.robots.notices import assumed_limits
+from latentarm.robots.robot import Robot
 from latentarm.types import Command, FloatArray
 
 
@@ -10,6 +13,11 @@ class Arm(ABC):
 
     An arm must come to rest by itself once a command's ``duration_s`` has passed without a new one.
     """
+
+    @property
+    @abstractmethod
+    def simulated(self) -> bool:
+        """Whether nothing real moves; `check_limits` asks more of a real arm."""
 
     @abstractmethod
     def state(self) -> FloatArray:
@@ -26,3 +34,21 @@ class Arm(ABC):
     @abstractmethod
     def stop(self) -> None:
         """Stop now and forget the last command."""
+
+
+def check_limits(arm: Arm, robot: Robot) -> None:
+    """Refuse to drive a real arm within limits that nobody stated.
+
+    Args:
+        arm: what is to be driven.
+        robot: what is known of it.
+
+    Raises:
+        UserError: the arm is real, and one of its limits is assumed.
+    """
+    assumed = assumed_limits(robot)
+    if assumed and not arm.simulated:
+        raise UserError(
+            f"{robot.name} is a real arm, and its {assumed} is not known but assumed: state the"
+            " manufacturer's figures in a file and name it with --limits FILE."
+        )

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from latentarm.kinematics.reader import Reading, read
-from latentarm.robots.limits import JointLimits
+from latentarm.robots.limits import JointLimits, Source
 from latentarm.robots.robot import Robot
 from latentarm.robots.self_pairs import self_pairs
 from latentarm.robots.shapes import read_capsules
@@ -22,6 +22,7 @@ def assemble(
     tool_speed_limit: float,
     model_path: str | None = None,
     model: mujoco.MjModel | None = None,
+    tool_speed_source: Source = "assumed",
 ) -> Robot:
     """Read a robot's kinematics and shape from its model, and add what the model does not say.
 
@@ -30,11 +31,12 @@ def assemble(
         mjcf: its model as MJCF text. The chain is read from this text, so that the two agree to
             rounding, whatever the digits in it.
         end_effectors: names of sites or bodies, "the" tool first.
-        limits: hardware limits of its joints.
+        limits: of its joints.
         home: (n,), rad.
         tool_speed_limit: m/s.
         model_path: the file that the model was read from.
         model: compiled from ``mjcf``, where the caller has it: large meshes take seconds to compile.
+        tool_speed_source: how the limit of the tool's speed is known.
 
     Returns:
         The robot.
@@ -55,6 +57,7 @@ def assemble(
         self_pairs=self_pairs(reading.chain, capsules, limits, home, _excluded_links(model, reading)),
         mjcf=mjcf,
         tool_speed_limit=tool_speed_limit,
+        tool_speed_source=tool_speed_source,
         model_path=model_path,
     )
 

@@ -1,18 +1,55 @@
-"""What a robot's joints can do: its hardware limits."""
+"""What a robot's joints can do, and how each figure is known."""
 
-from dataclasses import dataclass, fields
-from typing import final
+from dataclasses import dataclass, field
+from typing import Final, Literal, final
 
 import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
 
+Source = Literal["model", "manufacturer", "limits_file", "assumed"]
+"""How a limit is known: the robot's model says it, its manufacturer, a limits file, or nobody does."""
+
+Quantity = Literal["position", "velocity", "acceleration", "jerk"]
+QUANTITIES: Final[tuple[Quantity, ...]] = ("position", "velocity", "acceleration", "jerk")
+
+_FIGURES: Final = ("lower", "upper", "velocity", "acceleration", "jerk")
+
+
+@final
+@dataclass(frozen=True)
+class LimitSources:
+    """How each limit of n joints is known; "assumed" throughout where nothing is said.
+
+    Attributes:
+        position: n sources, of lower and upper together.
+        velocity: n sources.
+        acceleration: n sources.
+        jerk: n sources.
+    """
+
+    position: tuple[Source, ...] = ()
+    velocity: tuple[Source, ...] = ()
+    acceleration: tuple[Source, ...] = ()
+    jerk: tuple[Source, ...] = ()
+
+    @staticmethod
+    def same(source: Source, dof: int) -> "LimitSources":
+        """One source for every limit of every joint."""
+        all_joints: tuple[Source, ...] = (source,) * dof
+        return LimitSources(all_joints, all_joints, all_joints, all_joints)
+
+    def of(self, quantity: Quantity) -> tuple[Source, ...]:
+        """The n sources of one quantity."""
+        sources: tuple[Source, ...] = getattr(self, quantity)
+        return sources
+
 
 @final
 @dataclass(frozen=True, eq=False)
 class JointLimits:
-    """Hardware limits of n joints; a limit that is not a limit is refused at construction.
+    """Limits of n joints; a limit that is not a limit is refused at construction.
 
     Prismatic joints have the same fields in m instead of rad.
 
@@ -22,6 +59,7 @@ class JointLimits:
         velocity: (n,), largest speed, rad/s.
         acceleration: (n,), largest acceleration, rad/s².
         jerk: (n,), largest jerk, rad/s³.
+        sources: how each of them is known.
 
     Raises:
         UserError: a limit is missing, not finite, not positive, or lower is not below upper.
@@ -32,24 +70,34 @@ class JointLimits:
     velocity: FloatArray
     acceleration: FloatArray
     jerk: FloatArray
+    sources: LimitSources = field(default_factory=LimitSources)
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            given = np.asarray(getattr(self, field.name))
+        for name in _FIGURES:
+            given = np.asarray(getattr(self, name))
             if given.dtype.kind not in "iuf":
-                raise UserError(f"The joint limits' {field.name} must be numbers.")
+                raise UserError(f"The joint limits' {name} must be numbers.")
             value = np.array(given, dtype=np.float64)
             if value.ndim != 1 or value.shape != np.shape(self.lower):
                 raise UserError(
-                    f"The joint limits' {field.name} has shape {value.shape}: give one figure for each joint,"
+                    f"The joint limits' {name} has shape {value.shape}: give one figure for each joint,"
                     " as many as for lower."
                 )
             for joint in np.flatnonzero(~np.isfinite(value)):
                 raise UserError(
-                    f"The limit {field.name} of joint {joint + 1} is {value[joint]}: give a finite one."
+                    f"The limit {name} of joint {joint + 1} is {value[joint]}: give a finite one."
                 )
             value.flags.writeable = False
-            object.__setattr__(self, field.name, value)
+            object.__setattr__(self, name, value)
+        unknown: tuple[Source, ...] = ("assumed",) * self.dof
+        sources = LimitSources(*(self.sources.of(quantity) or unknown for quantity in QUANTITIES))
+        for quantity in QUANTITIES:
+            if len(sources.of(quantity)) != self.dof:
+                raise UserError(
+                    f"The sources of the joint limits' {quantity} are {len(sources.of(quantity))}:"
+                    " give one for each joint."
+                )
+        object.__setattr__(self, "sources", sources)
         for joint in np.flatnonzero(self.lower >= self.upper):
             raise UserError(
                 f"Joint {joint + 1} may move from {self.lower[joint]:g} to {self.upper[joint]:g}:"
@@ -66,6 +114,17 @@ class JointLimits:
     def dof(self) -> int:
         """Number of joints n."""
         return len(self.lower)
+
+    @property
+    def assumed(self) -> dict[Quantity, tuple[int, ...]]:
+        """Indices of the joints whose limit nobody stated, by quantity, for quantities with any."""
+        found: dict[Quantity, tuple[int, ...]] = {
+            quantity: tuple(
+                joint for joint, source in enumerate(self.sources.of(quantity)) if source == "assumed"
+            )
+            for quantity in QUANTITIES
+        }
+        return {quantity: joints for quantity, joints in found.items() if joints}
 
     def violation(self, q: FloatArray) -> FloatArray:
         """How far positions lie outside the limits.

@@ -14,7 +14,7 @@ from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.reader import Reading, read
 from latentarm.robots.assemble import assemble
-from latentarm.robots.limits import JointLimits
+from latentarm.robots.limits import JointLimits, LimitSources, Source
 from latentarm.robots.robot import Robot
 from latentarm.robots.urdf import prepare_urdf
 from latentarm.types import FloatArray
@@ -49,7 +49,7 @@ class Defaults:
 HINGE = Defaults(range=2.0 * np.pi, velocity=1.0, acceleration=10.0, jerk=1000.0)
 SLIDE = Defaults(range=1.0, velocity=0.25, acceleration=2.5, jerk=250.0)
 TOOL_SPEED_LIMIT = 1.0
-"""Assumed hardware limit of the tool's speed, m/s."""
+"""Assumed largest speed of the tool, m/s."""
 
 
 def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
@@ -183,7 +183,15 @@ def _limits(model: mujoco.MjModel, reading: Reading, velocity: Mapping[str, floa
         velocity=np.array([velocity.get(name, d.velocity) for name, d in zip(names, assumed, strict=True)]),
         acceleration=np.array([defaults.acceleration for defaults in assumed]),
         jerk=np.array([defaults.jerk for defaults in assumed]),
+        sources=LimitSources(
+            position=tuple(_source(bool(known)) for known in limited),
+            velocity=tuple(_source(name in velocity) for name in names),
+        ),
     )
+
+
+def _source(known: bool) -> Source:
+    return "model" if known else "assumed"
 
 
 def _home(model: mujoco.MjModel, reading: Reading, limits: JointLimits) -> FloatArray:

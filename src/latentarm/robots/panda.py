@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 
 from latentarm.robots.assemble import assemble
-from latentarm.robots.limits import JointLimits
+from latentarm.robots.limits import JointLimits, LimitSources
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray
 
@@ -17,6 +17,7 @@ LIMITS = JointLimits(
     velocity=np.array([2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61]),
     acceleration=np.array([15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0]),
     jerk=np.array([7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0]),
+    sources=LimitSources.same("manufacturer", 7),
 )
 """Franka control-parameters documentation."""
 
@@ -137,7 +138,9 @@ def panda() -> Robot:
     spec.compile()
     spec.add_key(name="home", qpos=list(HOME))
     spec.compile()
-    return assemble("panda", spec.to_xml(), ["tool"], LIMITS, HOME, TOOL_SPEED_LIMIT)
+    return assemble(
+        "panda", spec.to_xml(), ["tool"], LIMITS, HOME, TOOL_SPEED_LIMIT, tool_speed_source="manufacturer"
+    )
 
 
 def _give_inertia(

@@ -5,7 +5,7 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.robots.assemble import assemble
-from latentarm.robots.limits import JointLimits
+from latentarm.robots.limits import JointLimits, LimitSources
 from latentarm.robots.robot import Robot
 
 REACH_M = 1.0
@@ -65,5 +65,8 @@ def planar(n_links: int = 5, arms: int = 1) -> Robot:
         velocity=np.full(n, 2.0),
         acceleration=np.full(n, 10.0),
         jerk=np.full(n, 1000.0),
+        # An imaginary arm: what is written here is what it can do.
+        sources=LimitSources.same("model", n),
     )
-    return assemble(spec.modelname, spec.to_xml(), [f"{side}tool" for side in sides], limits, home, 2.0)
+    tools = [f"{side}tool" for side in sides]
+    return assemble(spec.modelname, spec.to_xml(), tools, limits, home, 2.0, tool_speed_source="model")

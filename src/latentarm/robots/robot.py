@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, final
 
 from latentarm.kinematics.capsules import Capsules
 from latentarm.kinematics.chain import Chain
-from latentarm.robots.limits import JointLimits
+from latentarm.robots.limits import JointLimits, Source
 from latentarm.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -20,12 +20,13 @@ class Robot:
     Attributes:
         name: its name in the catalogue, or the path of its model.
         chain: its kinematics; the first tool is the end-effector.
-        limits: hardware limits of its joints.
+        limits: of its joints, and how each is known.
         home: (n,), a configuration to start from, rad.
         capsules: its shape, for distances online.
         self_pairs: (P, 2), index pairs of capsules that could collide with each other.
         mjcf: its model as MJCF text; mesh files in it have absolute paths.
-        tool_speed_limit: hardware limit of the tool's speed, m/s.
+        tool_speed_limit: largest speed of the tool, m/s.
+        tool_speed_source: how that is known.
         model_path: the file that the model was read from, or None for a built-in robot.
     """
 
@@ -37,6 +38,7 @@ class Robot:
     self_pairs: IntArray
     mjcf: str = field(repr=False)
     tool_speed_limit: float
+    tool_speed_source: Source = "assumed"
     model_path: str | None = None
 
     @property

@@ -31,7 +31,7 @@ def self_pairs(
     Args:
         chain: the robot's chain.
         capsules: its K capsules.
-        limits: hardware limits, within which configurations are sampled.
+        limits: joint limits, within which configurations are sampled.
         home: (n,), rad.
         excluded: (n + 1, n + 1), pairs of links that the model excludes; the base is the last.
 

@@ -14,7 +14,7 @@ from latentarm.types import Command, FloatArray
 class SimulatedArm(Arm):
     """Kinematic simulation of the paper's transition, ``s' = s + a dt``.
 
-    Time passes only in `advance`. A joint that reaches a hardware limit stays there, as at a hard stop.
+    Time passes only in `advance`. A joint that reaches a limit stays there, as at a hard stop.
 
     Args:
         robot: whose joints these are.
@@ -45,6 +45,11 @@ class SimulatedArm(Arm):
         self._state = start
         self._velocity = np.zeros(robot.dof)
         self._left_s = 0.0
+
+    @property
+    def simulated(self) -> bool:
+        """True."""
+        return True
 
     def state(self) -> FloatArray:
         """(n,), joint positions, rad."""

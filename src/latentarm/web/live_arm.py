@@ -29,6 +29,11 @@ class LiveArm(Arm):
         self._clock = clock
         self._at_s = clock.now_s()
 
+    @property
+    def simulated(self) -> bool:
+        """True."""
+        return True
+
     def state(self) -> FloatArray:
         """See the base class."""
         return self._now().state()

@@ -1,0 +1,41 @@
+"""What a person should be told of a robot before it moves."""
+
+from collections.abc import Sequence
+
+from latentarm.robots.robot import Robot
+
+
+def assumed_limits(robot: Robot) -> str:
+    """Which limits nobody stated, such as "acceleration and jerk of all joints"; "" where none."""
+    joints: dict[tuple[int, ...], list[str]] = {}
+    for quantity, indices in robot.limits.assumed.items():
+        joints.setdefault(indices, []).append(quantity)
+    parts = [f"{_listed(names)} of {_joints(robot, indices)}" for indices, names in joints.items()]
+    if robot.tool_speed_source == "assumed":
+        parts.append("largest speed of the tool")
+    return "; ".join(parts)
+
+
+def notices(robot: Robot) -> list[str]:
+    """Sentences for the person who is about to drive or record a robot; none where all is known."""
+    said: list[str] = []
+    assumed = assumed_limits(robot)
+    if assumed:
+        said.append(f"Assumed limits of {robot.name}: {assumed}. State the real ones with --limits FILE.")
+    if not len(robot.capsules):
+        said.append(
+            f"The model of {robot.name} has no shape: neither collisions with itself nor with obstacles are"
+            " watched for."
+        )
+    return said
+
+
+def _joints(robot: Robot, indices: Sequence[int]) -> str:
+    if len(indices) == robot.dof:
+        return "all joints"
+    names = [robot.joint_names[joint] for joint in indices]
+    return f"joint{'s' if len(names) > 1 else ''} {_listed(names)}"
+
+
+def _listed(words: Sequence[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
