@@ -21,6 +21,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from latentarm.control.clock import MonotonicClock
 from teleop_chromium import Browser, Tab, browser
 from teleop_journal import Halt, halts, spread
 from teleop_page import Site, served
@@ -135,7 +136,7 @@ def drives(run: Path, out: Path, fault: str, tries: int) -> list[float]:
 def one(scene: Scene, fault: str) -> float:
     """Drive, cause the fault, and wait for what comes of it; when it was caused, s."""
     hold_stick(scene.tab)
-    fault_s = time.monotonic()
+    fault_s = MonotonicClock().now_s()
     FAULTS[fault](scene)
     time.sleep(WATCHED_S)
     scene.proxy.mend()

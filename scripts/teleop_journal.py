@@ -1,6 +1,6 @@
 """Times from a fault to rest, out of the journal that the control process wrote on its own clock.
 
-On Linux all processes share one monotonic clock, so a script's ``time.monotonic()`` and these times compare.
+On Linux all processes share the clock that `MonotonicClock` reads, so a script's times and these compare.
 """
 
 from dataclasses import dataclass

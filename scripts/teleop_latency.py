@@ -2,7 +2,7 @@
 
 Three tables: from a page's input to the first state that shows motion; how many deadlines of the 100 Hz loop
 are met with 1 page and with 10; and from a fault to zero command and to rest, by the control process's own
-clock (the journal that it writes; Linux has one monotonic clock for all processes). For example:
+clock (the journal that it writes; Linux has one such clock for all processes). For example:
 
     python scripts/teleop_latency.py --inputs 500 --tries 20 --out teleop-latency.json
 """
@@ -26,6 +26,7 @@ import uvicorn
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
+from latentarm.control.clock import MonotonicClock
 from latentarm.web.addresses import TeleopConfig, listen
 from latentarm.web.server import build_app, gated, server_config
 from latentarm.web.setting import Spec, load_setting
@@ -126,7 +127,7 @@ def serve(spec: Spec, sender: Any) -> None:
     server = uvicorn.Server(server_config(app, config))
 
     def block() -> None:
-        sender.send(time.monotonic())
+        sender.send(MonotonicClock().now_s())
         time.sleep(0.3)
 
     async def run() -> None:
@@ -236,7 +237,7 @@ def one_fault(server: Server, fault: str) -> float:
     with suppress(ConnectionClosed), Page(server.port) as page:
         page.send(type="record", on=True, task=fault)
         page.set_going([1.0, 0.0])
-        fault_s = time.monotonic()
+        fault_s = MonotonicClock().now_s()
         match fault:
             case "inputs cease":
                 page.u = None

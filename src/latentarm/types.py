@@ -141,9 +141,11 @@ class Stop:
 
     Attributes:
         reason: one short sentence for the person.
+        untrusted: the readings of the joints cannot be true; a recording ends before them.
     """
 
     reason: str
+    untrusted: bool = False
 
 
 @dataclass(frozen=True)
@@ -169,7 +171,7 @@ class StepRecord:
 
     Attributes:
         time_s: the loop's monotonic clock.
-        state: (n,), ``s``, rad.
+        state: (n,), ``s``, rad; NaN where the arm's reading could not be used.
         input: (d,), ``u`` as it was used (zero where it was stale or refused).
         latent: (d,), ``z``.
         action_human: (m,), ``a_h``, rad/s.

@@ -1,5 +1,6 @@
 """Controllers, observers, interfaces and loops that behave badly: none gets the arm to move unsafely."""
 
+import itertools
 import math
 from types import SimpleNamespace
 
@@ -19,6 +20,9 @@ from latentarm.kinematics.obstacles import Sphere
 from latentarm.robots.simulated import SimulatedArm
 from latentarm.types import Input, Stop
 
+now_s = itertools.count(step=0.01).__next__
+"""The loop's clock, one period later each time."""
+
 DT = 0.01
 NEUTRAL, PUSH = Input(np.zeros(1)), Input(np.ones(1))
 
@@ -27,7 +31,7 @@ NEUTRAL, PUSH = Input(np.zeros(1)), Input(np.ones(1))
 def driven(arm, scripted):
     controller = scripted(np.full((1, 7), 0.3))
     step = Step(arm, controller, SafetyConfig(), dt_s=DT)
-    step(NEUTRAL, 0.0, arm.home, 0.0)
+    step(NEUTRAL, 0.0, arm.home, now_s())
     assert step.enable() is None
     return step, controller
 
@@ -41,8 +45,8 @@ def test_a_controller_cannot_move_what_the_filters_measure_from(driven, arm):
 
     controller.answer = lie
     q = arm.home
-    for tick in range(600):
-        q = q + step(PUSH, 0.0, q, tick * DT).command.velocity * DT
+    for _ in range(600):
+        q = q + step(PUSH, 0.0, q, now_s()).command.velocity * DT
     assert (q <= arm.limits.upper).all()
 
 
@@ -50,8 +54,8 @@ def test_a_controller_cannot_move_what_the_filters_measure_from(driven, arm):
 def test_whoever_sees_a_record_cannot_move_the_arm_with_it(driven, arm, name):
     step, _ = driven
     q = arm.home
-    for tick in range(100):
-        record = step(NEUTRAL, 0.0, q, tick * DT)
+    for _ in range(100):
+        record = step(NEUTRAL, 0.0, q, now_s())
         q = q + record.command.velocity * DT
         with pytest.raises(ValueError, match="read-only"):
             (record.command.velocity if name == "velocity" else getattr(record, name))[...] = 0.4
@@ -73,20 +77,20 @@ class WordlessError(Exception):
 )
 def test_inputs_that_cannot_even_be_read_stop_the_arm(driven, arm, given):
     step, _ = driven
-    assert step(PUSH, 0.0, arm.home, 0.0).command.stop is None
-    assert step(given, 0.0, arm.home, 0.0).command.stop is not None
+    assert step(PUSH, 0.0, arm.home, now_s()).command.stop is None
+    assert step(given, 0.0, arm.home, now_s()).command.stop is not None
 
 
 @pytest.mark.parametrize("age", [None, "0"])
 def test_an_age_that_is_none_stops_the_arm(driven, arm, age):
     step, _ = driven
-    assert step(PUSH, age, arm.home, 0.0).command.stop is not None
+    assert step(PUSH, age, arm.home, now_s()).command.stop is not None
 
 
 @pytest.mark.parametrize("state", [None, Raises(), [[1], [1, 2]]])
 def test_a_state_that_is_none_stops_the_arm(driven, state):
     step, _ = driven
-    assert step(PUSH, 0.0, state, 0.0).command.stop is not None
+    assert step(PUSH, 0.0, state, now_s()).command.stop is not None
 
 
 def test_an_error_without_words_stops_the_arm(driven, arm):
@@ -96,7 +100,7 @@ def test_an_error_without_words_stops_the_arm(driven, arm):
         raise WordlessError
 
     controller.answer = fail
-    assert "WordlessError" in step(PUSH, 0.0, arm.home, 0.0).command.stop.reason
+    assert "WordlessError" in step(PUSH, 0.0, arm.home, now_s()).command.stop.reason
 
 
 def test_a_stop_that_was_harder_than_ordinary_motion_can_be_taken_up_again(two_arms):
@@ -210,7 +214,7 @@ def test_an_arm_that_several_links_are_wedged_with_can_be_backed_out(arm, script
     assert depth < -0.05
     controller = scripted(np.zeros((1, 7)))
     step = Step(arm, controller, SafetyConfig(obstacles=measure.obstacles), dt_s=DT)
-    step(NEUTRAL, 0.0, arm.home, 0.0)
+    step(NEUTRAL, 0.0, arm.home, now_s())
     assert step.enable() is None
     # The way in which what is too near gets further away fastest, all of it at once.
     q, nudge = arm.home, 1e-6 * np.eye(7)
@@ -220,8 +224,8 @@ def test_an_arm_that_several_links_are_wedged_with_can_be_backed_out(arm, script
     most = np.hstack([-slopes, np.ones((len(slopes), 1))])
     out = linprog([0.0] * 7 + [-1.0], most, np.zeros(len(slopes)), bounds=[(-1, 1)] * 7 + [(None, None)])
     controller.matrix = out.x[None, :7]
-    for tick in range(200):
-        q = q + step(PUSH, 0.0, q, tick * DT).command.velocity * DT
+    for _ in range(200):
+        q = q + step(PUSH, 0.0, q, now_s()).command.velocity * DT
         assert measure.clearance(q) >= depth - 1e-8
     assert measure.clearance(q) > depth + 0.01
 

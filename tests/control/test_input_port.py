@@ -5,7 +5,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.control.clock import MonotonicClock, SimulatedClock
+from latentarm.control.clock import Clock, MonotonicClock, SimulatedClock
 from latentarm.control.input_port import InputPort
 from latentarm.types import Input
 
@@ -35,6 +35,27 @@ def test_the_latest_input_wins_and_ages():
     given, age = port.latest(clock.now_s())
     assert given.u[0] == 0.2
     assert abs(age - 0.03) < 1e-12
+
+
+def test_nothing_from_before_the_clock_went_back_counts():
+    class Back(Clock):
+        time_s = 50.0
+
+        def now_s(self):
+            return self.time_s
+
+        def wait_until(self, time_s):
+            self.time_s = time_s
+
+    clock = Back()
+    port = InputPort(2, clock)
+    old = port.issue_nonce()
+    assert port.offer(push(0.1), old, 1)
+    clock.time_s = 10.0
+    assert port.latest(10.0)[1] == math.inf
+    assert not port.offer(push(0.2), old, 2)
+    assert port.offer(push(0.3), port.issue_nonce(), 3)
+    assert port.latest(10.0)[1] == 0.0
 
 
 def test_sequence_numbers_must_grow():

@@ -1,11 +1,16 @@
 """Whoever lets go of the stick finds the arm at rest soon, without a jump, and may push again at once."""
 
+import itertools
+
 import numpy as np
 import pytest
 
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.types import Input
+
+now_s = itertools.count(step=0.01).__next__
+"""The loop's clock, one period later each time."""
 
 NEUTRAL = Input(np.zeros(2))
 MATRIX = np.stack([np.linspace(0.3, 0.5, 7), np.linspace(-0.1, 0.1, 7)])
@@ -19,7 +24,7 @@ def going(arm, scripted):
     def going(push, **limits):
         step = Step(arm, scripted(MATRIX), SafetyConfig(**limits))
         step.reset(arm.home)
-        step(NEUTRAL, 0.0, arm.home, 0.0)
+        step(NEUTRAL, 0.0, arm.home, now_s())
         assert step.enable() is None
         return step, commands(step, Input(np.array(push)), arm.home, 40)[1]
 
@@ -30,7 +35,7 @@ def commands(step, given, state, ticks):
     """Commands of so many ticks, (ticks, 7), rad/s, and where they have led."""
     sent = []
     for _ in range(ticks):
-        sent.append(step(given, 0.0, state, 0.0).command.velocity)
+        sent.append(step(given, 0.0, state, now_s()).command.velocity)
         state = state + sent[-1] * DT
     return np.array(sent), state
 

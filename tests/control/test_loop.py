@@ -1,4 +1,5 @@
 import math
+import sys
 import threading
 import time
 
@@ -186,6 +187,73 @@ def test_finish_from_another_thread_ends_a_real_loop(arm, scripted):
     thread.join(timeout=5.0)
     assert not thread.is_alive()
     assert loop.statistics().ticks >= 3
+
+
+@pytest.mark.parametrize("leap_s", [-3600.0, -0.2, 0.2, 3600.0])
+@pytest.mark.parametrize("when", ["waiting", "working"])
+def test_a_clock_that_leaps_stops_the_arm_and_the_loop_goes_on(setup, leap_s, when):
+    class Leaping(Clock):
+        def __init__(self, inner):
+            self.inner, self.leap_s, self.longest_s = inner, 0.0, 0.0
+
+        def now_s(self):
+            return self.inner.now_s() + self.leap_s
+
+        def wait_until(self, time_s):
+            self.longest_s = max(self.longest_s, time_s - self.now_s())
+            self.inner.wait_until(time_s - self.leap_s)
+            if when == "waiting" and abs(self.inner.now_s() - 0.6) < 1e-6:
+                self.leap_s = leap_s
+
+    loop, _simulated, records, _ = setup()
+    clock = loop._clock = Leaping(loop._clock)
+
+    def leap(record):
+        if when == "working" and len(records) == 60:
+            clock.leap_s = leap_s
+
+    loop._observers += (enabling(loop, 2), leap)
+    loop.run(ticks=120)
+    assert records[58].command.velocity.any()
+    for record in records[62:]:
+        assert not record.command.velocity.any()
+        assert record.command.stop is not None
+    # Nobody waits for the old time to come round again.
+    assert clock.longest_s < 0.02
+    assert len(records) >= 120
+
+
+def test_a_clock_that_stands_still_stops_the_arm(setup):
+    class Stopped(Clock):
+        def __init__(self, inner):
+            self.inner, self.waits = inner, 0
+
+        def now_s(self):
+            return min(self.inner.now_s(), 0.6)
+
+        def wait_until(self, time_s):
+            self.waits += 1
+            self.inner.wait_until(self.inner.now_s() + time_s - self.now_s())
+
+    loop, simulated, records, _ = setup()
+    clock = loop._clock = Stopped(loop._clock)
+    loop._observers += (enabling(loop, 2),)
+    loop.run(ticks=120)
+    assert records[58].command.velocity.any()
+    assert not any(record.command.velocity.any() for record in records[62:])
+    assert "clock" in records[-1].command.stop.reason
+    assert not simulated.velocity().any()
+    # A tick a period goes on, so that Stop, Enable and the end of the loop are still heard.
+    assert clock.inner.now_s() < 1.3
+
+
+def test_the_machine_s_clock_counts_sleep_where_it_can():
+    clock = MonotonicClock()
+    before_s = time.clock_gettime(time.CLOCK_BOOTTIME) if sys.platform == "linux" else time.monotonic()
+    now_s = clock.now_s()
+    assert 0.0 <= now_s - before_s < 1.0
+    clock.wait_until(now_s + 0.002)
+    assert clock.now_s() >= now_s + 0.002
 
 
 def test_statistics_are_about_the_last_window_and_count_all():

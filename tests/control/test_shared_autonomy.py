@@ -1,6 +1,7 @@
 """The robot's part of Algorithm 1: any belief, help at rest, and how far help constrains the arm."""
 
 import dataclasses
+import itertools
 import math
 
 import numpy as np
@@ -20,6 +21,9 @@ from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.types import Context, Goal, Input
+
+now_s = itertools.count(step=0.01).__next__
+"""The loop's clock, one period later each time."""
 
 NEUTRAL = Input(np.zeros(2))
 PUSH = Input(np.array([1.0, 0.0]))
@@ -48,7 +52,7 @@ def make(arm, scripted):
             arm, controller, SafetyConfig(), goals=goals, belief=belief, arbitration=arbitration, **changes
         )
         step.reset(arm.home)
-        step(NEUTRAL, 0.0, arm.home, 0.0)
+        step(NEUTRAL, 0.0, arm.home, now_s())
         assert step.enable() is None
         return step
 
@@ -58,7 +62,7 @@ def make(arm, scripted):
 def run(step, given, state, ticks, age=0.0):
     records = []
     for _ in range(ticks):
-        records.append(step(given, age, state, 0.0))
+        records.append(step(given, age, state, now_s()))
         state = state + records[-1].command.velocity * step.dt_s
     return records, state
 
@@ -202,9 +206,9 @@ class TestBound:
                 belief=belief,
                 arbitration=FixedAlpha(0.3),
             )
-            step(NEUTRAL, 0.0, arm.home, 0.0)
+            step(NEUTRAL, 0.0, arm.home, now_s())
             step.enable()
-            record = step(PUSH, 0.0, arm.home, 0.0)
+            record = step(PUSH, 0.0, arm.home, now_s())
             expected = radius(SIGMA_H, arm.home, prior, states, prior.argmax(), 0.3)
             assert record.bound_rad == pytest.approx(float(expected))
 
@@ -234,29 +238,29 @@ class TestBound:
         records, state = run(step, NEUTRAL, state, 30)
         assert all(math.isnan(record.bound_rad) for record in records)
         step.stop("enough")
-        assert math.isnan(step(PUSH, 0.0, state, 0.0).bound_rad)
+        assert math.isnan(step(PUSH, 0.0, state, now_s()).bound_rad)
         for arbitration in (None, FixedAlpha(0.0)):
             records, _ = run(make(arbitration), PUSH, arm.home, 20)
             assert all(math.isnan(record.bound_rad) for record in records)
         alone = Step(arm, scripted(MATRIX), SafetyConfig())
-        alone(NEUTRAL, 0.0, arm.home, 0.0)
+        alone(NEUTRAL, 0.0, arm.home, now_s())
         alone.enable()
-        assert math.isnan(alone(PUSH, 0.0, arm.home, 0.0).bound_rad)
+        assert math.isnan(alone(PUSH, 0.0, arm.home, now_s()).bound_rad)
 
     def test_help_that_begins_anew_has_a_bound_of_its_own(self, make, arm):
         step = make(FixedAlpha(0.4))
         run(step, PUSH, arm.home, 3)
         run(step, NEUTRAL, arm.home, 1)
-        (record,), _ = run(step, PUSH, arm.home + 0.1, 1)
-        expected = radius_by_hand(arm, arm.home + 0.1, record.belief, record.alpha)
+        (record,), _ = run(step, PUSH, arm.home + 0.02, 1)
+        expected = radius_by_hand(arm, arm.home + 0.02, record.belief, record.alpha)
         assert record.bound_rad == pytest.approx(expected)
 
     def test_help_without_a_belief_has_one_too(self, arm, scripted):
         goals = goals_of(arm, 0.3, -0.2)
         step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, arbitration=FixedAlpha(0.4))
-        step(NEUTRAL, 0.0, arm.home, 0.0)
+        step(NEUTRAL, 0.0, arm.home, now_s())
         step.enable()
-        record = step(PUSH, 0.0, arm.home, 0.0)
+        record = step(PUSH, 0.0, arm.home, now_s())
         assert record.bound_rad == pytest.approx(radius_by_hand(arm, arm.home, np.array([0.5, 0.5]), 0.4))
 
     def test_more_help_and_a_surer_belief_make_it_smaller(self, make, arm):
@@ -286,7 +290,7 @@ class TestBound:
         asked = np.random.default_rng(0).uniform(-1, 1, (100, 2))
         steps = [make(arbitration) for arbitration in (FixedAlpha(1e-9), None)]
         for u in asked:
-            records = [step(Input(u), 0.0, arm.home, 0.0) for step in steps]
+            records = [step(Input(u), 0.0, arm.home, now_s()) for step in steps]
             np.testing.assert_allclose(records[0].belief, records[1].belief, rtol=1e-12)
 
     def test_recorded_read_back_and_exported(self, make, arm, tmp_path):

@@ -9,6 +9,7 @@ import time
 import numpy as np
 import pytest
 
+from latentarm.control.clock import MonotonicClock
 from latentarm.control.journal import read_journal
 from latentarm.web.setting import Spec
 
@@ -63,7 +64,7 @@ def test_a_page_that_falls_silent(recorded):
     with site.page() as page:
         set_going(page)
         page.u = None
-        fault_s = time.monotonic()
+        fault_s = MonotonicClock().now_s()
         time.sleep(0.8)
         assert page.state["phase"] == "disengaged"
     zero_s, rest_s = times(fault_s)
@@ -78,7 +79,7 @@ def test_a_blocked_event_loop(recorded):
         began = []
 
         def block():
-            began.append(time.monotonic())
+            began.append(MonotonicClock().now_s())
             time.sleep(0.3)
 
         site.loop.call_soon_threadsafe(block)
@@ -138,7 +139,7 @@ def test_a_killed_server(trained, tmp_path):
         pid = int(server.stdout.readline())
         assert server.stdout.readline() == "moving\n"
         server.send_signal(signal.SIGKILL)
-        fault_s = time.monotonic()
+        fault_s = MonotonicClock().now_s()
     for _ in range(300):
         if gone(pid):
             break

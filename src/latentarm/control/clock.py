@@ -1,5 +1,6 @@
 """Time for the loop: real, or simulated."""
 
+import sys
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
@@ -20,17 +21,27 @@ class Clock(ABC):
 
 @final
 class MonotonicClock(Clock):
-    """The machine's own monotonic clock."""
+    """The machine's own monotonic clock; all processes of a machine share it.
+
+    It goes on while the computer sleeps, where the system has such a clock (Linux): a loop that wakes up
+    must see that its last command has long run out.
+    """
 
     def now_s(self) -> float:
         """See the base class."""
-        return time.monotonic()
+        return _monotonic_s()
 
     def wait_until(self, time_s: float) -> None:
         """See the base class."""
-        left = time_s - time.monotonic()
+        left = time_s - _monotonic_s()
         if left > 0.0:
             time.sleep(left)
+
+
+def _monotonic_s() -> float:
+    if sys.platform == "linux":
+        return time.clock_gettime(time.CLOCK_BOOTTIME)
+    return time.monotonic()
 
 
 @final

@@ -27,6 +27,11 @@ class Engagement:
         if self._stopped is None:
             self._stopped = stop
 
+    def replace(self, stop: Stop) -> None:
+        """Disengage for a reason that people must hear of, whatever the arm was stopped for before."""
+        self._neutral = False
+        self._stopped = stop
+
     def saw(self, neutral: bool) -> None:
         """Take note of a fresh, valid input: was it neutral?"""
         self._neutral = neutral

@@ -84,7 +84,10 @@ class InputPort(InputSource):
         with self._lock:
             now_s = self._clock.now_s()
             issued_s = self._issued.get(nonce)
-            if issued_s is None or now_s - issued_s > NONCE_LIFE_S or sequence <= self._sequence:
+            if issued_s is None or sequence <= self._sequence:
+                return False
+            # A nonce of the future is one from before the clock went back.
+            if not 0.0 <= now_s - issued_s <= NONCE_LIFE_S:
                 return False
             self._sequence = sequence
             self._u = u
@@ -94,12 +97,15 @@ class InputPort(InputSource):
             return True
 
     def latest(self, now_s: float) -> tuple[Input, float]:
-        """See the base class. An input whose nonce has grown too old in the meantime is infinitely old."""
+        """See the base class. An input whose nonce has grown too old in the meantime is infinitely old.
+
+        So is one that arrived later than it is now: the clock has gone back.
+        """
         with self._lock:
             switch = self._switch or self._pressed
             self._pressed = False
             age_s = now_s - self._received_s
-            if now_s - self._issued_s > NONCE_LIFE_S:
+            if now_s - self._issued_s > NONCE_LIFE_S or self._received_s > self._clock.now_s():
                 age_s = math.inf
             return Input(self._u, switch), max(age_s, 0.0)
 

@@ -136,11 +136,27 @@ class ControlLoop:
             return Stop("The arm was stopped at the same moment: enable it again.")
         return self._step.enable()
 
+    def _await_tick(self) -> tuple[float, float]:
+        """Wait for the next tick.
+
+        Returns:
+            When it was due, and the time now, s.
+        """
+        due_s = self._start_s + self._next * self._period_s
+        # The next tick is never more than a period away, unless the clock has gone back.
+        if due_s - self._clock.now_s() < 1.5 * self._period_s:
+            self._clock.wait_until(due_s)
+            now_s = self._clock.now_s()
+            if due_s - now_s < 0.5 * self._period_s:
+                return due_s, now_s
+        # `Step` stops the arm for it. To keep to the old times would mean to wait for ever.
+        now_s = self._clock.now_s()
+        self._start_s, self._next = now_s, 0
+        return now_s, now_s
+
     def _tick(self, observers: Sequence[Callable[[StepRecord], None]]) -> None:
         """Wait for the next tick, and do it."""
-        due_s = self._start_s + self._next * self._period_s
-        self._clock.wait_until(due_s)
-        now_s = self._clock.now_s()
+        due_s, now_s = self._await_tick()
         overrun = self._ran_out(now_s)
         stopped = False
         while not self._stop_reasons.empty():
@@ -156,13 +172,16 @@ class ControlLoop:
             ready_s = self._clock.now_s()
         # Counted from before it is sent: the arm's own count begins no earlier.
         self._sent_s = ready_s
+        self._step.sent(ready_s)
         self._arm.send(record.command)
         self._log.add(now_s - due_s, self._clock.now_s() - due_s, overrun=overrun)
         if self._enable_asked.is_set():
             self._enable_asked.clear()
             self._refusal = self._enabled(stopped)
+        # Before observers: one that fails must not make this tick come twice.
+        self._next += 1
         for observe in observers:
             observe(record)
         # The next tick whose due time lies ahead.
         elapsed_s = self._clock.now_s() - self._start_s
-        self._next = max(self._next + 1, math.ceil(elapsed_s / self._period_s - 1e-9))
+        self._next = max(self._next, math.ceil(elapsed_s / self._period_s - 1e-9))

@@ -12,7 +12,9 @@ from latentarm.control.controller import Controller
 from latentarm.control.engagement import Engagement
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.freshness import Freshness
+from latentarm.control.safety.plausibility import Plausibility
 from latentarm.control.safety.stack import Passed, SafetyStack
+from latentarm.control.safety.timekeeping import Timekeeping
 from latentarm.control.shared_autonomy import SharedAutonomy
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
@@ -23,6 +25,9 @@ _ABSURD = 2.0
 
 _ASTRAY = 2.0 * math.pi
 """Joints this far past their limits, rad, were never there: the reading is wrong."""
+
+STEADY_S = 1.0
+"""After a jump of the readings they must be steady for so long before the arm can be enabled, s."""
 
 _FALTERING = (Freshness().name,)
 """What limits an arm whose inputs are missing for a moment."""
@@ -37,8 +42,8 @@ class Step:
     passes the `SafetyStack`; nothing else can move the arm.
 
     The arm starts disengaged. After a neutral input, `enable` engages it. Whatever stops it (the
-    operator, an input that is too old, a number that is not one, a controller that fails) disengages it
-    again: a ramped stop, then neutral, then `enable`::
+    operator, an input that is too old, a number that is not one, a reading of the joints that cannot be
+    true, a controller that fails) disengages it again: a ramped stop, then neutral, then `enable`::
 
         step.reset(arm.state())
         step(neutral, 0.0, arm.state(), now)
@@ -48,6 +53,13 @@ class Step:
     from an arbitration that acts at rest. An enabled arm then moves by itself while inputs are fresh.
     No input of any kind and no failing controller raises an exception here. Controllers and observers see
     arrays that they cannot write to: what they are shown is what the safety filters go by.
+
+    Controllers see the joints as they were measured, and so does the record: NaN where a reading could not be
+    used. The safety filters see the same, except that a joint whose reading repeats counts as moved as
+    commanded since (see `Plausibility.estimate`).
+
+    A clock that stands still, goes back, or jumps farther than a command lasts stops the arm without a ramp:
+    it is not known for how long the last command was really in force.
 
     Args:
         robot: the arm.
@@ -80,7 +92,11 @@ class Step:
         self._controller = controller
         self._stack = SafetyStack(safety, robot, dt_s)
         self._config = safety
+        self._plausibility = Plausibility(self._stack.bounds, robot)
         self._hold_s = self._stack.bounds.hold_s
+        self._timekeeping = Timekeeping(self._hold_s)
+        self._time_s = self._steady_s = -math.inf
+        self._unreadable = _sealed(np.full(robot.dof, math.nan))
         self._no_motion = _sealed(np.zeros(robot.dof))
         self._no_input = _sealed(np.zeros(controller.input_dim))
         self._engagement = Engagement()
@@ -139,18 +155,31 @@ class Step:
         if self._joint_positions(state) is None:
             raise UserError(f"A state of this arm is {self._dof} joint positions near their limits.")
         self._stack.reset()
+        self._plausibility.reset()
+        self._timekeeping.reset()
+        self._time_s = self._steady_s = -math.inf
         self._engagement = Engagement()
         self._mode = 0
         self._switch_held = False
         self._shared.reset()
 
     def enable(self) -> Stop | None:
-        """Let the arm move, if the newest input was neutral.
+        """Let the arm move, if the newest input was neutral and the readings are steady.
 
         Returns:
             None where the arm may move now, else why it may not.
         """
+        if self._time_s < self._steady_s:
+            return Stop("The joint readings jumped a moment ago: check the arm, then enable it.")
         return self._engagement.enable()
+
+    def sent(self, time_s: float) -> None:
+        """The last command left at this time, which is later than its tick began.
+
+        Args:
+            time_s: the loop's clock, s.
+        """
+        self._timekeeping.sent(time_s)
 
     def choose_mode(self, mode: int) -> None:
         """Go on in another mode from the next step on; the motion under way is ramped over to it.
@@ -194,11 +223,18 @@ class Step:
         Returns:
             What was read and decided; its command is what the arm must be sent.
         """
+        if (lost := self._timekeeping.refusal(time_s)) is not None:
+            self._plausibility.reset()
+            self.halted(lost)
+        self._time_s = time_s
         self._stack.tick(time_s)
         q = self._joint_positions(state)
         if q is None:
-            self.stop("The arm's joint positions are not numbers near its limits.")
-            return self._record(time_s, self._no_motion, Passed(self._stack.stop()))
+            stop = Stop("The arm's joint positions are not numbers near its limits.", untrusted=True)
+            self._engagement.stop(stop)
+            return self._record(time_s, self._unreadable, Passed(self._stack.stop()))
+        if self._doubts(q, time_s):
+            return self._record(time_s, q, Passed(self._stack.stop()))
         if self._falters(input_age_s):
             return self._record(time_s, q, Passed(self._stack.stop(), _FALTERING))
         u = self._usable(given, input_age_s)
@@ -213,6 +249,19 @@ class Step:
         if neutral and not self._shared.acts_at_rest:
             return self._record(time_s, q, self._passed(self._no_motion, q, input_age_s))
         return self._driven(u, input_age_s, q, time_s)
+
+    def _doubts(self, q: FloatArray, time_s: float) -> bool:
+        """Whether a reading cannot be true; the arm is disengaged for it."""
+        jumped = self._plausibility.jump(q, time_s)
+        driven = jumped is None and self._engagement.stopped is None
+        astray = self._plausibility.follow(q, self._stack.velocity, time_s, driven=driven)
+        if jumped is not None:
+            # Said also where the arm is disengaged already: nobody must enable it unawares.
+            self._steady_s = time_s + STEADY_S
+            self._engagement.replace(Stop(jumped, untrusted=True))
+        elif astray is not None:
+            self._engagement.stop(Stop(astray, untrusted=True))
+        return jumped is not None or astray is not None
 
     def _falters(self, age_s: float) -> bool:
         """Whether fresh inputs are missing, but not yet for so long that the arm is disengaged."""
@@ -248,7 +297,7 @@ class Step:
 
     def _passed(self, wanted: FloatArray, q: FloatArray, input_age_s: float) -> Passed:
         """Through the safety stack; a refusal disengages."""
-        passed = self._stack.command(wanted, q, input_age_s)
+        passed = self._stack.command(wanted, self._plausibility.estimate(q), input_age_s)
         if passed.stop is not None:
             self._engagement.stop(passed.stop)
         return passed

@@ -152,7 +152,7 @@ class Report(_Message):
         run: path of the run that is driven, as it was named; None without one.
         profile: whose alignment.
         loading: whether something else to drive is being loaded; nothing more is said until it is there.
-        q: (n,), joint positions, rad.
+        q: (n,), joint positions as they were last read, rad.
         speed: the fastest joint's, rad/s.
         tool: the tool's position, m.
         ghosts: what each direction would do now.

@@ -90,6 +90,7 @@ class Cockpit(InputSource):
         self._mode: ModeName = setting.modes[0]
         self._axes = 0
         self._tick = 0
+        self._seen = setting.start
         self._late_share = self._late_p99_ms = 0.0
         self._ending_episode = False
         self._note = ""
@@ -115,6 +116,7 @@ class Cockpit(InputSource):
         if setting.spec.run != self._setting.spec.run:
             self._mode, self._axes = setting.modes[0], 0
             self._port = InputPort(setting.controller.input_dim, self._clock)
+        self._seen = setting.start
         if setting is not self._setting:
             self._setting, self._ghosts = setting, GhostPaths(setting)
         self._change = None
@@ -137,6 +139,8 @@ class Cockpit(InputSource):
     def observe(self, record: StepRecord) -> None:
         """Called by the loop after every command."""
         self._tick += 1
+        if not math.isnan(record.state[0]):
+            self._seen = record.state
         self._writer.add(record)
         if self._ending_episode and self._step.at_rest:
             self._ending_episode = False
@@ -266,7 +270,7 @@ class Cockpit(InputSource):
         """What can wait: ghosts, one direction a tick, and the loop's own figures."""
         phase = self._tick % _LOOK_EVERY
         if phase < 4:
-            self._ghosts.look(phase, Context(record.state, record.belief), record.mode)
+            self._ghosts.look(phase, Context(self._seen, record.belief), record.mode)
         elif self._tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
             statistics = self._loop.statistics()
             self._late_share = 1.0 - statistics.met_share
@@ -287,7 +291,7 @@ class Cockpit(InputSource):
 
     def _report(self, record: StepRecord) -> Report:
         phase = self._phase()
-        tool = self._setting.task.robot.chain.forward(record.state).position.tolist()
+        tool = self._setting.task.robot.chain.forward(self._seen).position.tolist()
         return Report(
             nonce=self._port.issue_nonce(),
             tick=self._tick,
@@ -300,7 +304,7 @@ class Cockpit(InputSource):
             run=None if self._setting.spec.run is None else str(self._setting.spec.run),
             profile=self._setting.spec.profile,
             loading=self._change is not None,
-            q=tuple(record.state.tolist()),
+            q=tuple(self._seen.tolist()),
             speed=float(np.abs(self._arm.velocity()).max()),
             tool=(tool[0], tool[1], tool[2]),
             ghosts=self._ghosts.newest,

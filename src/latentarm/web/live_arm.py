@@ -55,5 +55,5 @@ class LiveArm(Arm):
         now_s = self._clock.now_s()
         if now_s > self._at_s:
             self._arm.advance(now_s - self._at_s)
-            self._at_s = now_s
+        self._at_s = now_s
         return self._arm

@@ -13,6 +13,9 @@ from latentarm.robots.robot import Robot
 STOPPED_WITHIN_S = 0.15
 """From the last fresh input to a command of zero."""
 
+LATE_PERIODS = 5
+"""Readings may be so many periods of the loop late."""
+
 BUFFER_M = 1e-3
 """Shaping aims this far short of every distance, so that the check behind it rarely has to act."""
 
@@ -46,6 +49,7 @@ class Bounds:
         stop_acceleration: (n,), for stops, rad/s².
         stop_jerk: (n,), for stops, rad/s³.
         hold_s: how long one command lasts, s.
+        lag_s: how far readings may lag behind commands, s.
         stop_s: the longest stop, s.
         reach_s: an upper bound of the distance that a command and its brake cover, over its speed, s.
         damping_per_s: approach speed per distance left; ordinary motion can always slow down this fast.
@@ -100,6 +104,12 @@ class Bounds:
         self.stop_acceleration = config.stop_fraction * hardware.acceleration
         self.stop_jerk = config.stop_fraction * hardware.jerk
         self.hold_s = config.command_periods * dt_s
+        self.lag_s = config.following_lag_s + LATE_PERIODS * dt_s
+        if config.following_window_s < 2.0 * self.lag_s:
+            raise UserError(
+                f"The safety limit following_window_s is {config.following_window_s:g} s: it must be at least"
+                f" {2.0 * self.lag_s:g} s, twice following_lag_s and {LATE_PERIODS} periods of the loop."
+            )
         self.stop_s = self._longest_stop_s()
         needed = config.input_timeout_s + dt_s + self.stop_s
         if needed > STOPPED_WITHIN_S:

@@ -67,6 +67,16 @@ class SafetyConfig:
         dead_zone: inputs no longer than this are zero, in [0, 0.5].
         command_periods: for how many periods of the loop one command lasts; past that the arm stops
             by itself. At least 1.5, so that an ordinary delay does not stop it.
+        jump_margin: a reading that lies farther from the one before it than the joint can move in the time
+            between them, by more than this, stops the arm, rad (m where a joint slides, here and below).
+        freeze_margin: a reading that repeats exactly while its joint was commanded to move farther than this
+            stops the arm, rad.
+        following_error: how far a joint's displacement may differ from the commanded one within the last
+            following_window_s, beyond what lag explains, rad.
+        following_lag_s: the arm's own lag behind its commands, s. Readings may be five periods of the loop
+            late on top of it. Longer makes faults be noticed later by as much.
+        following_window_s: over what time displacements are compared, s. Longer notices slower joints
+            that do not follow, but takes drift that adds up over it for an error.
         workspace: where the arm may be, or None for anywhere.
         obstacles: what the arm must keep clear of.
 
@@ -86,6 +96,11 @@ class SafetyConfig:
     input_grace_s: float = 0.0
     dead_zone: float = 0.02
     command_periods: float = 2.5
+    jump_margin: float = 0.03
+    freeze_margin: float = 0.01
+    following_error: float = 0.05
+    following_lag_s: float = 0.05
+    following_window_s: float = 1.0
     workspace: Workspace | None = None
     obstacles: tuple[Obstacle, ...] = ()
 
@@ -116,6 +131,11 @@ _RANGES: dict[str, tuple[float, float, str]] = {
     "input_grace_s": (0.0, 0.15, "s"),
     "dead_zone": (0.0, 0.5, "of full input"),
     "command_periods": (1.5, 10.0, "periods"),
+    "jump_margin": (0.0, 0.5, "rad"),
+    "freeze_margin": (0.0, 0.5, "rad"),
+    "following_error": (0.0, 0.5, "rad"),
+    "following_lag_s": (0.0, 0.5, "s"),
+    "following_window_s": (0.0, 10.0, "s"),
 }
 _MAY_TOUCH = ("input_grace_s", "dead_zone", "command_periods")
 

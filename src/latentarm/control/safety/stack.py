@@ -87,6 +87,11 @@ class SafetyStack:
         """Whether the last command was to stand still."""
         return not (some(self._velocity) or some(self._acceleration))
 
+    @property
+    def velocity(self) -> FloatArray:
+        """(n,), the last command, rad/s."""
+        return self._velocity
+
     def reset(self) -> None:
         """Begin anew from an arm that stands still."""
         self._velocity = self._acceleration = self._rest

@@ -1,0 +1,46 @@
+"""Whether the loop's clock can be trusted."""
+
+from typing import final
+
+
+@final
+class Timekeeping:
+    """Notices a clock that stands still, goes back, or jumps farther than one command lasts.
+
+    How much time has really passed is not known after any of these, so nobody knows either whether the arm
+    still moves or has stopped by itself. A command that goes on from the last one could then be a step.
+
+    Args:
+        hold_s: how long one command lasts, s.
+    """
+
+    def __init__(self, hold_s: float) -> None:
+        # Rounding must not make a tick late that comes exactly as the command ends.
+        self._hold_s = hold_s + 1e-9
+        self._tick_s: float | None = None
+        self._sent_s = 0.0
+
+    def reset(self) -> None:
+        """Begin anew: any time may come next."""
+        self._tick_s = None
+
+    def sent(self, time_s: float) -> None:
+        """The command left at this time, s; until told otherwise, at the tick's own time."""
+        self._sent_s = time_s
+
+    def refusal(self, time_s: float) -> str | None:
+        """Why no command may follow at this time, or None.
+
+        Args:
+            time_s: the loop's clock at this tick, s.
+        """
+        before_s, sent_s = self._tick_s, self._sent_s
+        self._tick_s = self._sent_s = time_s
+        if before_s is None:
+            return None
+        # Written so that a time that is not a number fails too.
+        if not time_s > before_s:
+            return "The computer's clock stood still or went back: the arm was stopped."
+        if not time_s - sent_s <= self._hold_s:
+            return "The computer's clock jumped, or the computer slept: the arm has stopped by itself."
+        return None
