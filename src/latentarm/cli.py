@@ -19,6 +19,7 @@ from latentarm.commands.compare import compare
 from latentarm.commands.demo import demo
 from latentarm.commands.drive import drive
 from latentarm.commands.evaluate import evaluate
+from latentarm.commands.export import export
 from latentarm.commands.import_demonstrations import import_demonstrations
 from latentarm.commands.inspect import inspect
 from latentarm.commands.reproduce_alignment import alignment
@@ -33,7 +34,7 @@ from latentarm.untrusted.terminal import one_line
 app = SubcommandApp()
 app.command(demo)
 app.command(name="import")(import_demonstrations)
-for command in (inspect, train, evaluate, compare, align, drive, teleop):
+for command in (inspect, train, evaluate, compare, align, drive, teleop, export):
     app.command(command)
 studies = app.command(
     SubcommandApp(), name="reproduce", help="Reproduce a study of the paper; `reproduce --help` lists them."

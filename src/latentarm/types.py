@@ -46,6 +46,33 @@ class Goal:
 
 
 @dataclass(frozen=True)
+class Provenance:
+    """Who and what recorded an episode; "" where that is unknown.
+
+    Attributes:
+        person: who drove.
+        run: name of the trained run that they drove with.
+        run_fingerprint: of its model's file.
+        profile: the person whose alignment was used.
+        device: kind of input device, such as ``keyboard``; ``simulated`` for a simulated person.
+        controller: what turned inputs into motion when the episode began.
+        version: of this package.
+        started_utc: when the episode began, ISO 8601 in UTC.
+        complete: whether the recording was ended, rather than cut short.
+    """
+
+    person: str = ""
+    run: str = ""
+    run_fingerprint: str = ""
+    profile: str = ""
+    device: str = ""
+    controller: str = ""
+    version: str = ""
+    started_utc: str = ""
+    complete: bool = True
+
+
+@dataclass(frozen=True)
 class Episode:
     """One demonstration, sampled at increasing times.
 
@@ -55,6 +82,7 @@ class Episode:
         action: (T, m), joint velocities, rad/s, or None where none were recorded.
         task: what was done, in words.
         extras: further features of the dataset by name (``belief``, ``input.u``, ...), each (T, k).
+        provenance: who and what recorded it, or None where nothing is known of that.
     """
 
     state: FloatArray
@@ -62,6 +90,7 @@ class Episode:
     action: FloatArray | None = None
     task: str = ""
     extras: Mapping[str, FloatArray] = field(default_factory=dict)
+    provenance: Provenance | None = None
 
 
 @dataclass(frozen=True)
@@ -74,6 +103,8 @@ class Demonstrations:
         joint_names: n names.
         robot: name or model path of the robot, or "" where unknown.
         goals: the discrete goals ``G``, empty where none are known.
+        import_record: what importing decided about units, joints and so on, by subject, in words; empty for
+            demonstrations that were never imported.
     """
 
     episodes: tuple[Episode, ...]
@@ -81,6 +112,7 @@ class Demonstrations:
     joint_names: tuple[str, ...]
     robot: str = ""
     goals: tuple[Goal, ...] = ()
+    import_record: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def dof(self) -> int:

@@ -107,7 +107,7 @@ def test_the_table_of_contents_says_what_can_be_read_one_by_one(tmp_path):
     write(path, [5, 1, 3], end_last=False)
     entries = list_journal(path)
     assert [entry.complete for entry in entries] == [True, True, False]
-    assert {entry.task for entry in entries} == {header().task}
+    assert {entry.header.task for entry in entries} == {header().task}
     for entry, episode in zip(entries, read_journal(path), strict=True):
         assert entry.duration_s == episode.records[-1].time_s - episode.records[0].time_s
         (alone,) = read_journal(path, only=[entry.number])

@@ -86,7 +86,7 @@ class Desk:
     def give(self, *u: float, nonce: str | None = None, latched: bool = False, driver: int = 1) -> None:
         self.sequence += 1
         known = nonce or (self.reports[-1].nonce if self.reports else "")
-        given = Given(driver=driver, seq=self.sequence, nonce=known, u=u, latched=latched)
+        given = Given(driver=driver, seq=self.sequence, nonce=known, u=u, latched=latched, source="keyboard")
         self.channel.given.write(given.model_dump_json().encode())
 
     def order(self, order: Order) -> None:

@@ -240,7 +240,7 @@ def test_an_episode_is_in_the_journal(desk, tmp_path):
         enabled_at(desk, now_s)
         desk.give(1.0 if 0.5 <= now_s < 1.4 else 0.0, 0.0)
         if abs(now_s - 0.3) < 0.005:
-            desk.order(Record(on=True, task="stab the carrot"))
+            desk.order(Record(on=True, task="stab the carrot", person="Ada"))
         if abs(now_s - 1.3) < 0.005:
             desk.order(Record(on=False, task=""))
 
@@ -251,6 +251,8 @@ def test_an_episode_is_in_the_journal(desk, tmp_path):
     (episode,) = read_journal(path)
     assert episode.complete
     assert episode.header.task == "stab the carrot"
+    by = episode.header.provenance
+    assert (by.person, by.device, by.controller) == ("Ada", "keyboard", "latent")
     assert not episode.records[-1].command.velocity.any()
     assert len(episode.records) == desk.reports[-1].recording.samples == pytest.approx(115, abs=10)
     assert desk.writer.status.episodes == 1

@@ -1,6 +1,7 @@
 """`latentarm teleop`: the web page."""
 
 import json as json_format
+import shlex
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -33,6 +34,7 @@ def teleop(
 
     Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
     """
+    from latentarm.control.recordings import JOURNAL_SUFFIX
     from latentarm.web.addresses import TeleopConfig
     from latentarm.web.server import serve
     from latentarm.web.setting import Spec
@@ -46,5 +48,8 @@ def teleop(
             print(json_format.dumps({"address": address}), flush=True)
 
     config = TeleopConfig(Spec(run, profile, seed, out), host, port, certfile, keyfile)
+    before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     serve(config, announce, ready)
+    for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):
+        announce(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
     return 0

@@ -1,6 +1,7 @@
 """From a journal to the native dataset."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,23 +17,30 @@ _SHORTEST = 2
 """An episode with fewer samples has no motion in it."""
 
 
-def demonstrations_of(episodes: Sequence[JournalEpisode], *, source: str) -> Demonstrations:
+def demonstrations_of(
+    episodes: Sequence[JournalEpisode], *, source: str, incomplete: bool = False
+) -> Demonstrations:
     """Recorded episodes as a dataset, with everything that a step decided as further features.
 
     The command is the action. Further features: ``input.u``, ``latent.z``, ``action.human``,
     ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief``, ``assist.bound``
     (rad; -1 where nothing helps) and ``observation.environment_state`` (position and rotation matrix of
     every goal, row by row).
-    Time starts at each episode's first sample. What was cut short stays in the journal.
+    Time starts at each episode's first sample. What was cut short stays in the journal, unless asked for.
 
     Args:
         episodes: what `read_journal` returned.
         source: what errors name, such as the journal's path.
+        incomplete: take episodes that were cut short too.
 
     Raises:
         UserError: no episode is complete and long enough, or the episodes are of different robots or goals.
     """
-    kept = [episode for episode in episodes if episode.complete and len(episode.records) >= _SHORTEST]
+    kept = [
+        episode
+        for episode in episodes
+        if (incomplete or episode.complete) and len(episode.records) >= _SHORTEST
+    ]
     if not kept:
         raise UserError(f"{source} holds no complete episode: end an episode while recording it.")
     first = kept[0].header
@@ -40,7 +48,9 @@ def demonstrations_of(episodes: Sequence[JournalEpisode], *, source: str) -> Dem
     for episode in kept:
         header = episode.header
         if header.joint_names != first.joint_names or [goal.name for goal in header.goals] != names:
-            raise UserError(f"{source} holds episodes of different robots or goals: record them apart.")
+            raise UserError(
+                f"{source} holds episodes of different robots or goals: export them apart, with --episodes."
+            )
     return Demonstrations(
         episodes=tuple(_episode(episode) for episode in kept),
         rate_hz=first.rate_hz,
@@ -95,4 +105,5 @@ def _episode(recorded: JournalEpisode) -> Episode:
         action=np.stack([record.command.velocity for record in records]),
         task=recorded.header.task,
         extras=extras,
+        provenance=replace(recorded.header.provenance, complete=recorded.complete),
     )

@@ -12,6 +12,7 @@ from typing import Any, final
 import numpy as np
 
 from latentarm.control.recorder import EpisodeHeader, check_is_journal
+from latentarm.demonstrations.provenance import parse_provenance
 from latentarm.errors import UserError
 from latentarm.types import Command, Goal, Pose, StepRecord, Stop
 
@@ -43,13 +44,15 @@ class JournalEntry:
 
     Attributes:
         number: its own, for `read_journal`.
-        task: what was done, in words.
+        header: what its samples share.
+        samples: how many it has.
         duration_s: from its first sample to its last, s.
         complete: whether the recording was ended, rather than cut short.
     """
 
     number: int
-    task: str
+    header: EpisodeHeader
+    samples: int
     duration_s: float
     complete: bool
 
@@ -85,15 +88,19 @@ def list_journal(path: Path) -> list[JournalEntry]:
         UserError: there is no such file, it is damaged, or it is no journal.
     """
     with _opened(path) as database:
-        rows = database.execute("SELECT id, about, complete FROM episodes ORDER BY id").fetchall()
+        rows = database.execute(
+            "SELECT id, about, complete, (SELECT count(*) FROM samples WHERE episode = id)"
+            " FROM episodes ORDER BY id"
+        ).fetchall()
         return [
             JournalEntry(
                 number=number,
-                task=_checked_header(path, number, about).task,
+                header=_checked_header(path, number, about),
+                samples=samples,
                 duration_s=_duration_s(database, path, number),
                 complete=bool(complete),
             )
-            for number, about, complete in rows
+            for number, about, complete, samples in rows
         ]
 
 
@@ -167,6 +174,8 @@ def _header(about: dict[str, Any]) -> EpisodeHeader:
         task=str(about["task"]),
         modes=tuple(str(mode) for mode in about["modes"]),
         goals=tuple(_goal(goal) for goal in about["goals"]),
+        # Journals from before this was recorded have none.
+        provenance=parse_provenance(about.get("provenance", {})),
     )
 
 

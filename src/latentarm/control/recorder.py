@@ -4,14 +4,15 @@ import json
 import sqlite3
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import final
 
 import numpy as np
 
+from latentarm.demonstrations.provenance import provenance_json
 from latentarm.errors import UserError
-from latentarm.types import FloatArray, Goal, StepRecord
+from latentarm.types import FloatArray, Goal, Provenance, StepRecord
 
 SCHEMA_VERSION = 1
 
@@ -49,6 +50,7 @@ class EpisodeHeader:
         task: what was done, in words.
         goals: the discrete goals ``G``.
         modes: names of the controller's modes.
+        provenance: who and what records it.
     """
 
     robot: str
@@ -57,6 +59,7 @@ class EpisodeHeader:
     task: str = ""
     goals: tuple[Goal, ...] = ()
     modes: tuple[str, ...] = ("",)
+    provenance: Provenance = field(default_factory=Provenance)
 
 
 @final
@@ -130,6 +133,7 @@ class Recorder:
                 }
                 for goal in header.goals
             ],
+            "provenance": provenance_json(header.provenance),
         }
         try:
             cursor = self._database.execute("INSERT INTO episodes (about) VALUES (?)", (json.dumps(about),))
@@ -170,11 +174,14 @@ class Recorder:
         self._widths = widths
         self._number += 1
 
-    def end_episode(self) -> None:
+    def end_episode(self, device: str = "") -> None:
         """Flush everything to the disk and mark the episode complete.
 
         This waits for the disk, some hundred milliseconds after a long episode: end it when the arm is
         at rest.
+
+        Args:
+            device: kind of input device that was used, where that is only known now.
 
         Raises:
             UserError: the journal cannot be written, or no episode is under way.
@@ -184,6 +191,11 @@ class Recorder:
         try:
             # FULL: this commit waits until it, and so every sample before it in the log, is on the disk.
             self._database.execute("PRAGMA synchronous = FULL")
+            if device:
+                self._database.execute(
+                    "UPDATE episodes SET about = json_set(about, '$.provenance.device', ?) WHERE id = ?",
+                    (device, self._episode),
+                )
             self._database.execute("UPDATE episodes SET complete = 1 WHERE id = ?", (self._episode,))
             self._database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
         except sqlite3.Error as error:

@@ -90,6 +90,8 @@ def write_dataset(demonstrations: Demonstrations, path: Path) -> None:
         robot=demonstrations.robot,
         features=features,
         goals=demonstrations.goals,
+        import_record=demonstrations.import_record,
+        provenance=tuple(episode.provenance for episode in demonstrations.episodes),
     )
     with staged_folder(path) as staging:
         for place in sorted(set(places)):
@@ -134,7 +136,11 @@ def append_episode(path: Path, episode: Episode) -> None:
         row = episode_row(columns, episode.task, data_place=data_place, episodes_place=episodes_place)
         _write_tables(path / _place(DATA_PATTERN, data_place), [*kept, added])
         grown = replace(
-            info, episodes=info.episodes + 1, frames=info.frames + len(episode.timestamp), tasks=len(tasks)
+            info,
+            episodes=info.episodes + 1,
+            frames=info.frames + len(episode.timestamp),
+            tasks=len(tasks),
+            provenance=(*map(info.provenance_of, range(info.episodes)), episode.provenance),
         )
         _write_state(
             path, pa.concat_tables([rows, row], promote_options="default"), episodes_place, tasks, grown
@@ -160,6 +166,7 @@ def read_dataset(path: Path) -> Demonstrations:
         joint_names=info.joint_names,
         robot=info.robot,
         goals=info.goals,
+        import_record=info.import_record,
     )
     validate(demonstrations, str(path))
     return demonstrations

@@ -6,15 +6,16 @@ What the layout has no place for (the goals, and that actions are joint velociti
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, TypeVar, cast, final
 
 import numpy as np
 
 from latentarm.demonstrations.bounds import check_values
+from latentarm.demonstrations.provenance import parse_provenance, provenance_json
 from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Goal, Pose
+from latentarm.types import Demonstrations, Goal, Pose, Provenance
 from latentarm.untrusted.documents import read_object
 from latentarm.untrusted.opening import is_missing
 
@@ -71,6 +72,8 @@ class Info:
         native: whether this package laid the dataset out (its actions are joint velocities then).
         chunk_files: files in one chunk folder.
         data_file_mb: size at which a data file is followed by the next.
+        import_record: what importing decided, see `Demonstrations`.
+        provenance: who recorded each episode, as far as that is known: one entry for each, or fewer.
     """
 
     episodes: int
@@ -83,12 +86,18 @@ class Info:
     native: bool = True
     chunk_files: int = CHUNK_FILES
     data_file_mb: int = DATA_FILE_MB
+    import_record: Mapping[str, str] = field(default_factory=dict)
+    provenance: tuple[Provenance | None, ...] = ()
 
     @property
     def joint_names(self) -> tuple[str, ...]:
         """Names of the joints, made up where the writer gave none."""
         state = next(feature for feature in self.features if feature.name == STATE)
         return state.names or default_joint_names(state.width)
+
+    def provenance_of(self, episode: int) -> Provenance | None:
+        """Who recorded an episode; None where that is unknown, as for one that another program appended."""
+        return self.provenance[episode] if episode < len(self.provenance) else None
 
 
 def default_joint_names(dof: int) -> tuple[str, ...]:
@@ -143,6 +152,8 @@ def info_json(info: Info) -> str:
                 }
                 for goal in info.goals
             ],
+            "import": dict(info.import_record),
+            "provenance": [None if one is None else provenance_json(one) for one in info.provenance],
         },
     }
     return json.dumps(document, indent=4, ensure_ascii=False, allow_nan=False)
@@ -190,6 +201,8 @@ def read_info(root: Path) -> Info:
         native=isinstance(ours, dict),
         chunk_files=max(_count(mapping, "chunks_size", path), 1),
         data_file_mb=_count(mapping, "data_files_size_in_mb", path),
+        import_record=_read_import_record(ours, path),
+        provenance=_read_provenance(ours, path),
     )
 
 
@@ -247,3 +260,24 @@ def _read_goals(ours: object, path: Path) -> tuple[Goal, ...]:
         )
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise UserError(f"{path}: its goals are damaged.") from error
+
+
+def _read_import_record(ours: object, path: Path) -> Mapping[str, str]:
+    record: object = cast(Mapping[str, Any], ours).get("import", {}) if isinstance(ours, dict) else {}
+    if not isinstance(record, dict):
+        raise UserError(f"{path}: its record of the import is damaged.")
+    record = cast(Mapping[str, object], record)
+    if not all(isinstance(text, str) for text in record.values()):
+        raise UserError(f"{path}: its record of the import is damaged.")
+    return cast(Mapping[str, str], record)
+
+
+def _read_provenance(ours: object, path: Path) -> tuple[Provenance | None, ...]:
+    listed: object = cast(Mapping[str, Any], ours).get("provenance", []) if isinstance(ours, dict) else []
+    try:
+        if not isinstance(listed, list):
+            raise ValueError
+        entries = cast(Sequence[object], listed)
+        return tuple(None if entry is None else parse_provenance(entry) for entry in entries)
+    except ValueError as error:
+        raise UserError(f"{path}: what it says of who recorded its episodes is damaged.") from error

@@ -10,7 +10,7 @@ import pyarrow as pa
 from latentarm.demonstrations.info import ACTION, DATA_PATTERN, STATE, Info
 from latentarm.demonstrations.tables import TASK_COLUMN, Table, float_column, integer_column, read_table
 from latentarm.errors import UserError
-from latentarm.types import Episode, FloatArray
+from latentarm.types import Episode, FloatArray, Provenance
 
 
 def read_tasks(root: Path) -> list[str]:
@@ -109,12 +109,18 @@ def _read_file(
                 f"{path}: episode {first + offset} should have {length} samples in order "
                 f"and has {len(rows)}; the dataset is damaged."
             )
-        episodes.append(_episode({name: values[rows] for name, values in columns.items()}, task))
+        recorded = {name: values[rows] for name, values in columns.items()}
+        episodes.append(_episode(recorded, task, info.provenance_of(first + offset)))
     return episodes
 
 
-def _episode(columns: dict[str, FloatArray], task: str) -> Episode:
+def _episode(columns: dict[str, FloatArray], task: str, provenance: Provenance | None) -> Episode:
     state, timestamp = columns.pop(STATE), columns.pop("timestamp")[:, 0]
     return Episode(
-        state=state, timestamp=timestamp, action=columns.pop(ACTION, None), task=task, extras=columns
+        state=state,
+        timestamp=timestamp,
+        action=columns.pop(ACTION, None),
+        task=task,
+        extras=columns,
+        provenance=provenance,
     )

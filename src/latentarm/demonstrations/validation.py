@@ -4,6 +4,7 @@ Episodes and samples are counted from zero, as in the dataset's ``episode_index`
 """
 
 from collections.abc import Iterator
+from dataclasses import astuple
 from typing import Final
 
 import numpy as np
@@ -91,6 +92,8 @@ def validate_episode(
     _check_times(episode.timestamp, where)
     if not _is_text(episode.task):
         raise UserError(f"{where}: its task {episode.task!a} is not text that a file can hold.")
+    if episode.provenance is not None and not all(map(_is_text, map(str, astuple(episode.provenance)))):
+        raise UserError(f"{where}: what is said of who recorded it is not text that a file can hold.")
     if limits is not None:
         _check_limits(episode.state, joint_names, limits, where)
 

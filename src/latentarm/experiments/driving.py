@@ -15,6 +15,7 @@ from latentarm.control.export import export_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.demonstrations.folders import check_vacant
+from latentarm.demonstrations.provenance import provenance_now
 from latentarm.errors import UserError
 from latentarm.experiments.drive_figures import draw_drives
 from latentarm.experiments.simulation import RATE_HZ, Setup, Trace, simulate
@@ -23,7 +24,7 @@ from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject
 from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.runs.checks import check_count, check_positive, check_seed
-from latentarm.runs.folder import read_run
+from latentarm.runs.folder import read_run, weights_fingerprint
 from latentarm.runs.setting import TaskName, latent_controller, task_of_run, task_without_run
 from latentarm.tasks.task import Task
 from latentarm.types import Row
@@ -194,6 +195,13 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
                     task=f"{manner} {task.goals[goal].name}",
                     goals=task.goals,
                     modes=setup.controller.modes,
+                    provenance=provenance_now(
+                        run="" if config.run is None else config.run.name,
+                        run_fingerprint="" if config.run is None else weights_fingerprint(config.run),
+                        profile=config.profile or "",
+                        device="simulated",
+                        controller=config.controller,
+                    ),
                 )
             )
             traces.append(simulate(setup, goal, manner, rng, recorder.record))

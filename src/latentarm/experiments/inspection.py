@@ -1,16 +1,22 @@
 """`latentarm inspect`: a dataset looked over before training on it."""
 
+from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from latentarm.demonstrations.summary import Summary, summarise
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations
+from latentarm.types import Demonstrations, Provenance
+from latentarm.untrusted.terminal import visible
 
 if TYPE_CHECKING:
     from rich.table import Table
+
+_FINGERPRINT_LENGTH: Final = 64
+"""Digits of a SHA-256."""
 
 
 def known_robot(demonstrations: Demonstrations) -> Robot | None:
@@ -30,6 +36,7 @@ def summary_tables(demonstrations: Demonstrations) -> "list[Table]":
     """Episodes and joints as tables for the terminal."""
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
+    from rich.text import Text
 
     tables: list[Table] = []
     for plain in summary(demonstrations).tables():
@@ -39,9 +46,51 @@ def summary_tables(demonstrations: Demonstrations) -> "list[Table]":
             heading = heading.replace(" ", "\n")
             table.add_column(heading, justify="left" if index == 0 else "right", no_wrap=True)
         for row in plain.rows:
-            table.add_row(*row)
+            table.add_row(*(Text(visible(text)) for text in row))
+        tables.append(table)
+    return [*_origin_tables(demonstrations), *tables]
+
+
+def import_table(record: Mapping[str, str]) -> "Table":
+    """What importing decided, subject by subject."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title="Import", title_justify="left", box=SIMPLE_HEAD, padding=0, show_header=False)
+    for subject, decision in record.items():
+        table.add_row(Text(visible(subject)), Text(visible(decision)))
+    return table
+
+
+def _origin_tables(demonstrations: Demonstrations) -> "list[Table]":
+    """Where a dataset comes from, as far as it says so."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+    from rich.text import Text
+
+    tables: list[Table] = []
+    if demonstrations.import_record:
+        tables.append(import_table(demonstrations.import_record))
+    recorded = [episode.provenance for episode in demonstrations.episodes]
+    if any(recorded):
+        names = [field.name for field in fields(Provenance)]
+        table = Table("episode", title="Recorded", title_justify="left", box=SIMPLE_HEAD, padding=0)
+        for name in names:
+            table.add_column(name.replace("_", "\n"))
+        for index, one in enumerate(recorded):
+            told = ["" if one is None else getattr(one, name) for name in names]
+            table.add_row(str(index), *(Text(_told(value)) for value in told))
         tables.append(table)
     return tables
+
+
+def _told(value: object) -> str:
+    """A value of a `Provenance` for a table; of a fingerprint its beginning is enough."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    text = visible(str(value)) or "–"
+    return text if len(text) < _FINGERPRINT_LENGTH else f"{text[:8]}…"
 
 
 def draw(demonstrations: Demonstrations, folder: Path) -> Path:

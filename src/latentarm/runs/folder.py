@@ -4,17 +4,21 @@ import hashlib
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.errors import UserError
 from latentarm.models.reading import Section
-from latentarm.models.saving import CONFIG_LIMIT
+from latentarm.models.saving import CONFIG_LIMIT, WEIGHTS_NAME
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations
-from latentarm.untrusted.opening import is_missing
+from latentarm.untrusted.opening import is_missing, read_bytes
+
+_LARGEST_WEIGHTS: Final = 1 << 30
+"""Bytes."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,15 @@ def fingerprint(demonstrations: Demonstrations) -> str:
         digest.update(str(episode.state.shape).encode())
         digest.update(np.ascontiguousarray(episode.state, dtype=np.float32).tobytes())
     return digest.hexdigest()
+
+
+def weights_fingerprint(run: Path) -> str:
+    """SHA-256 of a run's weights, so that another model of the same name is not taken for it.
+
+    Raises:
+        UserError: the run has no model.
+    """
+    return hashlib.sha256(read_bytes(run / WEIGHTS_NAME, _LARGEST_WEIGHTS)).hexdigest()
 
 
 def run_facts(run: Run) -> dict[str, object]:

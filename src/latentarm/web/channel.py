@@ -38,6 +38,7 @@ class Given(_Message):
         nonce: the newest that their page has seen.
         u: entries in [-1, 1].
         latched: goes on without being held, and so for a limited time.
+        source: with what kind of device.
     """
 
     driver: int
@@ -45,6 +46,7 @@ class Given(_Message):
     nonce: str
     u: tuple[float, ...]
     latched: bool
+    source: str = ""
 
 
 @final
@@ -93,6 +95,7 @@ class Record(_Message):
     order: Literal["record"] = "record"
     on: bool
     task: str
+    person: str = ""
 
 
 @final

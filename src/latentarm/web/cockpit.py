@@ -11,6 +11,7 @@ from latentarm.control.input_port import InputPort, InputSource
 from latentarm.control.loop import ControlLoop
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.step import Step
+from latentarm.demonstrations.provenance import provenance_now
 from latentarm.robots.arm import Arm
 from latentarm.types import Context, Input, StepRecord
 from latentarm.web.channel import (
@@ -93,6 +94,7 @@ class Cockpit(InputSource):
         self._seen = setting.start
         self._late_share = self._late_p99_ms = 0.0
         self._ending_episode = False
+        self._devices: set[str] = set()
         self._note = ""
         self._note_until_s = -math.inf
         self._change: Change | None = None
@@ -143,8 +145,7 @@ class Cockpit(InputSource):
             self._seen = record.state
         self._writer.add(record)
         if self._ending_episode and self._step.at_rest:
-            self._ending_episode = False
-            self._writer.end()
+            self._end_episode()
         self._obey(record)
         self._enable_if_asked(record.time_s)
         self._channel.report.write(self._report(record).model_dump_json().encode())
@@ -173,6 +174,8 @@ class Cockpit(InputSource):
 
     def _watch_latch(self, given: Given) -> None:
         self._deflected = math.hypot(*given.u) > self._step.dead_zone
+        if self._deflected and given.source:
+            self._devices.add(given.source)
         if not (given.latched and self._deflected):
             self._latched_since_s = math.inf
         elif self._latched_since_s == math.inf:
@@ -210,8 +213,11 @@ class Cockpit(InputSource):
             case ChooseMode(mode=mode, axes=axes):
                 if mode in self._setting.modes:
                     self._choose(mode, self._axes if axes is None else axes)
-            case Record(on=on, task=task):
-                self._record(on=on, task=task)
+            case Record(on=True, task=task, person=person):
+                self._begin_episode(task, person)
+            case Record():
+                # An episode ends with the arm at rest: its last motion belongs to it.
+                self._ending_episode = True
             case ChooseProfile(name=name) if name == self._setting.spec.profile:
                 pass
             case ChooseProfile() | ChooseRun() | Reset():
@@ -224,8 +230,7 @@ class Cockpit(InputSource):
             return
         if not isinstance(change, ChooseProfile):
             # An episode is one motion of one arm: it ends before the arm is put somewhere else.
-            self._writer.end()
-            self._ending_episode = False
+            self._end_episode()
         self._change = change
         self._loop.finish()
 
@@ -235,12 +240,11 @@ class Cockpit(InputSource):
         self._setting.help.on = mode == "assisted"
         self._step.choose_mode(self._setting.mode_index(mode, self._axes))
 
-    def _record(self, *, on: bool, task: str) -> None:
-        # An episode ends with the arm at rest: its last motion belongs to it.
-        self._ending_episode = not on
-        if not on:
-            return
-        robot = self._setting.task.robot
+    def _begin_episode(self, task: str, person: str) -> None:
+        self._ending_episode = False
+        if not self._writer.on:
+            self._devices.clear()
+        robot, spec = self._setting.task.robot, self._setting.spec
         self._writer.begin(
             EpisodeHeader(
                 robot=robot.name,
@@ -249,8 +253,19 @@ class Cockpit(InputSource):
                 task=task,
                 goals=self._setting.task.goals,
                 modes=self._setting.controller.modes,
+                provenance=provenance_now(
+                    person=person,
+                    run="" if spec.run is None else spec.run.name,
+                    run_fingerprint=self._setting.run_fingerprint,
+                    profile=spec.profile or "",
+                    controller=self._mode,
+                ),
             )
         )
+
+    def _end_episode(self) -> None:
+        self._writer.end(", ".join(sorted(self._devices)))
+        self._ending_episode = False
 
     def _enable_if_asked(self, now_s: float) -> None:
         """Once a fresh neutral input is there; the loop itself has the last word."""

@@ -161,8 +161,8 @@ class DriveSocket:
 
     def _take_from_driver(self, page: Page, message: ClientMessage) -> None:
         match message:
-            case DriverInput(seq=seq, nonce=nonce, u=u, latched=latched):
-                self._give(seq, nonce, u, latched=latched)
+            case DriverInput():
+                self._give(message)
             case PressEnable() if self._states.loading or self._bench.personalising.standstill:
                 pass
             case PressEnable():
@@ -172,7 +172,7 @@ class DriveSocket:
             case Profile(name=name):
                 self._control.order(ChooseProfile(name=name))
             case RecordEpisode(on=on, task=task):
-                self._control.order(Record(on=on, task=task))
+                self._control.order(Record(on=on, task=task, person=page.name))
             case ResetArm():
                 self._control.order(Reset())
             case Train():
@@ -197,9 +197,18 @@ class DriveSocket:
         self._control.stop(why)
         self._control.order(Record(on=False, task=""))
 
-    def _give(self, seq: int, nonce: str, u: tuple[float, ...], *, latched: bool) -> None:
-        padded = u + (0.0,) * (self._states.stage.input_dim - len(u))
-        self._control.give(Given(driver=self._sessions.turn, seq=seq, nonce=nonce, u=padded, latched=latched))
+    def _give(self, message: DriverInput) -> None:
+        padded = message.u + (0.0,) * (self._states.stage.input_dim - len(message.u))
+        self._control.give(
+            Given(
+                driver=self._sessions.turn,
+                seq=message.seq,
+                nonce=message.nonce,
+                u=padded,
+                latched=message.latched,
+                source=message.source,
+            )
+        )
 
 
 @final

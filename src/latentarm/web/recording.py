@@ -1,6 +1,7 @@
 """Recording a drive without keeping the control loop waiting for the disk."""
 
 import threading
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from queue import Empty, Full, Queue
@@ -14,8 +15,15 @@ from latentarm.web.channel import Recording
 _MOST_WAITING: Final = 6000
 """Samples that may wait for the disk: a minute of them."""
 
-_END: Final = "end"
 _CLOSE: Final = "close"
+
+
+@final
+@dataclass(frozen=True)
+class _End:
+    """The episode ends; with which kinds of input device it was driven."""
+
+    device: str
 
 
 @final
@@ -31,12 +39,17 @@ class EpisodeWriter:
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / f"journal-{datetime.now():%Y%m%d-%H%M%S}.sqlite"
-        self._waiting: Queue[StepRecord | EpisodeHeader | str] = Queue(_MOST_WAITING)
+        self._waiting: Queue[StepRecord | EpisodeHeader | _End | str] = Queue(_MOST_WAITING)
         self._thread: threading.Thread | None = None
         self._on = False
         self._samples = 0
         self._episodes = 0
         self._problem: str | None = None
+
+    @property
+    def on(self) -> bool:
+        """Whether an episode is under way."""
+        return self._on
 
     @property
     def status(self) -> Recording | None:
@@ -69,11 +82,15 @@ class EpisodeWriter:
             self._samples += 1
             self._put(record)
 
-    def end(self) -> None:
-        """End the episode, where one is under way."""
+    def end(self, device: str = "") -> None:
+        """End the episode, where one is under way.
+
+        Args:
+            device: kind of input device that it was driven with.
+        """
         if self._on:
             self._on = False
-            self._put(_END)
+            self._put(_End(device))
 
     def close(self) -> None:
         """Write what is waiting and close the journal; an episode under way stays incomplete."""
@@ -81,7 +98,7 @@ class EpisodeWriter:
             self._put(_CLOSE)
             self._thread.join(timeout=5.0)
 
-    def _put(self, item: StepRecord | EpisodeHeader | str) -> None:
+    def _put(self, item: StepRecord | EpisodeHeader | _End | str) -> None:
         try:
             self._waiting.put_nowait(item)
         except Full:
@@ -107,11 +124,11 @@ class EpisodeWriter:
                 except Empty:
                     return
 
-    def _handle(self, recorder: Recorder, item: StepRecord | EpisodeHeader | str) -> None:
+    def _handle(self, recorder: Recorder, item: StepRecord | EpisodeHeader | _End | str) -> None:
         if isinstance(item, StepRecord):
             recorder.record(item)
         elif isinstance(item, EpisodeHeader):
             recorder.begin_episode(item)
-        elif self._problem is None:
-            recorder.end_episode()
+        elif isinstance(item, _End) and self._problem is None:
+            recorder.end_episode(item.device)
             self._episodes += 1

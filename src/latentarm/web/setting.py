@@ -13,7 +13,7 @@ from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.joined import JoinedController
 from latentarm.errors import UserError
-from latentarm.runs.folder import read_run
+from latentarm.runs.folder import read_run, weights_fingerprint
 from latentarm.runs.setting import latent_controller, task_of_run, task_without_run
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray
@@ -106,6 +106,7 @@ class Setting:
         axes: names of the pairs of axes of end-effector control.
         help: whether and how much the robot helps.
         start: (n,), where the arm starts, rad.
+        run_fingerprint: of the run's weights; "" without a run.
     """
 
     spec: Spec
@@ -115,6 +116,7 @@ class Setting:
     axes: tuple[str, ...]
     help: Help
     start: FloatArray
+    run_fingerprint: str = ""
 
     @property
     def modes(self) -> tuple[ModeName, ...]:
@@ -174,4 +176,5 @@ def load_setting(spec: Spec) -> Setting:
         axes=end_effector.modes,
         help=Help(FixedAlpha()),
         start=task.sample_start(0, np.random.default_rng(spec.seed)),
+        run_fingerprint="" if spec.run is None else weights_fingerprint(spec.run),
     )

@@ -140,7 +140,7 @@ class Bench:
             return  # it is being written: soon again
         self._listed = listed
         self._recordings = tuple(
-            Recorded(number=entry.number, task=entry.task, seconds=round(entry.duration_s, 1))
+            Recorded(number=entry.number, task=entry.header.task, seconds=round(entry.duration_s, 1))
             for entry in entries
             if entry.complete
         )

@@ -1,0 +1,71 @@
+"""What was recorded, in one journal or in a folder of them, and its way into a dataset."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, final
+
+from latentarm.control.export import demonstrations_of
+from latentarm.control.journal import JournalEntry, list_journal, read_journal
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations
+
+JOURNAL_SUFFIX: Final = ".sqlite"
+
+
+@final
+@dataclass(frozen=True)
+class Recording:
+    """One recorded episode among all those of a folder.
+
+    Attributes:
+        number: counted from one over all journals, the oldest journal first.
+        journal: the file that it is in.
+        entry: what the journal's table of contents says of it.
+    """
+
+    number: int
+    journal: Path
+    entry: JournalEntry
+
+
+def journals_in(path: Path) -> list[Path]:
+    """A journal itself, or the journals of a folder by name: ``teleop`` names them after their time.
+
+    Raises:
+        UserError: there is none.
+    """
+    if not path.is_dir():
+        return [path]
+    found = sorted(path.glob(f"*{JOURNAL_SUFFIX}"))
+    if not found:
+        raise UserError(f"{path} holds no journal (*{JOURNAL_SUFFIX}): nothing was recorded there.")
+    return found
+
+
+def list_recordings(path: Path) -> list[Recording]:
+    """All episodes of a journal, or of the journals in a folder.
+
+    Raises:
+        UserError: there is no journal, or one is damaged.
+    """
+    entries = [(journal, entry) for journal in journals_in(path) for entry in list_journal(journal)]
+    return [Recording(number, journal, entry) for number, (journal, entry) in enumerate(entries, start=1)]
+
+
+def read_recordings(recordings: Sequence[Recording], *, source: str, incomplete: bool) -> Demonstrations:
+    """Recorded episodes as demonstrations; see `demonstrations_of`.
+
+    Args:
+        recordings: those to take, from `list_recordings`.
+        source: what errors name.
+        incomplete: take episodes that were cut short too.
+
+    Raises:
+        UserError: a journal is damaged, or `demonstrations_of` refuses.
+    """
+    wanted: dict[Path, list[int]] = {}
+    for recording in recordings:
+        wanted.setdefault(recording.journal, []).append(recording.entry.number)
+    episodes = [episode for journal, numbers in wanted.items() for episode in read_journal(journal, numbers)]
+    return demonstrations_of(episodes, source=source, incomplete=incomplete)

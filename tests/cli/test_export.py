@@ -1,0 +1,100 @@
+"""Recordings leave a journal from the command line."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.demonstrations.dataset import read_dataset
+from latentarm.demonstrations.provenance import provenance_now
+from latentarm.types import Command, StepRecord
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def teleop(workplace: Path) -> Path:
+    """A folder as `latentarm teleop` leaves it: three episodes, the last cut short."""
+    recorder = Recorder(workplace / "teleop/journal-20260102-030405.sqlite")
+    for index in range(3):
+        by = provenance_now(person="\x1b[31mAda", run="eat-cvae", controller="latent")
+        recorder.begin_episode(
+            EpisodeHeader("arm", ("a", "b"), 100.0, f"stab {index} [/nope]", provenance=by)
+        )
+        for tick in range(5):
+            two = np.full(2, 0.01 * (tick + index))
+            recorder.record(
+                StepRecord(0.01 * tick, two, two, two, two, two, 0.0, np.zeros(0), 0, Command(two, 0.05))
+            )
+        if index < 2:
+            recorder.end_episode("gamepad")
+    recorder.close()
+    return workplace / "teleop"
+
+
+def test_what_was_recorded_is_listed(run: Run, teleop: Path) -> None:
+    code, out, _ = run("export", "teleop")
+    assert code == 0
+    assert "stab 1 [/nope]" in out
+    assert "cut short" in out
+    assert "\x1b" not in out
+    assert "--out" in out
+    code, out, _ = run("export", "teleop", "--json")
+    listed = json.loads(out)
+    assert [(one["episode"], one["complete"], one["device"]) for one in listed] == [
+        (1, True, "gamepad"),
+        (2, True, "gamepad"),
+        (3, False, None),
+    ]
+
+
+def test_recordings_become_a_dataset_that_inspect_shows(run: Run, teleop: Path) -> None:
+    code, out, _ = run("export", "teleop", "--out", "eaten")
+    assert code == 0
+    assert "2 of 3 episodes are in eaten/" in out
+    assert "1 were cut short" in out
+    assert [one.task for one in read_dataset(Path("eaten")).episodes] == ["stab 0 [/nope]", "stab 1 [/nope]"]
+    code, out, _ = run("inspect", "eaten")
+    assert code == 0
+    assert "Ada" in out
+    assert "gamepad" in out
+    assert "eat-cvae" in out
+    code, _, err = run("export", "teleop", "--out", "eaten")
+    assert code == 2
+    assert "already exists" in err
+
+
+def test_episodes_are_chosen_by_number(run: Run, teleop: Path) -> None:
+    assert run("export", "teleop", "--episodes", "2-3", "--incomplete", "--out", "some")[0] == 0
+    first, second = read_dataset(Path("some")).episodes
+    assert (first.task, second.task) == ("stab 1 [/nope]", "stab 2 [/nope]")
+    assert first.provenance is not None
+    assert second.provenance is not None
+    assert (first.provenance.complete, second.provenance.complete) == (True, False)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("teleop", "--episodes", "3"), "episode 3 was cut short: .* --incomplete"),
+        (("teleop", "--episodes", "4"), "has episodes 1 to 3"),
+        (("teleop", "--episodes", "2-1"), "has episodes 1 to 3"),
+        (("teleop", "--episodes", "all"), "neither a number"),
+        (("nowhere",), "no journal nowhere"),
+        (("eaten.txt",), "eaten.txt"),
+        ((".",), "holds no journal"),
+    ],
+)
+def test_what_cannot_be_exported_is_refused(
+    run: Run, teleop: Path, words: tuple[str, ...], said: str
+) -> None:
+    import re
+
+    Path("eaten.txt").write_text("no journal")
+    code, out, err = run("export", *words, "--out", "new")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert re.search(said, err)
+    assert not Path("new").exists()
