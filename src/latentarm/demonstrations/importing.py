@@ -1,5 +1,6 @@
 """Bringing demonstrations of any known kind into a dataset of our own."""
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Final, Literal
@@ -15,6 +16,7 @@ from latentarm.demonstrations.validation import validate
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations
+from latentarm.untrusted.memory import bounded_memory
 from latentarm.untrusted.opening import opened
 
 FOREIGN: Final = {
@@ -85,7 +87,7 @@ def _read(
 ) -> Demonstrations:
     if rate_hz is not None and not 0 < rate_hz < float("inf"):
         raise UserError(f"The sampling rate is {rate_hz:g} Hz; it must be a finite number above zero.")
-    start = _beginning(source)
+    start, size = _beginning(source)
     if start is None:
         return read_lerobot(source, actions)
     if not start:
@@ -93,6 +95,18 @@ def _read(
     for magic, what in FOREIGN.items():
         if start.startswith(magic):
             raise UserError(f"{source} is {what}.")
+    with bounded_memory(str(source), size):
+        return _read_file(source, start, robot, rate_hz, task, actions)
+
+
+def _read_file(
+    source: Path,
+    start: bytes,
+    robot: Robot | None,
+    rate_hz: float | None,
+    task: str | None,
+    actions: Literal["known", "joint_velocity"],
+) -> Demonstrations:
     if start.startswith(b"PK"):
         return read_npz(source, rate_hz, task)
     if start.startswith(b"\x89HDF\r\n\x1a\n"):
@@ -102,15 +116,15 @@ def _read(
     return read_csv(source, () if robot is None else robot.joint_names, rate_hz, task)
 
 
-def _beginning(source: Path) -> bytes | None:
-    """The first bytes of a file, by which it is known; None for a folder."""
+def _beginning(source: Path) -> tuple[bytes | None, int]:
+    """The first bytes of a file, by which it is known, and its size; None for a folder."""
     try:
         if source.is_dir():
-            return None
+            return None, 0
     except OSError as error:
         raise UserError(f"{source} cannot be read: {error.strerror or error}.") from error
     with opened(source, MAX_FILE_BYTES) as stream:
-        return stream.read(16)
+        return stream.read(16), os.fstat(stream.fileno()).st_size
 
 
 def _as_recorded_on(robot: Robot, demonstrations: Demonstrations, source: Path) -> Demonstrations:

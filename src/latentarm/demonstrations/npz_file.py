@@ -7,7 +7,9 @@ rad/s, ``dq`` (N, n) measured velocities, ``tau`` (N, n) measured torques, and `
 taken for actions.
 """
 
+import lzma
 import math
+import struct
 import tokenize
 import zipfile
 import zlib
@@ -18,12 +20,16 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from latentarm.demonstrations.bounds import check_values
+from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.info import default_joint_names
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray, IntArray
+from latentarm.untrusted.opening import opened
 
 FEATURES: Final = {"dq": "observation.velocity", "tau": "observation.effort"}
+MAX_ARRAYS: Final = 100
+"""In one archive."""
+
 GRIPPER_FEATURE: Final = "observation.gripper_toggled"
 
 
@@ -79,8 +85,10 @@ def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None
 def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
     """Every array of the archive, once all of them are known to be plain and of bearable size."""
     try:
-        with zipfile.ZipFile(source) as archive:
+        with opened(source, MAX_FILE_BYTES) as stream, zipfile.ZipFile(stream) as archive:
             members = [member for member in archive.infolist() if member.filename.endswith(".npy")]
+            if len(members) > MAX_ARRAYS:
+                raise UserError(f"{source} holds {len(members):,} arrays, over the limit of {MAX_ARRAYS}.")
             count = sum(_declared_count(archive, member, source) for member in members)
             check_values(source, "it", count)
             arrays: dict[str, NDArray[np.generic]] = {}
@@ -91,6 +99,8 @@ def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
     except (
         zipfile.BadZipFile,
         zlib.error,
+        lzma.LZMAError,
+        struct.error,
         EOFError,
         ValueError,
         OSError,

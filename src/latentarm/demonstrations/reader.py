@@ -11,6 +11,7 @@ from latentarm.demonstrations.info import ACTION, DATA_PATTERN, STATE, Info
 from latentarm.demonstrations.tables import TASK_COLUMN, Table, float_column, integer_column, read_table
 from latentarm.errors import UserError
 from latentarm.types import Episode, FloatArray, Provenance
+from latentarm.untrusted.memory import bounded_memory
 
 
 def read_tasks(root: Path) -> list[str]:
@@ -64,6 +65,12 @@ def read_episodes(root: Path, info: Info) -> tuple[Episode, ...]:
     """
     if info.episodes == 0:
         return ()
+    size = sum(path.lstat().st_size for path in root.glob("*/**/*.parquet"))
+    with bounded_memory(str(root), size):
+        return _read_committed(root, info)
+
+
+def _read_committed(root: Path, info: Info) -> tuple[Episode, ...]:
     rows = committed_episodes(root, info)
     folder = root / "meta/episodes"
     length, chunk, file = (

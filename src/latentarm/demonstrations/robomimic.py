@@ -19,13 +19,17 @@ from typing import Any, Final, Literal, cast
 import h5py
 import numpy as np
 
-from latentarm.demonstrations.bounds import check_values
+from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.info import MAX_RATE_HZ, default_joint_names
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
 from latentarm.untrusted.documents import parse_object
+from latentarm.untrusted.opening import check_file
 
 STATE_KEYS: Final = ("robot0_joint_pos", "joint_states")
+MAX_CHUNKS: Final = 100_000
+"""Of one table; each is looked up by itself."""
+
 SECOND_ARM_KEY: Final = "robot1_joint_pos"
 
 
@@ -47,6 +51,7 @@ def read_robomimic(
     Raises:
         UserError: the file is damaged, or not of this layout.
     """
+    check_file(source, MAX_FILE_BYTES)
     try:
         with h5py.File(source, "r") as file:
             data = _group(file, "data", source)
@@ -92,6 +97,9 @@ def _array(parent: h5py.Group, name: str, source: Path) -> FloatArray | None:
         return None
     if member.is_virtual or member.external or member.dtype.kind not in "fiu" or member.ndim != 2:
         raise UserError(f"{source}: {_path(parent, name)} is not a plain table of numbers.")
+    pieces = zip(member.shape, member.chunks or member.shape, strict=True)
+    if math.prod(-(-length // max(chunk, 1)) for length, chunk in pieces) > MAX_CHUNKS:
+        raise UserError(f"{source}: {_path(parent, name)} has over {MAX_CHUNKS:,} chunks: repack the file.")
     return np.asarray(member[()], dtype=np.float64)
 
 

@@ -1,25 +1,31 @@
 """The dataset's Parquet tables: samples, episodes and tasks, column for column as LeRobot v3.0 has them."""
 
 import json
+import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final, TypeAlias, cast
+from typing import Any, BinaryIO, Final, TypeAlias, cast
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from latentarm.demonstrations.bounds import check_values
+from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
 from latentarm.demonstrations.feature_statistics import MEASURES, episode_statistics, pooled
 from latentarm.demonstrations.info import ACTION, INDEX_DTYPES, STATE, Feature
 from latentarm.errors import UserError
 from latentarm.types import Episode, FloatArray, IntArray
+from latentarm.untrusted.memory import bounded_memory
+from latentarm.untrusted.opening import is_missing, opened
 
 Table: TypeAlias = Any
 """A `pyarrow.Table`: the library ships no types."""
 
 TASK_COLUMN: Final = "__index_level_0__"
 """The name that pandas gives to an index without one: readers of the layout look tasks up in it."""
+
+MAX_TABLE_COLUMNS: Final = 10_000
+"""Of a Parquet file; the table of episodes has some ten for each feature."""
 
 INTEGER_COLUMNS: Final = tuple(name for name, dtype in INDEX_DTYPES.items() if dtype == "int64")
 
@@ -177,18 +183,25 @@ def read_table(path: Path, columns: Sequence[str] | None = None) -> Table:
     Raises:
         UserError: it is missing, damaged, too large, or lacks a column.
     """
+    if is_missing(path):
+        raise UserError(f"{path} is missing; the dataset is damaged.")
+    with opened(path, MAX_FILE_BYTES) as stream, bounded_memory(str(path), os.fstat(stream.fileno()).st_size):
+        return _read_stored(path, stream, columns)
+
+
+def _read_stored(path: Path, stream: BinaryIO, columns: Sequence[str] | None) -> Table:
     try:
-        with pq.ParquetFile(path, page_checksum_verification=True) as stored:
-            if columns is not None:
-                for name in columns:
-                    if name not in stored.schema_arrow.names:
-                        raise UserError(f"{path} has no column {name}; the dataset is damaged.")
+        with pq.ParquetFile(stream, page_checksum_verification=True) as stored:
+            if stored.metadata.num_columns > MAX_TABLE_COLUMNS:
+                raise UserError(f"{path} has more than {MAX_TABLE_COLUMNS:,} columns.")
+            present = set(stored.schema_arrow.names)
+            for name in columns or ():
+                if name not in present:
+                    raise UserError(f"{path} has no column {name}; the dataset is damaged.")
             check_values(path, "it", _stored_values(stored.metadata, columns))
             return stored.read(columns=None if columns is None else list(columns), use_threads=False)
-    except FileNotFoundError as error:
-        raise UserError(f"{path} is missing; the dataset is damaged.") from error
-    except PermissionError as error:
-        raise UserError(f"{path} cannot be read: {error.strerror or error}.") from error
+    except MemoryError:
+        raise  # Arrow's own is an `ArrowException` too
     except (pa.ArrowException, OSError, ValueError) as error:
         raise UserError(f"{path} is not a whole Parquet file; it is truncated or damaged.") from error
 
