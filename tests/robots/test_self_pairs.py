@@ -36,8 +36,25 @@ def test_links_that_can_meet_are_watched_and_neighbours_are_not(written):
 
 def test_pairs_that_the_model_excludes_are_not_watched(written):
     pairs = watched(written, '<contact><exclude body1="a" body2="c"/></contact>')
-    # An exclusion holds for all that rides on the two links.
-    assert pairs == set()
+    # What else rides on the same link can still meet.
+    assert pairs == {("a", "hand")}
+
+
+def test_a_capsule_of_several_bodies_is_watched_though_one_of_them_is_excluded(written):
+    """More bodies on one link than it has capsules: some are merged, and go by both names."""
+    spikes = "".join(
+        f'<body name="spike{k}" pos="0 0 0.35"><geom size="0.02" pos="{0.05 * k} 0 0"/></body>'
+        for k in range(4)
+    )
+    text = FOLDING.replace('<body name="hand"', spikes + '<body name="hand"')
+    whole = load_model_file(written(text.format(extra="")))
+    merged = next(name for name in whole.capsules.name if "+" in name)
+    part = merged.split(" + ")[0]
+    robot = load_model_file(
+        written(text.format(extra=f'<contact><exclude body1="a" body2="{part}"/></contact>'))
+    )
+    np.testing.assert_array_equal(robot.self_pairs, whole.self_pairs)
+    assert any({robot.capsules.name[k] for k in pair} == {"a", merged} for pair in robot.self_pairs)
 
 
 def test_pairs_that_touch_at_home_are_not_watched(written):

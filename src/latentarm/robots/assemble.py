@@ -5,11 +5,12 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from latentarm.kinematics.reader import Reading, read
+from latentarm.kinematics.capsules import Capsules
+from latentarm.kinematics.reader import read
 from latentarm.robots.limits import JointLimits, Source
 from latentarm.robots.robot import Robot
 from latentarm.robots.self_pairs import self_pairs
-from latentarm.robots.shapes import read_capsules
+from latentarm.robots.shapes import body_name, read_capsules
 from latentarm.types import BoolArray, FloatArray
 
 
@@ -54,7 +55,7 @@ def assemble(
         limits=limits,
         home=home,
         capsules=capsules,
-        self_pairs=self_pairs(reading.chain, capsules, limits, home, _excluded_links(model, reading)),
+        self_pairs=self_pairs(reading.chain, capsules, limits, home, _excluded(model, capsules)),
         mjcf=mjcf,
         tool_speed_limit=tool_speed_limit,
         tool_speed_source=tool_speed_source,
@@ -62,11 +63,17 @@ def assemble(
     )
 
 
-def _excluded_links(model: mujoco.MjModel, reading: Reading) -> BoolArray:
-    """(n + 1, n + 1), pairs of links (the base is the last) that the model's <exclude> elements name."""
-    n = reading.chain.dof
-    excluded = np.zeros((n + 1, n + 1), dtype=np.bool_)
+def _excluded(model: mujoco.MjModel, capsules: Capsules) -> BoolArray:
+    """(K, K), pairs of capsules whose bodies the model's <exclude> elements name.
+
+    What else rides on the same links stays watched: a hand may hit a forearm that the flange before it
+    cannot reach. So does a capsule that several bodies share, which has the name of none of them.
+    """
+    excluded = np.zeros((len(capsules), len(capsules)), dtype=np.bool_)
+    names = np.array(capsules.name)
     for signature in model.exclude_signature:
-        first, second = reading.body_link[signature >> 16], reading.body_link[signature & 0xFFFF]
-        excluded[first, second] = excluded[second, first] = True
+        first, second = (
+            names == body_name(model, int(body)) for body in (signature >> 16, signature & 0xFFFF)
+        )
+        excluded |= np.outer(first, second) | np.outer(second, first)
     return excluded

@@ -24,7 +24,7 @@ def self_pairs(
 ) -> IntArray:
     """Pairs of capsules that may collide, as few as can be told from sampling.
 
-    Left out are pairs on the same or on adjacent links, pairs of links that the model excludes,
+    Left out are pairs on the same or on adjacent links, pairs of bodies that the model excludes,
     pairs that touch at home or in most sampled configurations (their capsules are coarser than the
     robot's shell there), and pairs that never come near each other.
 
@@ -33,7 +33,7 @@ def self_pairs(
         capsules: its K capsules.
         limits: joint limits, within which configurations are sampled.
         home: (n,), rad.
-        excluded: (n + 1, n + 1), pairs of links that the model excludes; the base is the last.
+        excluded: (K, K), pairs of capsules that the model excludes.
 
     Returns:
         (P, 2), indices of capsules.
@@ -42,8 +42,7 @@ def self_pairs(
         [
             (i, j)
             for i, j in combinations(range(len(capsules)), 2)
-            if not _adjacent(chain, int(capsules.link[i]), int(capsules.link[j]))
-            and not excluded[capsules.link[i], capsules.link[j]]
+            if not _adjacent(chain, int(capsules.link[i]), int(capsules.link[j])) and not excluded[i, j]
         ],
         dtype=np.int64,
     ).reshape(-1, 2)

@@ -47,7 +47,7 @@ def read_capsules(model: mujoco.MjModel, reading: Reading) -> Capsules:
         if not _belongs(model, reading, body):
             continue
         pieces = [_balls(model, geom, reading.body_transform[body]) for geom in _solid_geoms(model, body)]
-        name = str(model.body(body).name) or f"body {body}"
+        name = body_name(model, body)
         kept = _merged([(name, piece) for piece in pieces], PER_BODY)
         by_link.setdefault(int(reading.body_link[body]), []).extend(kept)
     names: list[str] = []
@@ -65,6 +65,11 @@ def read_capsules(model: mujoco.MjModel, reading: Reading) -> Capsules:
         end=np.array([end for _, end, _ in shapes]).reshape(-1, 3),
         radius=np.array([radius for _, _, radius in shapes]),
     )
+
+
+def body_name(model: mujoco.MjModel, body: int) -> str:
+    """What the capsules of a body are called."""
+    return str(model.body(body).name) or f"body {body}"
 
 
 def bounding_capsule(centres: FloatArray, radii: FloatArray) -> tuple[FloatArray, FloatArray, float]:
@@ -138,7 +143,8 @@ def _merged(pieces: list[tuple[str, Balls]], most: int) -> list[tuple[str, Balls
         }
         volumes = [_volume(bounding_capsule(*balls)) for _, balls in kept]
         i, j = min(joined, key=lambda pair: _volume(joined[pair]) - volumes[pair[0]] - volumes[pair[1]])
-        kept[i] = (kept[i][0], _as_balls(joined[i, j]))
+        name, other = kept[i][0], kept[j][0]
+        kept[i] = (name if name == other else f"{name} + {other}", _as_balls(joined[i, j]))
         del kept[j]
     return kept
 
