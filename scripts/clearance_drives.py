@@ -341,7 +341,7 @@ def drive(robot: Robot, harm: str, period_s: float, rng: np.random.Generator) ->
             step.stop("The drive is over.")
         if tick % max(1, round(0.05 / period_s)) == 0:
             controller.wanted = push.towards(q)
-        record = step(Input(np.ones(1)), 0.0, q, tick * period_s)
+        record = step(Input(np.ones(1)), 0.0, q, (tick + 1) * period_s)
         if record.command.stop is not None and tick < ticks:
             raise RuntimeError(f"stopped: {record.command.stop.reason}")
         q = q + record.command.velocity * period_s
