@@ -113,9 +113,7 @@ def approach_and_back_out(arm, oracle, scripted, seed):
     assert (harm.measure.clearance(path) >= 0.02 - 1e-8).all()
     speeds = np.diff(path, axis=0) / DT
     assert np.abs(speeds).max() <= 0.5 + 1e-9
-    assert np.abs(np.diff(speeds, axis=0)).max(axis=0) == pytest.approx(
-        0.0, abs=bounds.stop_acceleration.max() * DT
-    )
+    assert (np.abs(np.diff(speeds, axis=0)) <= bounds.stop_acceleration * DT + 1e-9).all()
     # Backing out: harm is measurably further away, and the arm has moved.
     assert harm.nearness(q) > nearest + 0.005
     assert np.abs(q - blocked_at).max() > 0.02

@@ -265,35 +265,80 @@ def test_a_flood_ends_the_connection(site):
         at_rest(ada)
 
 
-def test_a_thousand_malformed_messages_crash_nothing_and_move_nothing(site):
-    rng = np.random.default_rng(0)
+def test_what_a_driver_sends_that_is_no_message_stops_the_arm_too(site):
+    frames = ('{"type": "stop", "now": true}', b"\x00\x01", json.dumps({"type": "input", "u": [1.0, 1.0]}))
+    with site.page("Bob") as bob:
+        bob.send(type="release")
+        for frame in frames:
+            with site.page("Ada") as ada:
+                ada.send(type="ask_to_drive")
+                ada.wait(lambda state: state["you"])
+                drive(ada)
+                ada.socket.send(frame)
+                ada.wait_closed()
+                assert ada.closed in (1003, 1008)
+                at_rest(bob)
+                assert bob.state["driver"] is None
+        bob.send(type="ask_to_drive")
+        bob.wait(lambda state: state["you"])
+        drive(bob)
+
+
+def test_a_watcher_that_sends_nonsense_stops_the_arm_and_takes_nothing_from_the_driver(site):
+    """It may have been meant as Stop. Everything else is as after a watcher's Stop."""
+    with site.page("Ada") as ada, site.page("Bob") as bob:
+        drive(ada)
+        mode = ada.state["mode"]
+        bob.socket.send('{"type": "stop", "now": true}')
+        bob.wait_closed()
+        at_rest(ada)
+        assert ada.closed is None
+        assert ada.state["you"]
+        assert ada.state["mode"] == mode
+        drive(ada)
+
+
+def storm(site, rounds, rng):
+    """Eight connections at a time that send damaged messages, half of them after a sound hello."""
     sound = ['{"type": "enable"}', HELLO, '{"type": "input", "seq": 1, "nonce": "00", "u": [1, 1]}']
 
-    async def storm():
+    async def one():
         from websockets.asyncio.client import connect
 
-        async def one():
-            text = bytearray(str(rng.choice(sound)).encode())
-            for _ in range(rng.integers(1, 6)):
-                at = int(rng.integers(len(text)))
-                text[at : at + int(rng.integers(0, 3))] = rng.bytes(int(rng.integers(0, 3)))
-            frame = bytes(text) if rng.random() < 0.3 else text.decode(errors="replace")
-            async with connect(site.address, origin=site.origin, compression=None) as socket:
-                if rng.random() < 0.5:
-                    await socket.send(HELLO)
-                await socket.send(frame)
-                await socket.close()
+        text = bytearray(str(rng.choice(sound)).encode())
+        for _ in range(rng.integers(1, 6)):
+            at = int(rng.integers(len(text)))
+            text[at : at + int(rng.integers(0, 3))] = rng.bytes(int(rng.integers(0, 3)))
+        frame = bytes(text) if rng.random() < 0.3 else text.decode(errors="replace")
+        async with connect(site.address, origin=site.origin, compression=None) as socket:
+            if rng.random() < 0.5:
+                await socket.send(HELLO)
+            await socket.send(frame)
+            await socket.close()
 
-        for _ in range(125):
+    async def all_of_them():
+        for _ in range(rounds):
             await asyncio.gather(*(one() for _ in range(8)))
 
+    asyncio.run(all_of_them())
+
+
+def test_a_thousand_malformed_messages_crash_nothing_and_move_nothing(site):
+    rng = np.random.default_rng(0)
     with site.page() as ada:
         before = ada.state
-        asyncio.run(storm())
+        storm(site, 75, rng)
         assert site.control.alive
         assert moved(before, ada.state) == 0.0
         assert ada.state["phase"] == "disengaged"
-    with site.page() as ada:
+        # While she drives they stop the arm. She can drive on.
+        for _ in range(5):
+            drive(ada)
+            storm(site, 10, rng)
+            at_rest(ada)
+            assert site.control.alive
+            assert ada.closed is None
+            assert ada.state["you"]
         drive(ada)
 
 
