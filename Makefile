@@ -34,8 +34,9 @@ test: check ## Everything that must hold, in minutes.
 test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of approaches.
 	$(BIN)/python -m pytest
 
-test-thorough: $(VENV)/installed-dev ## 10,000 Hypothesis examples for motion and geometry (hours; nightly).
+test-thorough: $(VENV)/installed-dev ## 10,000 Hypothesis examples for motion and geometry, 2,000 drives (hours; nightly).
 	$(BIN)/python -m pytest --hypothesis-profile=thorough tests/control tests/kinematics tests/robots
+	$(BIN)/python scripts/clearance_drives.py
 
 bench: $(VENV)/installed ## The online step and the batched fit, as ratios in one run.
 	$(BIN)/latentarm bench
