@@ -47,7 +47,7 @@ REFUSED = {
         "no earlier run",
     ),
     "a study on no process": (("reproduce", "properties", "--jobs", "0"), "jobs is 0"),
-    "demo over something else": (("demo", "--out", "."), "no earlier demo"),
+    "demo over something else": (("demo", "--out", "."), "no earlier run"),
 }
 
 
@@ -94,7 +94,7 @@ def test_a_run_knows_its_dataset(run: Run, workplace: Path, recording: Path) -> 
     assert "--demonstrations" in err
     assert run("evaluate", "mine", "--demonstrations", "moved")[0] == 0
 
-    run("drive", "--drives", 1, "--time-limit-s", 2, "--record", "other")
+    run("drive", "--jobs", 1, "--drives", 1, "--time-limit-s", 2, "--record", "other")
     code, _, err = run("evaluate", "mine", "--demonstrations", "other")
     assert code == 2
     assert "not the dataset" in err

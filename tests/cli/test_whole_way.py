@@ -55,7 +55,7 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
         "latent_axes.png",
     }
 
-    code, out, _ = run("drive", "runs/eat-cae", "--drives", 1, "--time-limit-s", 2, "--json")
+    code, out, _ = run("drive", "runs/eat-cae", "--jobs", 1, "--drives", 1, "--time-limit-s", 2, "--json")
     assert figures(out).keys() >= {
         "success_rate",
         "time_s",
@@ -65,7 +65,9 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
     }
     assert code == (0 if figures(out)["success_rate"] else 1)
 
-    code, out, _ = run("drive", "--drives", 1, "--record", "driven", "--out", "recorded", "--json")
+    code, out, _ = run(
+        "drive", "--jobs", 1, "--drives", 1, "--record", "driven", "--out", "recorded", "--json"
+    )
     assert code == 0
     driven = read_dataset(Path("driven"))
     assert len(driven.episodes) == 3
@@ -149,7 +151,7 @@ def test_a_decoder_that_sees_the_belief_is_trained_and_driven(run: Run, workplac
     command = ("train", "--demonstrations", "table", "--model", "scl", "--epochs", 1, "--seeds", 1)
     assert run(*command, "--context", "state_belief")[0] == 0
     assert run("evaluate", "runs/table-scl")[0] == 0
-    code, out, _ = run("drive", "runs/table-scl", "--drives", 1, "--time-limit-s", 3, "--json")
+    code, out, _ = run("drive", "runs/table-scl", "--jobs", 1, "--drives", 1, "--time-limit-s", 3, "--json")
     assert code in (0, 1)
     # The controller worked: an input was given and the tool moved.
     assert figures(out)["path_length"] > 0.01
@@ -161,7 +163,18 @@ def test_help_is_as_the_person_sets_it_and_is_recorded(run: Run, workplace: Path
 
     write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), Path("table"))
     run("train", "--demonstrations", "table", "--model", "pca")
-    drive = ("drive", "runs/table-pca", "--controller", "latent_assist", "--drives", 1, "--time-limit-s", 3)
+    drive = (
+        "drive",
+        "runs/table-pca",
+        "--controller",
+        "latent_assist",
+        "--jobs",
+        1,
+        "--drives",
+        1,
+        "--time-limit-s",
+        3,
+    )
     helped = ("--belief", "distance", "--arbitration", "confidence", "--alpha", 0.4)
     code, out, _ = run(*drive, *helped, "--record", "helped", "--out", "confidence", "--json")
     assert code in (0, 1)

@@ -38,6 +38,7 @@ def test_the_figures_of_a_drive_are_those_of_its_record(gantry):
     assert drive.mode_switches == 2
     assert drive.path_length == pytest.approx(7.0)
     assert drive.final_distance == pytest.approx(2.0)
+    assert drive.final_angle_deg == 0.0
 
 
 def test_a_drive_of_one_step_went_nowhere(gantry):
@@ -53,7 +54,7 @@ def test_no_steps_are_no_drive(gantry):
 
 
 def test_rows_hold_mean_sd_and_number_of_a_condition():
-    drives = [Drive(True, 4.0, 2.0, 1, 0.5, 0.01), Drive(False, 8.0, 4.0, 3, 0.7, 0.03)]
+    drives = [Drive(True, 4.0, 2.0, 1, 0.5, 0.01, 5.0), Drive(False, 8.0, 4.0, 3, 0.7, 0.03, 30.0)]
     subject = Subject("drive", task="table", condition="latent")
     rows = {row.measure: row for row in drive_rows(subject, drives)}
     assert rows["success_rate"].mean == 0.5

@@ -1,11 +1,12 @@
 """`latentarm drive`: simulated drives with a simulated operator."""
 
+import sys
 from pathlib import Path
 from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
 
-from latentarm.commands.options import EndEffector, Json, MovedDataset, Seed
+from latentarm.commands.options import EndEffector, Jobs, Json, MovedDataset, Seed
 from latentarm.commands.output import say, show
 
 
@@ -30,6 +31,13 @@ def drive(
         str | None, arg(metavar="NAME", help="A person that `latentarm align` has asked; z = u without.")
     ] = None,
     drives: Annotated[int, arg(help="Drives for each goal.")] = 3,
+    operator: Annotated[
+        Literal["greedy", "planning"] | None,
+        arg(
+            help="Simulated operator: greedy looks one step ahead (equation 24), planning looks up to 4 s"
+            " ahead where one step leads no nearer. By default planning on held-out episodes, else greedy."
+        ),
+    ] = None,
     beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0,
     belief: Annotated[
         Literal["boltzmann", "distance", "maximum_entropy"],
@@ -50,20 +58,24 @@ def drive(
         float | None, arg(help="A drive that lasts longer has failed: 60 s, 300 s on held-out episodes.")
     ] = None,
     seed: Seed = 0,
+    jobs: Jobs = -1,
     demonstrations: MovedDataset = None,
     record: Annotated[
         Path | None, arg(metavar="DIR", help="Record the drives; exported there as a native dataset.")
     ] = None,
-    out: Annotated[Path, arg(metavar="DIR", help="Folder for drives.json and the figure.")] = Path("drives"),
+    out: Annotated[
+        Path, arg(metavar="DIR", help="Folder for drives.json, drives.csv and the figure.")
+    ] = Path("drives"),
     json: Json = False,
 ) -> int:
     """Drive an arm in simulation with a simulated operator, through Algorithm 1 and its safety filters.
 
     Exits with 1 when no drive reached its goal. For example: latentarm drive runs/pour-cae
     """
+    from latentarm.experiments.drive_table import endings_in_words
     from latentarm.experiments.driving import DriveConfig, drive_run
 
-    rows = drive_run(
+    driven = drive_run(
         DriveConfig(
             run=run,
             controller=controller or ("latent" if run else "end_effector"),
@@ -72,17 +84,22 @@ def drive(
             end_effector=end_effector,
             profile=profile,
             drives=drives,
+            operator=operator,
             beta=beta,
             belief=belief,
             arbitration=arbitration,
             alpha=alpha,
             time_limit_s=time_limit_s,
             seed=seed,
+            jobs=jobs,
             record=record,
             dataset=demonstrations,
             out=out,
+            bars=not json and sys.stderr.isatty(),
         )
     )
-    show(rows, json)
-    say(f"drives.json and the figure are in {out}/.", json)
-    return 0 if any(row.measure == "success_rate" and row.mean for row in rows) else 1
+    show(driven.rows, json)
+    for sentence in endings_in_words(driven.entries):
+        say(sentence, json)
+    say(f"One row per drive is in {out}/drives.csv; drives.json and paths.png are beside it.", json)
+    return 0 if any(entry["success"] for entry in driven.entries) else 1

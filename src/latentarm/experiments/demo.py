@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from latentarm.alignment.profile import profile_names
 from latentarm.assistance.blending import Arbitration, FixedAlpha
 from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
@@ -24,6 +25,7 @@ from latentarm.experiments.drive_figures import draw_drives, draw_inputs
 from latentarm.experiments.driving import drive_all
 from latentarm.experiments.evaluating import evaluate_run
 from latentarm.experiments.simulation import Setup, Trace
+from latentarm.experiments.studies.folder import Study, vacant_name
 from latentarm.files import write_text
 from latentarm.metrics.comparison_figure import comparison_figure
 from latentarm.metrics.drives import drive_rows
@@ -47,6 +49,10 @@ STATE_NOISE_RAD = 0.05
 """A driven arm leaves the demonstrated states: with this noise in training the decoder has been there."""
 
 
+MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png", "task.png")
+"""Every file of the folder, apart from what was asked for, the dataset and the runs."""
+
+
 @dataclass(frozen=True)
 class DemoConfig:
     """What `latentarm demo` was asked for.
@@ -57,7 +63,7 @@ class DemoConfig:
         seed: of everything random.
         jobs: processes that drive side by side; -1 is one per core.
         quiet: say nothing while working.
-        bars: show how far training is.
+        bars: show how far training and driving are.
         episodes: demonstrations.
         seeds: models of each kind, trained at once; they take turns to be driven.
         epochs: passes over the training pairs, at most.
@@ -87,7 +93,7 @@ def run_demo(config: DemoConfig) -> list[Row]:
     Raises:
         UserError: the folder holds something else, or cannot be written.
     """
-    _clear(config.out)
+    _claim(config)
     console = VisibleConsole(stderr=True, quiet=config.quiet)
     task = TableTop()
     console.print(f"1/3  A simulated person demonstrates eating {config.episodes} times.")
@@ -107,7 +113,7 @@ def run_demo(config: DemoConfig) -> list[Row]:
         console.print(
             f"3/3  {number} of {len(conditions)}: a simulated operator drives {drives} times, {name}."
         )
-        driven = drive_all(setups, config.drives, config.seed, config.jobs)
+        driven = drive_all(setups, config.drives, config.seed, config.jobs, bars=config.bars)
         rows += drive_rows(subject, [trace.figures for trace in driven])
         if subject.model in (MODELS[0], None):
             traces[str(subject.condition)] = driven
@@ -158,8 +164,7 @@ def _write(
     traces: dict[str, list[Trace]],
 ) -> None:
     out = config.out
-    about = {"seed": config.seed, "drives_per_goal": config.drives, "operator": "simulated"}
-    write_results(out / "results.json", [*rows, *properties], about)
+    write_results(out / "results.json", [*rows, *properties], _about(config))
     draw_drives(traces, task, out / "paths.png")
     save_figure(comparison_figure(headline(properties)), out / "properties.png")
     draw_inputs({condition: drives[0] for condition, drives in traces.items()}, out / "inputs.png")
@@ -181,15 +186,32 @@ def _write(
     )
 
 
-def _clear(out: Path) -> None:
-    """Make room for a new demo: an older demo is replaced, anything else is left alone.
+def _about(config: DemoConfig) -> dict[str, object]:
+    """What the figures depend on."""
+    return {
+        "study": "demo",
+        "seed": config.seed,
+        "drives_per_goal": config.drives,
+        "operator": "simulated",
+        "episodes": config.episodes,
+        "seeds": config.seeds,
+        "epochs": config.epochs,
+    }
+
+
+def _claim(config: DemoConfig) -> None:
+    """Make room for a new demo: one that asked for the same is replaced, anything else is left alone.
 
     Raises:
-        UserError: the folder holds something that no demo wrote.
+        UserError: the folder holds something else, or profiles of people.
     """
-    if not out.exists() or (out.is_dir() and not any(out.iterdir())):
-        return
-    if not (out / "demonstrations" / "meta" / "info.json").exists():
-        raise UserError(f"{out} is there already and is no earlier demo: choose another folder with --out.")
-    for made in ("demonstrations", "runs"):
-        shutil.rmtree(out / made, ignore_errors=True)
+    runs = [config.out / "runs" / model for model in MODELS]
+    for run in runs:
+        if profile_names(run):
+            raise UserError(
+                f"{run} holds the profiles of people ({', '.join(profile_names(run))}), and the demo would"
+                f" train it anew: choose another folder with --out, such as {vacant_name(config.out)}."
+            )
+    Study("demo", MADE).claim(config.out, _about(config))
+    for made in (config.out / "demonstrations", *runs):
+        shutil.rmtree(made, ignore_errors=True)

@@ -1,13 +1,13 @@
 """`latentarm drive`: simulated operators drive a task, with latent actions or with mode switching."""
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Literal, cast
+from typing import Final, Literal
 
 import numpy as np
-from joblib import Parallel, delayed
 
+from latentarm.alignment.profile import model_fingerprint
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.control.controller import Controller
@@ -18,13 +18,17 @@ from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.errors import UserError
 from latentarm.experiments.drive_figures import draw_drives
+from latentarm.experiments.drive_table import Planned, drive_entries, write_drives_csv
+from latentarm.experiments.grid import check_processes, counting_bar, run_grid
 from latentarm.experiments.simulation import RATE_HZ, Setup, Trace, simulate
+from latentarm.experiments.studies.folder import Study, write_json
 from latentarm.metrics.drives import drive_rows
-from latentarm.metrics.results import write_results
+from latentarm.metrics.results import as_document
 from latentarm.metrics.summary import Subject
 from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.operators.catalogue import PLANNING, OperatorName, usual_operator
 from latentarm.runs.checks import check_count, check_positive, check_seed
-from latentarm.runs.folder import read_run, weights_fingerprint
+from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.setting import TaskName, latent_controller, task_of_run, task_without_run
 from latentarm.tasks.task import Task
 from latentarm.types import Row
@@ -35,6 +39,12 @@ ArbitrationName = Literal["fixed", "confidence"]
 
 DRIVE_STREAM = 2
 """Keeps the drives apart from everything else that is drawn from the same seed."""
+
+DrivePlan = tuple[int, str, np.random.Generator]
+"""Goal, manner and randomness of a drive."""
+
+MADE: Final = ("drives.json", "drives.csv", "paths.png")
+"""Every file of the folder, apart from what was asked for and a recording's journal."""
 
 TIME_LIMITS_S = {"table_top": 60.0, "held_out": 300.0, "reach": 60.0}
 """How long a drive may last, by task: held-out episodes are several metres long."""
@@ -53,6 +63,7 @@ class DriveConfig:
         end_effector: site, body or link of a model file.
         profile: name of the person whose alignment stands between input and latent action; z = u where None.
         drives: for each goal.
+        operator: who gives inputs; `usual_operator` of the task where None.
         beta: rationality of the simulated operator.
         belief: how inputs change the robot's belief over the goals.
         arbitration: how alpha comes about where the robot helps; fixed where None.
@@ -60,9 +71,10 @@ class DriveConfig:
             or `ConfidenceAlpha` where None.
         time_limit_s: a drive that lasts longer has failed; what `TIME_LIMITS_S` says where None.
         seed: of everything random.
-        jobs: processes side by side.
+        jobs: processes side by side; -1 is one per core. A recording is driven by one.
         record: folder of a new dataset that the drives are exported to, or None.
         dataset: where the run's dataset lies now, if it was moved.
+        bars: show on standard error how many drives are done.
 
     Raises:
         UserError: a figure is out of its range.
@@ -76,6 +88,7 @@ class DriveConfig:
     end_effector: str | None = None
     profile: str | None = None
     drives: int = 3
+    operator: OperatorName | None = None
     beta: float = BoltzmannConfig.beta
     belief: BeliefName = "boltzmann"
     arbitration: ArbitrationName | None = None
@@ -85,9 +98,11 @@ class DriveConfig:
     jobs: int = 1
     record: Path | None = None
     dataset: Path | None = None
+    bars: bool = False
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
+        check_processes(self.jobs, "joblib")
         check_count("drives for each goal", self.drives)
         check_positive("rationality beta", self.beta)
         if self.time_limit_s is not None:
@@ -104,14 +119,25 @@ class DriveConfig:
                     )
 
 
-def drive_run(config: DriveConfig) -> list[Row]:
-    """Drive every goal of a task several times and write ``drives.json`` and a figure.
+@dataclass(frozen=True)
+class Driven:
+    """What came of the drives.
 
-    Returns:
-        Mean and SD over the drives.
+    Attributes:
+        rows: mean and SD over the drives.
+        entries: one mapping per drive, see `latentarm.experiments.drive_table.COLUMNS`.
+    """
+
+    rows: list[Row]
+    entries: list[dict[str, object]]
+
+
+def drive_run(config: DriveConfig) -> Driven:
+    """Drive every goal of a task several times and write ``drives.json``, ``drives.csv`` and a figure.
 
     Raises:
-        UserError: the run, the robot or the task is not to be had, or they do not fit each other.
+        UserError: the run, the robot or the task does not exist, they do not fit each other, or the folder
+            holds something else.
     """
     arbitration = _arbitration(config)
     run = None if config.run is None else read_run(config.run)
@@ -120,6 +146,7 @@ def drive_run(config: DriveConfig) -> list[Row]:
         task = task_without_run(config.task, config.robot, config.end_effector)
     else:
         task = task_of_run(run, demonstrations, config.task, config.robot, config.end_effector)
+    operator = config.operator or usual_operator(task.name)
     setup = Setup(
         task=task,
         controller=_controller(config, task),
@@ -127,30 +154,65 @@ def drive_run(config: DriveConfig) -> list[Row]:
         operator=BoltzmannConfig(beta=config.beta),
         time_limit_s=TIME_LIMITS_S[task.name] if config.time_limit_s is None else config.time_limit_s,
         rule=BELIEFS[config.belief],
+        planning=PLANNING[operator],
     )
+    about = _about(config, setup, operator, run, arbitration)
+    if config.record is not None:
+        check_vacant(config.record)
+    Study("drive", MADE).claim(config.out, about)
     if config.record is None:
-        traces = drive_all([setup], config.drives, config.seed, config.jobs)
+        traces = drive_all([setup], config.drives, config.seed, config.jobs, bars=config.bars)
     else:
         traces = _record_all(setup, config, config.record)
     model = None if run is None or config.controller == "end_effector" else run.model
     subject = Subject("drive", task=task.name, model=model, condition=config.controller)
     rows = drive_rows(subject, [trace.figures for trace in traces])
-    about = {
+    planned = [
+        Planned(task.goals[goal].name, manner, number % config.drives)
+        for number, (goal, manner, _) in enumerate(drive_plan(task, config.drives, config.seed))
+    ]
+    entries = drive_entries(
+        planned, traces, seed=config.seed, controller=config.controller, operator=operator
+    )
+    write_json(config.out / "drives.json", as_document(rows, about) | {"drives": entries})
+    write_drives_csv(config.out / "drives.csv", entries)
+    draw_drives({config.controller: traces}, task, config.out / "paths.png")
+    return Driven(rows, entries)
+
+
+def _about(
+    config: DriveConfig,
+    setup: Setup,
+    operator: OperatorName,
+    run: Run | None,
+    arbitration: FixedAlpha | ConfidenceAlpha | None,
+) -> dict[str, object]:
+    """What the figures depend on."""
+    model = None if run is None or config.controller == "end_effector" else run.folder
+    return {
+        "study": "drive",
         "run": str(config.run),
+        "model": None if model is None else model_fingerprint(model, 0),
+        "controller": config.controller,
+        "task": setup.task.name,
+        "robot": setup.task.robot.name,
+        "end_effector": config.end_effector,
         "profile": config.profile,
+        "drives_per_goal": config.drives,
         "seed": config.seed,
-        "beta": config.beta,
         "operator": "simulated",
+        "operator_name": operator,
+        "beta": config.beta,
         "belief": config.belief,
         "arbitration": None if arbitration is None else config.arbitration or "fixed",
         "alpha": None if arbitration is None else asdict(arbitration),
+        "time_limit_s": setup.time_limit_s,
     }
-    write_results(config.out / "drives.json", rows, about)
-    draw_drives({config.controller: traces}, task, config.out / "paths.png")
-    return rows
 
 
-def drive_all(setups: Sequence[Setup], drives: int, seed: int, jobs: int) -> list[Trace]:
+def drive_all(
+    setups: Sequence[Setup], drives: int, seed: int, jobs: int, *, bars: bool = False
+) -> list[Trace]:
     """Drive to every goal ``drives`` times, the task's manners in turn, processes side by side.
 
     A drive depends on the seed, the goal and its number alone, so that every controller meets the
@@ -161,24 +223,40 @@ def drive_all(setups: Sequence[Setup], drives: int, seed: int, jobs: int) -> lis
         drives: to each goal.
         seed: of the starts and of the simulated operator.
         jobs: processes; -1 is one per core.
+        bars: show on standard error how many drives are done.
 
     Returns:
         The drives, goal by goal.
     """
-    calls = drive_plan(setups[0].task, drives, seed)
-    traces = Parallel(n_jobs=jobs)(
-        delayed(simulate)(setups[number % len(setups)], *call) for number, call in enumerate(calls)
-    )
-    return cast(list[Trace], traces)
+    plan = drive_plan(setups[0].task, drives, seed)
+    calls = [_Call(setups[number % len(setups)], *call) for number, call in enumerate(plan)]
+    return run_grid(_simulate, calls, jobs=jobs, backend="joblib", label=_name_of, bars=bars, unit="drives")
+
+
+@dataclass(frozen=True, eq=False)
+class _Call:
+    """One drive of `drive_all`."""
+
+    setup: Setup
+    goal: int
+    manner: str
+    rng: np.random.Generator
+
+
+def _simulate(call: _Call) -> Trace:
+    return simulate(call.setup, call.goal, call.manner, call.rng)
+
+
+def _name_of(call: _Call) -> str:
+    return f"the drive to {call.setup.task.goals[call.goal].name}"
 
 
 def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]:
     """Drive one after the other, each step journaled as it happens; then export the journal.
 
     Raises:
-        UserError: the dataset is there already, or a file cannot be written.
+        UserError: a journal is there already, or a file cannot be written.
     """
-    check_vacant(dataset)
     task = setup.task
     journal = config.out / "journal.sqlite"
     if journal.exists():
@@ -186,7 +264,7 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
     recorder = Recorder(journal)
     traces: list[Trace] = []
     try:
-        for goal, manner, rng in drive_plan(task, config.drives, config.seed):
+        for goal, manner, rng in _counted(drive_plan(task, config.drives, config.seed), config.bars):
             recorder.begin_episode(
                 EpisodeHeader(
                     robot=task.robot.name,
@@ -212,7 +290,7 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
     return traces
 
 
-def drive_plan(task: Task, drives: int, seed: int) -> list[tuple[int, str, np.random.Generator]]:
+def drive_plan(task: Task, drives: int, seed: int) -> list[DrivePlan]:
     """Goal, manner and randomness of every drive, goal by goal; the manners take turns.
 
     Args:
@@ -229,6 +307,15 @@ def drive_plan(task: Task, drives: int, seed: int) -> list[tuple[int, str, np.ra
         for goal in range(len(task.goals))
         for number in range(drives)
     ]
+
+
+def _counted(plan: Sequence[DrivePlan], bars: bool) -> Generator[DrivePlan]:
+    """The drives, one after the other, with a bar that counts those that are done."""
+    with counting_bar(bars) as bar:
+        task = bar.add_task("drives", total=len(plan))
+        for call in plan:
+            yield call
+            bar.advance(task)
 
 
 def _arbitration(config: DriveConfig) -> FixedAlpha | ConfidenceAlpha | None:

@@ -47,6 +47,7 @@ def run_grid(
     backend: str,
     label: Callable[[Cell], str],
     bars: bool,
+    unit: str = "cells",
 ) -> list[Result]:
     """Measure every cell, each on one process.
 
@@ -59,6 +60,7 @@ def run_grid(
         backend: a name in `BACKENDS`.
         label: what a cell is called when it fails or warns.
         bars: show on standard error how far the grid is.
+        unit: what a cell is called on the bar.
 
     Returns:
         The results in the order of the cells.
@@ -69,13 +71,13 @@ def run_grid(
         CellError: a cell raised anything else.
     """
     check_processes(jobs, backend)
-    with BACKENDS[backend](jobs) as workers, _bar(bars) as bar:
+    with BACKENDS[backend](jobs) as workers, counting_bar(bars) as bar:
         # One cell at a time to each process: a cell takes seconds, and so the bar is told of each.
         one_by_one: dict[str, Any] = {"batch_size": 1, "pre_dispatch": workers}
         parallel = Parallel(n_jobs=workers, **one_by_one)
         try:
             measured = parallel(
-                delayed(_measure)(function, cell, label(cell)) for cell in _watched(cells, workers, bar)
+                delayed(_measure)(function, cell, label(cell)) for cell in _watched(cells, workers, bar, unit)
             )
         except BrokenProcessPool as error:
             raise UserError(
@@ -121,18 +123,23 @@ def _measure(function: Callable[[Cell], Result], cell: Cell, name: str) -> _Meas
     return _Measured(result, tuple((warning.category, str(warning.message)) for warning in caught))
 
 
-def _watched(cells: Sequence[Cell], workers: int, bar: Progress) -> Iterator[Cell]:
+def _watched(cells: Sequence[Cell], workers: int, bar: Progress, unit: str) -> Iterator[Cell]:
     """The cells as they are begun.
 
     Every backend asks for the next one when a process is free, but not all of them tell what is done.
     """
-    task = bar.add_task("cells", total=len(cells))
+    task = bar.add_task(unit, total=len(cells))
     for begun, cell in enumerate(cells, start=1):
         bar.update(task, completed=max(0, begun - workers))
         yield cell
 
 
-def _bar(shown: bool) -> Progress:
+def counting_bar(shown: bool) -> Progress:
+    """A bar on standard error that counts and goes away when it is done.
+
+    Args:
+        shown: whether there is one at all.
+    """
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),

@@ -13,10 +13,11 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.errors import UserError
 from latentarm.metrics.drives import Drive, measure_drive
-from latentarm.operators.boltzmann import BoltzmannConfig, BoltzmannOperator
+from latentarm.metrics.ending import Ending, why_it_ended
+from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.operators.catalogue import make_operator
 from latentarm.operators.foresight import Foresight
-from latentarm.operators.operator import Operator
-from latentarm.operators.planning import PlanningConfig, PlanningOperator
+from latentarm.operators.planning import PlanningConfig
 from latentarm.robots.simulated import SimulatedArm
 from latentarm.tasks.task import Task
 from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
@@ -41,10 +42,10 @@ class Setup:
         rule: how inputs change the belief; without help too, for a decoder may look at it.
         foresight: where the simulated operator expects an input to lead; they know the arm where None.
         planning: how far a simulated operator who knows the arm plans where one step leads no nearer; None
-            never plans.
+            never plans (see `latentarm.operators.catalogue`).
 
     Raises:
-        UserError: a person is to plan who does not know the arm.
+        UserError: an operator who does not know the arm is asked to plan.
     """
 
     task: Task
@@ -69,6 +70,7 @@ class Trace:
         figures: what is measured of it.
         goal: index of the goal.
         progress: share of the waypoints that were reached.
+        ending: why it ended.
         time_s: (T,), s.
         position: (T, 3), the tool, m.
         input: (T, d).
@@ -79,6 +81,7 @@ class Trace:
     figures: Drive
     goal: int
     progress: float
+    ending: Ending
     time_s: FloatArray
     position: FloatArray
     input: FloatArray
@@ -110,8 +113,9 @@ def simulate(
     start = task.sample_start(goal, rng)
     arm = SimulatedArm(task.robot, start, dt_s)
     step = _step(setup, dt_s)
-    operator = _operator(setup, dt_s)
+    operator = make_operator(task.robot, setup.operator, setup.planning, setup.foresight, dt_s)
     remaining = list(task.waypoints(goal, manner))
+    since_s = 0.0
     step.reset(start)
     records = [step(Input(np.zeros(controller.input_dim)), 0.0, start, 0.0)]
     step.enable()
@@ -120,6 +124,7 @@ def simulate(
         pose = task.robot.chain.forward(state)
         while remaining and task.reached(pose, remaining[0]):
             remaining.pop(0)
+            since_s = (tick - 1) * dt_s
         if not remaining:
             break
         context = Context(state=state, belief=step.belief)
@@ -129,13 +134,7 @@ def simulate(
             watch(records[-1])
         arm.send(records[-1].command)
         arm.advance()
-    return _trace(records, setup, goal, manner, left=len(remaining))
-
-
-def _operator(setup: Setup, dt_s: float) -> Operator:
-    if setup.planning is None:
-        return BoltzmannOperator(setup.task.robot, setup.operator, period_s=dt_s, foresight=setup.foresight)
-    return PlanningOperator(setup.task.robot, setup.operator, setup.planning, period_s=dt_s)
+    return _trace(records, setup, goal, manner, remaining, since_s)
 
 
 def _step(setup: Setup, dt_s: float) -> Step:
@@ -152,13 +151,16 @@ def _step(setup: Setup, dt_s: float) -> Step:
     )
 
 
-def _trace(records: list[StepRecord], setup: Setup, goal: int, manner: str, *, left: int) -> Trace:
+def _trace(
+    records: list[StepRecord], setup: Setup, goal: int, manner: str, remaining: list[Pose], since_s: float
+) -> Trace:
     chain = setup.task.robot.chain
     waypoints: tuple[Pose, ...] = setup.task.waypoints(goal, manner)
     return Trace(
-        figures=measure_drive(records, chain, waypoints[-1], success=not left),
+        figures=measure_drive(records, chain, waypoints[-1], success=not remaining),
         goal=goal,
-        progress=1.0 - left / len(waypoints),
+        progress=1.0 - len(remaining) / len(waypoints),
+        ending=why_it_ended(records, chain, remaining[0] if remaining else None, since_s),
         time_s=np.array([record.time_s for record in records]),
         position=chain.forward(np.stack([record.state for record in records])).position,
         input=np.stack([record.input for record in records]),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from latentarm.kinematics.rotations import angle_between
 from latentarm.metrics.contract import PlacesTool
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.types import FloatArray, Pose, Row, StepRecord
@@ -22,6 +23,7 @@ class Drive:
         mode_switches: how often the controller's mode changed.
         path_length: way of the tool through space, m.
         final_distance: of the tool from the target at the end, m.
+        final_angle_deg: of the tool from the target's orientation at the end, degrees.
     """
 
     success: bool
@@ -30,6 +32,7 @@ class Drive:
     mode_switches: int
     path_length: float
     final_distance: float
+    final_angle_deg: float
 
 
 def path_length(position: FloatArray) -> float:
@@ -65,7 +68,8 @@ def measure_drive(
     if not records:
         raise ValueError("A drive without a single step has no figures.")
     time_s = np.array([record.time_s for record in records])
-    position = chain.forward(np.stack([record.state for record in records]), tool).position
+    pose = chain.forward(np.stack([record.state for record in records]), tool)
+    position = pose.position
     return Drive(
         success=success,
         time_s=float(time_s[-1] - time_s[0]),
@@ -73,6 +77,7 @@ def measure_drive(
         mode_switches=mode_switches([record.mode for record in records]),
         path_length=path_length(position),
         final_distance=float(np.linalg.norm(position[-1] - target.position)),
+        final_angle_deg=float(np.rad2deg(angle_between(pose.rotation[-1], target.rotation))),
     )
 
 

@@ -102,7 +102,7 @@ def test_an_earlier_run_makes_room_and_nothing_of_it_stays(done, tmp_path, monke
 @pytest.mark.parametrize("content", ["{}", "[]", "no JSON", '{"study": "another"}'])
 def test_a_folder_of_something_else_is_left_alone(tmp_path, content):
     (tmp_path / CONFIG).write_text(content)
-    with pytest.raises(UserError, match="no earlier run of this study"):
+    with pytest.raises(UserError, match="no earlier run of this command"):
         run_properties(tiny(tmp_path))
     assert [path.name for path in tmp_path.iterdir()] == [CONFIG]
     assert (tmp_path / CONFIG).read_text() == content

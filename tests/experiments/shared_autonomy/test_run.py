@@ -152,7 +152,7 @@ def test_an_earlier_run_makes_room_and_another_study_stays(done, tmp_path, monke
         run_shared_autonomy(tiny(out))
     assert {path.name for path in out.iterdir()} == {CONFIG, "notes.txt"}
     (out / CONFIG).write_text('{"study": "properties"}')
-    with pytest.raises(UserError, match="no earlier run of this study"):
+    with pytest.raises(UserError, match="no earlier run of this command"):
         run_shared_autonomy(tiny(out))
     assert (out / CONFIG).read_text() == '{"study": "properties"}'
 

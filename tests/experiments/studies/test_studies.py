@@ -29,8 +29,25 @@ def test_an_earlier_run_makes_room_and_another_study_stays(tmp_path):
     (tmp_path / "mine.txt").touch()
     STUDY.claim(tmp_path, {"study": "tides"})
     assert {path.name for path in tmp_path.iterdir()} == {CONFIG, "mine.txt"}
-    with pytest.raises(UserError, match="no earlier run of this study"):
+    with pytest.raises(UserError, match="no earlier run of this command"):
         Study("winds", ("tides.png",)).claim(tmp_path, {"study": "winds"})
+
+
+def test_the_results_of_another_run_are_not_replaced(tmp_path):
+    out = tmp_path / "tides"
+    STUDY.claim(out, {"study": "tides", "moons": 1, "tasks": ("sea",)})
+    (out / "tides.png").write_text("earlier")
+    (tmp_path / "tides-2").mkdir()
+    with pytest.raises(UserError, match=r"moons 1 there, 2 now.*tides-3"):
+        STUDY.claim(out, {"study": "tides", "moons": 2, "tasks": ("sea",)})
+    assert (out / "tides.png").read_text() == "earlier"
+    STUDY.claim(out, {"study": "tides", "moons": 1, "tasks": ("sea",)})
+
+
+def test_a_run_that_was_cut_off_before_it_had_results_makes_room(tmp_path):
+    STUDY.claim(tmp_path, {"study": "tides", "moons": 1})
+    STUDY.claim(tmp_path, {"study": "tides", "moons": 2})
+    assert json.loads((tmp_path / CONFIG).read_text())["moons"] == 2
 
 
 def test_a_figure_that_is_no_number_is_not_written(tmp_path):

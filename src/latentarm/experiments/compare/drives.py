@@ -23,11 +23,12 @@ from latentarm.experiments.compare.streams import Stream
 from latentarm.experiments.simulation import Setup, simulate
 from latentarm.experiments.studies.streams import sequence
 from latentarm.metrics.drives import Drive, drive_rows
+from latentarm.metrics.ending import Ending
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.undone import undone_share
 from latentarm.models.decoder import Decoder
 from latentarm.operators.boltzmann import BoltzmannConfig
-from latentarm.operators.planning import PlanningConfig
+from latentarm.operators.catalogue import PLANNING, usual_operator
 from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.replay import Replay
 from latentarm.types import Row
@@ -70,6 +71,7 @@ class DriveResult:
         episode: its index in the dataset.
         figures: of the drive.
         progress: share of the waypoints that were reached.
+        ending: why it ended.
         undone: share of the tool's path that was gone back over.
         demonstrated_undone: the same of the episode itself.
         took_s: computing time, s.
@@ -80,6 +82,7 @@ class DriveResult:
     episode: int
     figures: Drive
     progress: float
+    ending: Ending
     undone: float
     demonstrated_undone: float
     took_s: float
@@ -137,7 +140,7 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
             arbitration=None,
             operator=BoltzmannConfig(),
             time_limit_s=cell.limit_s,
-            planning=PlanningConfig(),
+            planning=PLANNING[usual_operator(task.name)],
         )
         streams = sequence(cell.seed, cell.dataset.name, Stream.DRIVES, cell.episode)
         trace = simulate(setup, 0, task.manners[0], np.random.default_rng(streams))
@@ -148,6 +151,7 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
         episode=cell.episode,
         figures=trace.figures,
         progress=trace.progress,
+        ending=trace.ending,
         undone=undone_share(trace.position),
         demonstrated_undone=undone_share(shown.position),
         took_s=perf_counter() - began,

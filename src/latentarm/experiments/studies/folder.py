@@ -1,12 +1,13 @@
-"""A study's folder: claimed before any work is done, and what is written to it."""
+"""The folder of a command's results: claimed before any work is done, so that nothing is lost silently."""
 
 import json
 import platform
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
+from itertools import count
 from pathlib import Path
-from typing import Final
+from typing import Any, Final, cast
 
 from latentarm.errors import UserError
 from latentarm.files import write_text
@@ -19,10 +20,13 @@ CONFIG: Final = "config.json"
 PACKAGES: Final = ("latentarm", "numpy", "scikit-learn", "scipy", "statsmodels", "torch")
 """Those whose versions the figures may hang on."""
 
+SHORT: Final = 40
+"""Characters of a value in a sentence, at most."""
+
 
 @dataclass(frozen=True)
 class Study:
-    """A study as its folder knows it.
+    """A study, or a command with results of its own, as its folder knows it.
 
     Attributes:
         name: as in `CONFIG` and in every row of ``results.json``.
@@ -33,20 +37,25 @@ class Study:
     made: tuple[str, ...]
 
     def claim(self, out: Path, about: Mapping[str, object]) -> None:
-        """Make room for a new run: an earlier one is removed, anything else is left alone.
+        """Make room for a new run: one that asked for the same is replaced, anything else is left alone.
 
         Args:
             out: the folder.
             about: what the figures depend on; goes to `CONFIG` with the versions of what computes them.
 
         Raises:
-            UserError: the folder holds something that this study did not write, or cannot be written.
+            UserError: the folder holds something that this study did not write, or the results of a run
+                that asked for something else; or it cannot be written.
         """
-        if out.exists() and not (out.is_dir() and (self._wrote(out) or not any(out.iterdir()))):
+        earlier = self._earlier(out)
+        if out.exists() and earlier is None and not (out.is_dir() and not any(out.iterdir())):
             raise UserError(
-                f"{out} is there already and is no earlier run of this study: choose another folder with"
-                " --out."
+                f"{out} is there already and is no earlier run of this command: choose another folder with"
+                f" --out, such as {vacant_name(out)}."
             )
+        if earlier is not None and any((out / name).exists() for name in self.made):
+            wanted = cast(dict[str, object], json.loads(json.dumps(about)))
+            refuse_other_results(out, {key: earlier.get(key) for key in wanted}, wanted)
         if out.exists():
             for name in self.made:
                 (out / name).unlink(missing_ok=True)
@@ -56,12 +65,49 @@ class Study:
         }
         write_json(out / CONFIG, {**about, "versions": versions, "git_commit": git_commit()})
 
-    def _wrote(self, out: Path) -> bool:
-        """Whether a folder says of itself that it is of this study."""
+    def _earlier(self, out: Path) -> dict[str, Any] | None:
+        """What an earlier run of this study was asked for; None where the folder holds none."""
         try:
-            return read_object(out / CONFIG).get("study") == self.name
+            config = read_object(out / CONFIG)
         except UserError:
-            return False
+            return None
+        return config if config.get("study") == self.name else None
+
+
+def refuse_other_results(out: Path, earlier: Mapping[str, object], wanted: Mapping[str, object]) -> None:
+    """Refuse to replace results by those of another run.
+
+    Args:
+        out: what holds the results.
+        earlier: what they depend on, as read from JSON.
+        wanted: what the new ones would depend on, as it would be read from JSON.
+
+    Raises:
+        UserError: the two differ.
+    """
+    names = [name for name in dict.fromkeys((*wanted, *earlier)) if wanted.get(name) != earlier.get(name)]
+    if names:
+        shown = ", ".join(
+            f"{name} {_short(earlier.get(name))} there, {_short(wanted.get(name))} now" for name in names[:2]
+        )
+        more = f" and {len(names) - 2} more differences" if len(names) > 2 else ""
+        raise UserError(
+            f"{out} holds the results of another run ({shown}{more}): choose another folder with --out,"
+            f" such as {vacant_name(out)}, or remove it."
+        )
+
+
+def vacant_name(out: Path) -> Path:
+    """A folder of the same name with a number that is not there yet."""
+    named = out if out.name else out.resolve()
+    return next(
+        place for number in count(2) if not (place := named.with_name(f"{named.name}-{number}")).exists()
+    )
+
+
+def _short(value: object) -> str:
+    said = json.dumps(value)
+    return f"{said[:SHORT]}…" if len(said) > SHORT else said
 
 
 def write_json(path: Path, document: object) -> None:
