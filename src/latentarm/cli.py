@@ -16,6 +16,7 @@ from latentarm import __version__
 from latentarm.commands.align import align
 from latentarm.commands.bench import bench
 from latentarm.commands.compare import compare
+from latentarm.commands.configuration import Command, configurable, file_named_in, read_options
 from latentarm.commands.demo import demo
 from latentarm.commands.drive import drive
 from latentarm.commands.evaluate import evaluate
@@ -31,19 +32,27 @@ from latentarm.commands.train import train
 from latentarm.errors import UserError
 from latentarm.untrusted.terminal import one_line
 
-app = SubcommandApp()
-app.command(demo)
-app.command(name="import")(import_demonstrations)
-for command in (inspect, train, evaluate, compare, align, drive, teleop, export):
-    app.command(command)
-studies = app.command(
-    SubcommandApp(), name="reproduce", help="Reproduce a study of the paper; `reproduce --help` lists them."
-)
-studies.command(properties)
-studies.command(name="shared-autonomy")(shared_autonomy)
-studies.command(alignment)
-for command in (bench, robots):
-    app.command(command)
+COMMANDS: dict[str, Command] = {
+    "demo": demo,
+    "import": import_demonstrations,
+    "inspect": inspect,
+    "train": train,
+    "evaluate": evaluate,
+    "compare": compare,
+    "align": align,
+    "drive": drive,
+    "teleop": teleop,
+    "export": export,
+    "reproduce properties": properties,
+    "reproduce shared-autonomy": shared_autonomy,
+    "reproduce alignment": alignment,
+    "bench": bench,
+    "robots": robots,
+}
+"""Every command by the words that run it, in the order of the help."""
+
+GROUPS = {"reproduce": "Reproduce a study of the paper; `reproduce --help` lists them."}
+"""Words that have commands under them, and their help."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -64,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _warn
-            code = app.cli(
+            code = _app(words).cli(
                 prog="latentarm",
                 description="Steer a high-DoF assistive arm with a low-DoF input, by latent actions. "
                 "`latentarm --version` prints the version.",
@@ -84,6 +93,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("latentarm: interrupted.", file=sys.stderr)
         return 130
+
+
+def _app(words: Sequence[str]) -> SubcommandApp:
+    """All commands, and the one that is to run with defaults from its ``--config``.
+
+    Raises:
+        UserError: that file is not one of options of that command.
+    """
+    app = SubcommandApp()
+    groups: dict[str, SubcommandApp] = {}
+    for name, command in COMMANDS.items():
+        group, _, last = name.rpartition(" ")
+        if group and group not in groups:
+            groups[group] = app.command(SubcommandApp(), name=group, help=GROUPS[group])
+        file = file_named_in(words) if list(words[: len(name.split())]) == name.split() else None
+        defaults = {} if file is None else read_options(file, command, name)
+        (groups[group] if group else app).command(name=last)(configurable(command, name, defaults))
+    return app
 
 
 def _refuse(sentence: str) -> int:

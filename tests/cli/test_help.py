@@ -27,6 +27,7 @@ COMMANDS = [
     "align",
     "drive",
     "teleop",
+    "export",
     "reproduce",
     "bench",
     "robots",

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, MovedDataset, Seed
 from latentarm.commands.output import say, show
 
@@ -27,6 +28,7 @@ def align(
     Shows motions and asks for each how they would push the stick for it: numbers from -1 to 1, or arrow keys.
     For example: latentarm align runs/pour-cae --name ada
     """
+    from latentarm.alignment.profile import profile_folder
     from latentarm.experiments.aligning import AlignConfig, align_run
 
     config = AlignConfig(
@@ -44,6 +46,7 @@ def align(
     except KeyboardInterrupt:
         print("\nNothing is saved.", file=sys.stderr)
         raise
+    write_options(profile_folder(run, name), "align")
     show(rows, json)
     whose = "simulated person's profile" if simulated else "profile"
     say(f"The {whose} is {run}/profiles/{name}/; next: latentarm drive {run} --profile {name}", json)

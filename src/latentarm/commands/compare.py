@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Backend, Jobs, Json, Seed
 from latentarm.commands.output import say, show
 
@@ -65,6 +66,7 @@ def compare(
         demonstrations, out, sizes, ours or OURS, seed, jobs, backend, quiet=json, bars=bars
     )
     rows = run_compare(config)
+    write_options(out, "compare")
     names = [path.resolve().name for path in demonstrations]
     show(rows, json, *terminal_tables(rows, names, sizes.noises_rad, VisibleConsole().width))
     say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from tyro.conf import arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import say, show
 from latentarm.commands.teleop import teleop
@@ -28,6 +29,7 @@ def demo(
 
     bars = not json and sys.stderr.isatty()
     rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars))
+    write_options(out, "demo")
     show(rows, json)
     say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
     run = out / "runs" / "cvae"

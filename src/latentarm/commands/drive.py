@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import EndEffector, Jobs, Json, MovedDataset, Seed
 from latentarm.commands.output import say, show
 
@@ -97,6 +98,14 @@ def drive(
             out=out,
             bars=not json and sys.stderr.isatty(),
         )
+    )
+    write_options(
+        out,
+        "drive",
+        controller=driven.controller,
+        operator=driven.operator,
+        task=driven.task,
+        time_limit_s=driven.time_limit_s,
     )
     show(driven.rows, json)
     for sentence in endings_in_words(driven.entries):

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json
 from latentarm.commands.output import print_renderables, say
 
@@ -47,6 +48,7 @@ def export(
     check_vacant(out)
     chosen = choose(recordings, episodes, source, incomplete=incomplete)
     write_dataset(read_recordings(chosen, source=str(source), incomplete=incomplete), out)
+    write_options(out, "export")
     if json:
         print(json_format.dumps(describe(chosen), indent=2))
     say(f"{len(chosen)} of {len(recordings)} episodes are in {out}/.", json)

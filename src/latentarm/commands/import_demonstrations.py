@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import EndEffector, Json, RobotName
 from latentarm.commands.output import say, show
 
@@ -44,6 +45,7 @@ def import_demonstrations(
         task=instruction,
         actions=actions,
     )
+    write_options(destination, "import")
     if json:
         show(summary(demonstrations).rows(), json)
     say(

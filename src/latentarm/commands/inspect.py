@@ -5,6 +5,7 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json
 from latentarm.commands.output import say, show
 
@@ -25,6 +26,7 @@ def inspect(
 
     demonstrations = read_dataset(dataset)
     figure = draw(demonstrations, out or dataset.with_name(f"{dataset.name}-figures"))
+    write_options(figure.parent, "inspect")
     show(summary(demonstrations).rows(), json, *summary_tables(demonstrations))
     say(f"The joints over time are drawn in {figure}.", json)
     return 0

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Backend, Jobs, Json, PresetName, Seed
 from latentarm.commands.output import say, show
 
@@ -36,6 +37,7 @@ def alignment(
     bars = not json and sys.stderr.isatty()
     config = AlignmentConfig(out, PRESETS[preset], tasks, seed, jobs, backend, quiet=json, bars=bars)
     rows = run_alignment(config)
+    write_options(out, "reproduce alignment")
     show(rows, json, *summary_tables(rows, config.preset))
     say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
     return 0

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Backend, Jobs, Json, PresetName, Seed
 from latentarm.commands.output import say, show, tables_by_task
 
@@ -35,6 +36,7 @@ def properties(
     bars = not json and sys.stderr.isatty()
     config = PropertiesConfig(out, PRESETS[preset], tasks, seed, jobs, backend, quiet=json, bars=bars)
     rows = run_properties(config)
+    write_options(out, "reproduce properties")
     show(rows, json, *tables_by_task(rows))
     say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
     return 0

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Backend, Jobs, Json, PresetName, Seed
 from latentarm.commands.output import say, show
 
@@ -37,6 +38,7 @@ def shared_autonomy(
     bars = not json and sys.stderr.isatty()
     config = SharedAutonomyConfig(out, PRESETS[preset], tasks, seed, jobs, backend, quiet=json, bars=bars)
     rows = run_shared_autonomy(config)
+    write_options(out, "reproduce shared-autonomy")
     show(rows, json, *summary_tables(rows))
     say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
     return 0

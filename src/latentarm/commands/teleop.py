@@ -8,6 +8,7 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import say
 
@@ -44,6 +45,7 @@ def teleop(
         sys.stdout.flush()  # whoever reads us through a pipe waits for the address
 
     def ready(address: str) -> None:
+        write_options(out, "teleop")
         if json:
             print(json_format.dumps({"address": address}), flush=True)
 

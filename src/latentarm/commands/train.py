@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
+from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Dataset, EndEffector, Json, ModelName, Seed
 from latentarm.commands.output import say, show
 
@@ -26,6 +27,15 @@ def train(
     held_out: Annotated[float, arg(help="Share of the episodes kept for evaluation.")] = 0.2,
     epochs: Annotated[
         int | None, arg(help="At most this many passes over the pairs; the model's own number by default.")
+    ] = None,
+    hidden: Annotated[
+        tuple[int, ...] | None,
+        arg(
+            metavar="UNITS ...", help="Units of each hidden layer, such as 30 30; the model's own by default."
+        ),
+    ] = None,
+    batch_size: Annotated[
+        int | None, arg(help="Pairs per step, at most; the model's own number by default.")
     ] = None,
     kl_weight: Annotated[
         float | None, arg(help="lambda of equations 7 and 8, for vae and cvae; below 1.")
@@ -63,6 +73,8 @@ def train(
         state_noise_rad=state_noise_rad,
         held_out=held_out,
         epochs=epochs,
+        hidden=hidden,
+        batch_size=batch_size,
         kl_weight=kl_weight,
         goal_entropy=goal_entropy,
         device=device,
@@ -73,6 +85,7 @@ def train(
     with epoch_bar(not json and sys.stderr.isatty()) as report:
         rows = train_run(config, report)
 
+    write_options(config.out, "train")
     show(rows, json)
     say(f"The run is {config.out}/; next: latentarm evaluate {config.out}", json)
     return 0

@@ -7,7 +7,6 @@ from typing import Final, Literal
 
 import numpy as np
 
-from latentarm.alignment.profile import model_fingerprint
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.control.controller import Controller
@@ -126,10 +125,18 @@ class Driven:
     Attributes:
         rows: mean and SD over the drives.
         entries: one mapping per drive, see `latentarm.experiments.drive_table.COLUMNS`.
+        controller: what drove.
+        operator: who gave inputs.
+        task: what was done.
+        time_limit_s: after which a drive had failed, s.
     """
 
     rows: list[Row]
     entries: list[dict[str, object]]
+    controller: ControllerName
+    operator: OperatorName
+    task: str
+    time_limit_s: float
 
 
 def drive_run(config: DriveConfig) -> Driven:
@@ -177,7 +184,7 @@ def drive_run(config: DriveConfig) -> Driven:
     write_json(config.out / "drives.json", as_document(rows, about) | {"drives": entries})
     write_drives_csv(config.out / "drives.csv", entries)
     draw_drives({config.controller: traces}, task, config.out / "paths.png")
-    return Driven(rows, entries)
+    return Driven(rows, entries, config.controller, operator, task.name, setup.time_limit_s)
 
 
 def _about(
@@ -192,7 +199,7 @@ def _about(
     return {
         "study": "drive",
         "run": str(config.run),
-        "model": None if model is None else model_fingerprint(model, 0),
+        "model": None if model is None else weights_fingerprint(model),
         "controller": config.controller,
         "task": setup.task.name,
         "robot": setup.task.robot.name,

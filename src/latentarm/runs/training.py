@@ -7,7 +7,7 @@ some are held out from both, for `latentarm evaluate`.
 import warnings
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
+from latentarm.models.neural import NeuralModel
 from latentarm.models.training import Report
 from latentarm.robots.catalogue import ROBOTS, load_robot
 from latentarm.runs.checks import check_seed
@@ -47,6 +48,8 @@ class TrainConfig:
         state_noise_rad: SD of the noise on the states that train the model, rad.
         held_out: share of the episodes that neither train nor stop the model.
         epochs: passes over the training pairs, at most; the model's own number where None.
+        hidden: units of each hidden layer; the model's own where None.
+        batch_size: pairs per step, at most; the model's own number where None.
         kl_weight: lambda of equations 7 and 8, for models that have it; their own where None.
         goal_entropy: lambda_2 of equation 16; 0 leaves the entropy over goals out of the loss.
         device: where to train.
@@ -65,6 +68,8 @@ class TrainConfig:
     state_noise_rad: float = 0.01
     held_out: float = 0.2
     epochs: int | None = None
+    hidden: tuple[int, ...] | None = None
+    batch_size: int | None = None
     kl_weight: float | None = None
     goal_entropy: float = 0.0
     device: Literal["cpu", "cuda", "auto"] = "cpu"
@@ -132,8 +137,19 @@ def train_run(config: TrainConfig, report: Report | None = None) -> list[Row]:
 
 def _model(config: TrainConfig) -> LatentActionModel:
     model_class = MODELS[config.model]
-    chosen = {"epochs": config.epochs, "kl_weight": config.kl_weight}
-    chosen = {name: value for name, value in chosen.items() if value is not None}
+    networks: dict[str, Any] = {
+        "epochs": config.epochs,
+        "hidden": config.hidden,
+        "batch_size": config.batch_size,
+    }
+    given: dict[str, Any] = networks | {"kl_weight": config.kl_weight}
+    chosen = {name: value for name, value in given.items() if value is not None}
+    for name in networks.keys() & chosen.keys():
+        if not issubclass(model_class, NeuralModel):
+            raise UserError(
+                f"The model {config.model} has no network to train: leave --{name.replace('_', '-')} out, or"
+                " choose another model."
+            )
     if "kl_weight" in chosen and "kl_weight" not in {field.name for field in fields(model_class)}:
         raise UserError(
             f"The model {config.model} has no KL term: leave --kl-weight out, or choose vae or cvae."

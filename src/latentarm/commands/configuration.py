@@ -1,0 +1,154 @@
+"""Options from a YAML file, for every command, and the options of a run written back beside its results.
+
+The file gives a command other defaults: the command line is parsed on top of them, so what is typed wins,
+and options that are otherwise required may come from the file.
+"""
+
+import difflib
+import inspect
+import json
+from collections.abc import Callable, Mapping, Sequence
+from contextvars import ContextVar
+from pathlib import Path
+from typing import Annotated, Any, Final, get_type_hints
+
+from tyro.conf import arg
+
+from latentarm import __version__
+from latentarm.errors import UserError
+from latentarm.files import write_text
+
+Command = Callable[..., int]
+
+ConfigFile = Annotated[
+    Path | None,
+    arg(
+        metavar="FILE.yaml",
+        help="Take options from a YAML file, by name: `seeds: 5`. What is on the command line wins.",
+    ),
+]
+
+OPTION: Final = "config"
+
+NOT_KEPT: Final = (OPTION, "json", "resume")
+"""Options that say how a run is told of or gone on with, not what it does; they are not written back."""
+
+_ASKED: ContextVar[tuple[str, Mapping[str, object]] | None] = ContextVar("asked", default=None)
+"""Name and options of the command that is running."""
+
+
+def configurable(command: Command, name: str, defaults: Mapping[str, object]) -> Command:
+    """A command with ``--config``, and with other defaults where the file gave some.
+
+    Args:
+        command: its parameters are its options.
+        name: the words that run it, such as ``reproduce properties``.
+        defaults: by parameter, of the parameter's type.
+    """
+    signature = inspect.signature(command)
+    hints = get_type_hints(command, include_extras=True)
+
+    def run(**options: Any) -> int:
+        del options[OPTION]
+        _ASKED.set((name, options))
+        return command(**options)
+
+    parameters = [
+        parameter.replace(
+            kind=inspect.Parameter.KEYWORD_ONLY,
+            default=defaults.get(parameter.name, parameter.default),
+            annotation=hints[parameter.name],
+        )
+        for parameter in signature.parameters.values()
+    ]
+    option = inspect.Parameter(OPTION, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=ConfigFile)
+    run.__name__, run.__doc__ = command.__name__, command.__doc__
+    run.__signature__ = signature.replace(parameters=[*parameters, option])  # pyright: ignore[reportFunctionMemberAccess]
+    run.__annotations__ = {**hints, OPTION: ConfigFile}
+    return run
+
+
+def file_named_in(words: Sequence[str]) -> Path | None:
+    """The file that ``--config`` names among the words of a command line, or None."""
+    found = None
+    for word, following in zip(words, [*words[1:], None], strict=True):
+        if word == f"--{OPTION}" and following is not None:
+            found = Path(following)
+        elif word.startswith(f"--{OPTION}="):
+            found = Path(word.partition("=")[2])
+    return found
+
+
+def read_options(path: Path, command: Command, name: str) -> dict[str, object]:
+    """Options of a command from a YAML file.
+
+    Args:
+        path: the file: one mapping from option names to values.
+        command: whose options these are.
+        name: the words that run it.
+
+    Returns:
+        Values by parameter, of the parameters' types.
+
+    Raises:
+        UserError: the file cannot be read, is no such mapping, or has an option that the command lacks or
+            whose value is of another type.
+    """
+    from pydantic import TypeAdapter, ValidationError
+
+    from latentarm.commands.yaml_file import read_mapping
+
+    hints = {key: hint for key, hint in get_type_hints(command).items() if key != "return"}
+    options: dict[str, object] = {}
+    for key, value in read_mapping(path).items():
+        parameter = key.replace("-", "_")
+        if parameter not in hints:
+            near = difflib.get_close_matches(parameter, hints, n=1, cutoff=0.0)
+            raise UserError(
+                f"{path}: `latentarm {name}` has no option {key!r}; the nearest one is {near[0]!r}."
+            )
+        if parameter in options:
+            raise UserError(f"{path}: the option {key!r} is given twice.")
+        try:
+            options[parameter] = TypeAdapter(hints[parameter]).validate_json(json.dumps(value), strict=True)
+        except ValidationError as error:
+            said = error.errors()[0]["msg"].replace("array", "list")
+            raise UserError(f"{path}: the option {key!r} is {value!r}. {said}.") from error
+    return options
+
+
+def write_options(folder: Path, name: str, **resolved: object) -> None:
+    """Write the options of the running command beside its results, for ``--config`` to run it again.
+
+    The file is ``<command>-options.yaml``. A command that another one calls writes nothing.
+
+    Args:
+        folder: where the results are; also what ``out`` is written as.
+        name: the command that calls this.
+        resolved: what options came to that were left to be chosen.
+
+    Raises:
+        UserError: the file cannot be written.
+    """
+    asked = _ASKED.get()
+    if asked is None or asked[0] != name:
+        return
+    import yaml
+
+    options = {key: value for key, value in asked[1].items() if key not in NOT_KEPT} | resolved
+    if "out" in options:
+        options["out"] = folder
+    words = name.replace(" ", "-")
+    path = folder / f"{words}-options.yaml"
+    text = yaml.safe_dump({key: _plain(value) for key, value in options.items()}, sort_keys=False)
+    head = f"# latentarm {__version__}; again: latentarm {name} --config {path.name}\n"
+    write_text(path, head + text)
+
+
+def _plain(value: object) -> object:
+    """A value as YAML has it."""
+    if isinstance(value, Path):
+        return str(value)
+    if isinstance(value, tuple):
+        return [_plain(entry) for entry in value]  # pyright: ignore[reportUnknownVariableType]
+    return value
