@@ -37,7 +37,9 @@ ROUNDING_M = 1e-5
 """`mj_geomDistance` stops improving a distance between meshes at about a micrometre."""
 
 START_M = 0.03
-FAR_M = 0.5
+NEAR_M = 0.06
+"""Distances beyond this are not worked out."""
+
 PERIODS_S = (0.001, 0.01, 0.02)
 PUSH_S = 2.0
 LOOK_S = 0.02
@@ -98,19 +100,20 @@ class Judge:
         self._pairs = pairs
         limits = robot.limits
         sampled = np.random.default_rng(0).uniform(limits.lower, limits.upper, (12, robot.dof))
-        moved = np.ptp([self.distances(q) for q in sampled], axis=0) > 1e-6
+        moved = np.ptp([self.distances(q, 10.0) for q in sampled], axis=0) > 1e-6
         self._pairs = [pair for pair, moves in zip(pairs, moved, strict=True) if moves]
 
-    def distances(self, q: FloatArray) -> FloatArray:
-        """(pairs,), m, none above `FAR_M`.
+    def distances(self, q: FloatArray, most_m: float = NEAR_M) -> FloatArray:
+        """(pairs,), m.
 
         Args:
             q: (n,), rad.
+            most_m: what stands for any longer distance, m.
         """
         self._data.qpos[self._address] = q
         mujoco.mj_kinematics(self._model, self._data)
         return np.array(
-            [mujoco.mj_geomDistance(self._model, self._data, g, h, FAR_M, None) for g, h in self._pairs]
+            [mujoco.mj_geomDistance(self._model, self._data, g, h, most_m, None) for g, h in self._pairs]
         )
 
 
@@ -354,14 +357,14 @@ def main() -> int:
     """All drives, one row per arm."""
     parser = argparse.ArgumentParser(description="Distances that arms keep, as MuJoCo measures them.")
     parser.add_argument("--drives", type=int, default=2000, help="how many, over all arms")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--first", type=int, default=0, help="number of the first, to go on from")
     chosen = parser.parse_args()
     seen = {name: Seen() for name in ARMS}
     robots = {name: arm(name) for name in ARMS}
-    for number in range(chosen.drives):
+    for number in range(chosen.first, chosen.first + chosen.drives):
         name, harm = ARMS[number % len(ARMS)], HARMS[number // len(ARMS) % len(HARMS)]
         period_s = PERIODS_S[number // 25 % len(PERIODS_S)]
-        least = drive(robots[name], harm, period_s, np.random.default_rng([chosen.seed, number]))
+        least = drive(robots[name], harm, period_s, np.random.default_rng([0, number]))
         arms = seen[name]
         arms.drives += 1
         arms.least_m = min(arms.least_m, least)
