@@ -6,7 +6,8 @@ import pytest
 
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
-from latentarm.robots.model_file import LARGEST_BYTES, load_model_file
+from latentarm.robots.model_file import load_model_file
+from latentarm.robots.model_xml import MOST_XML_BYTES
 from latentarm.robots.simulated import SimulatedArm
 from latentarm.types import Command
 
@@ -145,15 +146,15 @@ def test_an_unknown_end_effector_is_refused_with_the_files_name(written):
 
 
 def test_a_folder_is_no_file(tmp_path):
-    with pytest.raises(UserError, match="cannot be read: Is a directory"):
+    with pytest.raises(UserError, match="is a folder, not a file"):
         load_model_file(tmp_path)
 
 
 def test_a_huge_file_is_refused_before_it_is_read(tmp_path):
     path = tmp_path / "huge.xml"
     with path.open("wb") as stream:
-        stream.truncate(LARGEST_BYTES + 1)
-    with pytest.raises(UserError, match="larger than 20 MB"):
+        stream.truncate(MOST_XML_BYTES + 1)
+    with pytest.raises(UserError, match="is too large"):
         load_model_file(path)
 
 

@@ -225,7 +225,7 @@ class Site:
             for thread in threads:
                 thread.start()
             client.send(type="hello", version=1, name=name)
-            client.wait(lambda state: True)
+            client.wait(lambda state: True, within_s=60.0)  # the control process has begun by then
             try:
                 yield client
             finally:

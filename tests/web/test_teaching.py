@@ -251,6 +251,6 @@ def test_a_run_that_has_gone_is_not_driven_and_the_arm_stays_as_it_was(tmp_path,
         assert page.workshop["runs"] == ["copy", "run"]
         (tmp_path / "runs" / "copy" / "model.safetensors").write_bytes(b"broken")
         page.send(type="run", run="copy")
-        page.wait(lambda state: "model.safetensors" in state["why"])
+        page.wait(lambda state: "model.safetensors" in state["why"], within_s=60.0)
         assert page.welcome["run"] == "run"
         page.enable()

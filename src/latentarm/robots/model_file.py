@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import final
-from xml.etree import ElementTree as Xml
-from xml.parsers import expat
 
 import mujoco
 import numpy as np
@@ -15,12 +13,14 @@ from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.reader import Reading, read
 from latentarm.robots.assemble import assemble
 from latentarm.robots.limits import JointLimits, LimitSources, Source
+from latentarm.robots.model_xml import read_model_xml
 from latentarm.robots.robot import Robot
-from latentarm.robots.urdf import prepare_urdf
+from latentarm.robots.urdf import Urdf, prepare_urdf
 from latentarm.types import FloatArray
+from latentarm.untrusted.memory import bounded_memory
 
-LARGEST_BYTES = 20_000_000
-"""A longer model file is refused before it is parsed; meshes lie in files of their own."""
+MOST_JOINTS = 64
+"""A chain of more joints is no arm, and its pairs of links take minutes to compare."""
 
 SINGULAR = 0.05
 """A start whose tool's least singular value is below this share of the best that was found is moved."""
@@ -71,63 +71,35 @@ def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
         UserError: the file or a mesh is missing or broken, the end-effector is unknown or ambiguous,
             a joint on the way is neither a hinge nor a slide, or a limit is not a limit.
     """
-    spec, velocity = _parse(path)
+    source = read_model_xml(path)
+    if source.root.tag not in ("robot", "mujoco"):
+        raise UserError(
+            f"{path} is neither MJCF nor URDF: its outermost element is <{source.root.tag}>,"
+            " not <mujoco> or <robot>."
+        )
+    urdf = prepare_urdf(path, source.root) if source.root.tag == "robot" else None
+    with bounded_memory(str(path), source.size + (0 if urdf is None else urdf.mesh_bytes)):
+        return _loaded(path, urdf, end_effector)
+
+
+def _loaded(path: Path, urdf: Urdf | None, end_effector: str | None) -> Robot:
     try:
+        spec = mujoco.MjSpec.from_file(str(path)) if urdf is None else mujoco.MjSpec.from_string(urdf.text)
         mjcf = _as_mjcf(spec, path)
         model = mujoco.MjModel.from_xml_string(mjcf)
-    except ValueError as error:
+    except (ValueError, RuntimeError) as error:  # MuJoCo's for what is wrong, and for what it did not foresee
         raise UserError(f"{path} cannot be used as a robot: {_one_line(error)}") from error
     try:
         tool = end_effector if end_effector is not None else _only_end_effector(model)
         reading = read(model, [tool])
-        limits = _limits(model, reading, velocity)
+        if reading.chain.dof > MOST_JOINTS:
+            raise UserError(f"it has {reading.chain.dof} joints, and {MOST_JOINTS} are the most for an arm.")
+        limits = _limits(model, reading, {} if urdf is None else urdf.velocity)
         home = _home(model, reading, limits)
         whole_path = str(path.resolve())
         return assemble(whole_path, mjcf, [tool], limits, home, TOOL_SPEED_LIMIT, whole_path, model)
     except UserError as error:
         raise UserError(f"{path}: {error}") from error
-
-
-def _parse(path: Path) -> tuple[mujoco.MjSpec, Mapping[str, float]]:
-    """The model to edit, and the velocity limits that a URDF gives."""
-    try:
-        if path.stat().st_size > LARGEST_BYTES:
-            raise UserError(f"{path} is larger than {LARGEST_BYTES // 1_000_000} MB: this is no robot model.")
-        text = path.read_bytes()
-    except OSError as error:
-        raise UserError(f"The robot model {path} cannot be read: {error.strerror or error}.") from error
-    root = _tree(path, text)
-    try:
-        if root.tag == "robot":
-            urdf = prepare_urdf(path, root)
-            return mujoco.MjSpec.from_string(urdf.text), urdf.velocity
-        if root.tag == "mujoco":
-            return mujoco.MjSpec.from_file(str(path)), {}
-    except ValueError as error:
-        raise UserError(f"{path} cannot be used as a robot: {_one_line(error)}") from error
-    raise UserError(
-        f"{path} is neither MJCF nor URDF: its outermost element is <{root.tag}>, not <mujoco> or <robot>."
-    )
-
-
-def _tree(path: Path, text: bytes) -> Xml.Element:
-    """The file's elements; as MuJoCo does, it lets pass prefixes that are not declared."""
-
-    def refuse(*_: object) -> None:
-        # Without declarations nothing can expand or be fetched from elsewhere.
-        raise UserError(f"{path} declares a document type, which no robot model needs: remove that line.")
-
-    builder = Xml.TreeBuilder()
-    parser = expat.ParserCreate()
-    parser.StartDoctypeDeclHandler = refuse
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.data
-    try:
-        parser.Parse(text, True)
-    except expat.ExpatError as error:
-        raise UserError(f"{path} is not valid XML: {error}.") from error
-    return builder.close()
 
 
 def _as_mjcf(spec: mujoco.MjSpec, path: Path) -> str:

@@ -7,6 +7,8 @@ from typing import final
 from xml.etree import ElementTree as Xml
 
 from latentarm.errors import UserError
+from latentarm.robots.model_xml import MOST_FILE_BYTES
+from latentarm.untrusted.opening import check_file
 
 MESH_FORMATS = (".stl", ".obj", ".msh")
 """Mesh files that MuJoCo reads."""
@@ -21,10 +23,12 @@ class Urdf:
         text: the URDF without visual geometry, its collision meshes as absolute paths.
         velocity: the velocity limit of each joint that has one above zero, rad/s (m/s where prismatic).
             Exporters write zero where they know none.
+        mesh_bytes: of all collision meshes, on disk.
     """
 
     text: str
     velocity: dict[str, float]
+    mesh_bytes: int
 
 
 def prepare_urdf(path: Path, root: Xml.Element) -> Urdf:
@@ -43,15 +47,19 @@ def prepare_urdf(path: Path, root: Xml.Element) -> Urdf:
     """
     if any(element.tag.startswith("xacro:") for element in root.iter()):
         raise UserError(f"{path} is a xacro file: expand it first, with `xacro {path.name} > robot.urdf`.")
+    mesh_bytes = 0
     for link in root.findall("link"):
         for visual in link.findall("visual"):
             link.remove(visual)
         for mesh in link.iterfind("collision/geometry/mesh"):
-            mesh.set("filename", str(_mesh_file(path, str(link.get("name")), mesh.get("filename", ""))))
+            file = _mesh_file(path, str(link.get("name")), mesh.get("filename", ""))
+            mesh.set("filename", str(file))
+            mesh_bytes += file.stat().st_size
     # MuJoCo would merge links that have no joint, and with them the end-effector's name.
     for element in root.findall("mujoco"):
         root.remove(element)
-    return Urdf(text=Xml.tostring(root, encoding="unicode"), velocity=dict(_velocities(path, root)))
+    text = Xml.tostring(root, encoding="unicode")
+    return Urdf(text=text, velocity=dict(_velocities(path, root)), mesh_bytes=mesh_bytes)
 
 
 def _velocities(path: Path, root: Xml.Element) -> Iterator[tuple[str, float]]:
@@ -81,6 +89,7 @@ def _mesh_file(path: Path, link: str, filename: str) -> Path:
             f"{path}: the collision mesh {filename!r} of link {link} is in a format that cannot be read:"
             f" convert it to one of {', '.join(MESH_FORMATS)}."
         )
+    check_file(named, MOST_FILE_BYTES)
     return named
 
 

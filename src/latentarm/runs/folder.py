@@ -55,7 +55,7 @@ class Run:
             UserError: it is not there, cannot be read, or is another dataset.
         """
         path = moved_to or self.demonstrations
-        if not path.exists():
+        if is_missing(path):
             raise UserError(
                 f"The dataset of {self.folder} is not at {path} any more: say where with --demonstrations."
             )

@@ -16,7 +16,7 @@ from latentarm.web.shared import Flag, LatestSlot
 ORDER_LIMIT: Final = 4096
 """The longest order, bytes; short enough that the pipe takes it whole or not at all."""
 
-_REPORT_LIMIT: Final = 16384
+_REPORT_LIMIT: Final = 65536
 _GIVEN_LIMIT: Final = 1024
 _REASON_LIMIT: Final = 512
 

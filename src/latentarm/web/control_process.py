@@ -3,8 +3,10 @@
 import gc
 import os
 import signal
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import Final
@@ -15,11 +17,12 @@ from latentarm.control.clock import MonotonicClock
 from latentarm.control.loop import ControlLoop
 from latentarm.errors import UserError
 from latentarm.robots.arm import Arm
+from latentarm.untrusted.terminal import one_line
 from latentarm.web.channel import Channel, ChooseProfile, ChooseRun, Reset
 from latentarm.web.cockpit import Cockpit
 from latentarm.web.live_arm import LiveArm
 from latentarm.web.recording import EpisodeWriter
-from latentarm.web.setting import Setting, Spec, load_setting
+from latentarm.web.setting import Setting, Spec, load_setting, with_profile
 
 _PRIORITY: Final = 10
 """Of the least urgent real-time processes."""
@@ -67,9 +70,10 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                     case Reset():
                         arm = LiveArm(setting.task.robot, setting.start, clock)
                     case ChooseProfile(name=name):
-                        setting, note = _loaded(replace(setting.spec, profile=name), setting)
+                        setting, note = _loaded(partial(with_profile, setting, name), setting)
                     case ChooseRun(run=run):
-                        setting, note = _loaded(replace(setting.spec, run=Path(run), profile=None), setting)
+                        spec = replace(setting.spec, run=Path(run), profile=None)
+                        setting, note = _loaded(partial(load_setting, spec), setting)
                         if not note:
                             arm = LiveArm(setting.task.robot, setting.start, clock)
         finally:
@@ -83,9 +87,13 @@ def _ask_for_priority() -> None:
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
-def _loaded(spec: Spec, before: Setting) -> tuple[Setting, str]:
-    """What a spec names, or what there was before and why the other cannot be had."""
+def _loaded(load: Callable[[], Setting], before: Setting) -> tuple[Setting, str]:
+    """What is loaded, or what there was before and why the other cannot be used."""
     try:
-        return load_setting(spec), ""
+        setting = load()
+        setting.step()
+        return setting, ""
     except UserError as error:
-        return before, str(error)
+        return before, one_line(str(error))
+    except Exception as error:  # noqa: BLE001 - whatever a file does, the process that owns the arm goes on
+        return before, one_line(f"It cannot be loaded ({error!r}): the arm is as before.")

@@ -1,6 +1,6 @@
 """What a page drives: the task, its modes, and what steers in each. Read by both processes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Literal, final
 
@@ -36,6 +36,10 @@ not enable it again."""
 
 RELEASE_FRACTION: Final = 0.8
 """As hard as a stop: whoever lets go finds the arm at rest within 0.15 s."""
+
+MOST_JOINTS: Final = 64
+MOST_GOALS: Final = 200
+"""What the pages can be told of in every tick."""
 
 COMMAND_PERIODS: Final = 5.0
 """How many periods a command lasts: a shared computer may hold the loop up for 50 ms before the arm stops."""
@@ -154,6 +158,24 @@ class Setting:
         )
 
 
+def with_profile(setting: Setting, profile: str | None) -> Setting:
+    """The same with another person's alignment; neither the dataset nor the robot is read again.
+
+    Args:
+        setting: what is driven.
+        profile: whose alignment; z = u where None.
+
+    Raises:
+        UserError: nothing trained is driven, or the profile or the model cannot be used.
+    """
+    spec = replace(setting.spec, profile=profile)
+    if spec.run is None:
+        return setting
+    robot = setting.task.robot
+    latent = latent_controller(spec.run, profile, robot)
+    return replace(setting, spec=spec, controller=JoinedController([latent, EndEffectorController(robot)]))
+
+
 def load_setting(spec: Spec) -> Setting:
     """Load what a spec names.
 
@@ -167,6 +189,11 @@ def load_setting(spec: Spec) -> Setting:
         run = read_run(spec.run)
         task = task_of_run(run, run.dataset())
         latent = latent_controller(spec.run, spec.profile, task.robot)
+    if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
+        raise UserError(
+            f"{spec.run} has {task.robot.dof} joints and {len(task.goals)} goals: the page drives"
+            f" {MOST_JOINTS} joints and shows {MOST_GOALS} goals at most."
+        )
     end_effector = EndEffectorController(task.robot)
     return Setting(
         spec=spec,

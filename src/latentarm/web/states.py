@@ -12,6 +12,7 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
+from latentarm.untrusted.terminal import one_line
 from latentarm.web.channel import Ghosts, Report
 from latentarm.web.messages import RecordingState, State
 from latentarm.web.scene import pose_of
@@ -25,6 +26,9 @@ POLL_S: Final = 0.0025
 
 SILENT_S: Final = 0.5
 """A control process that says nothing for so long is out of order."""
+
+NOTE_S: Final = 6.0
+"""For how long a refusal is shown, s."""
 
 LOADING_S: Final = 0.2
 """How often pages hear that something is still being loaded, s."""
@@ -79,6 +83,8 @@ class States:
         self._trail = 0
         self._changed = asyncio.Event()
         self._set_off = asyncio.Event()
+        self._note = ""
+        self._note_until_s = -math.inf
         self._moves = False
         self._number = 0
         self._cache: tuple[int, dict[bool, str]] = (-1, {})
@@ -120,6 +126,11 @@ class States:
         with suppress(TimeoutError):
             async with asyncio.timeout(span_s):
                 await self._set_off.wait()
+
+    def say(self, note: str, for_s: float = NOTE_S) -> None:
+        """Show every page a sentence for so long, s, instead of what the arm does; "" takes it back."""
+        self._note = one_line(note)
+        self._note_until_s = time.monotonic() + for_s if note else -math.inf
 
     def clear_trail(self) -> None:
         """Tell every page to empty its trail."""
@@ -177,7 +188,9 @@ class States:
             self._stage = await asyncio.to_thread(load_stage, self._stage.spec, report, name)
             self._report = report
         except UserError as error:
-            self._failed = report.run, str(error)
+            self._failed = report.run, one_line(str(error))
+        except Exception as error:  # noqa: BLE001 - or pages would wait for ever; the arm cannot be enabled
+            self._failed = report.run, one_line(f"The run cannot be shown ({error!r}): choose another one.")
         finally:
             self._changing = None
 
@@ -222,6 +235,8 @@ class States:
         )
 
     def _why(self, report: Report) -> str:
+        if time.monotonic() < self._note_until_s and report.phase != "stopping":
+            return self._note
         disengaged = report.phase in ("disengaged", "neutral_needed")
         return self.standstill if disengaged and self.standstill is not None else report.why
 

@@ -13,6 +13,7 @@ from latentarm.web.shelf import Shelf
 from latentarm.web.states import States
 from latentarm.web.supervisor import ControlProcess
 from latentarm.web.training_job import TrainingJob, TrainingPlan
+from latentarm.web.trial import WITHIN_S, Trial
 from latentarm.web.workshop_messages import Recorded, Train, Training, Workshop
 
 LOOK_S: Final = 0.2
@@ -42,6 +43,7 @@ class Bench:
         self._recordings: tuple[Recorded, ...] = ()
         self._listed: tuple[str, int] | None = None
         self._cancelling: asyncio.Task[None] | None = None
+        self._choosing: asyncio.Task[None] | None = None
         self.personalising = Personalising(self._driven, control)
         self._text = ""
         self._number = 0
@@ -98,16 +100,39 @@ class Bench:
             self._cancelling = asyncio.create_task(self._cancel(self._job))
 
     def choose_run(self, name: str) -> None:
-        """Ask the control process to drive another run; a name that is none of the list is not heard."""
+        """Try another run, then have it driven; a name that is none of the list is not heard."""
         run = self._shelf.runs().get(name)
-        if run is not None:
-            self._control.order(ChooseRun(run=str(run.resolve())))
+        report = self._states.report
+        if run is None:
+            return
+        if report is not None and report.phase in ("ready", "moving", "stopping"):
+            self._states.say("Stop the arm first.")
+            return
+        if self._choosing is not None:
+            self._choosing.cancel()
+        self._choosing = asyncio.create_task(self._try_run(name, run.resolve()))
 
     async def close(self) -> None:
         """End what is under way."""
+        if self._choosing is not None:
+            self._choosing.cancel()
         await self.personalising.close()
         if self._job is not None:
             await asyncio.to_thread(self._job.cancel)
+
+    async def _try_run(self, name: str, run: Path) -> None:
+        """Have a run driven once a child process has loaded it; until then driving goes on as it was."""
+        trial = Trial(self._states.stage.spec, run, name)
+        try:
+            self._states.say(f"Checking the run {name}.", WITHIN_S)
+            failure = await trial.failure()
+        finally:
+            asyncio.get_running_loop().run_in_executor(None, trial.end)
+        if failure is None:
+            self._states.say("")
+            self._control.order(ChooseRun(run=str(run)))
+        else:
+            self._states.say(failure)
 
     async def _cancel(self, job: TrainingJob) -> None:
         await asyncio.to_thread(job.cancel)

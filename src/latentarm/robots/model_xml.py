@@ -1,0 +1,160 @@
+"""Robot models as XML that this program may not have written: bounded before MuJoCo parses them in C.
+
+MuJoCo opens whatever path a model names, and waits for a named pipe; it repeats an element as often as it
+is told, and crashes on a model that attaches itself. What is checked here is what it cannot be stopped in;
+memory is bounded by `latentarm.untrusted.memory`.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import prod
+from pathlib import Path
+from typing import Final, final
+from xml.etree import ElementTree as Xml
+from xml.parsers import expat
+
+from latentarm.errors import UserError
+from latentarm.untrusted.opening import check_file, is_missing, read_bytes
+
+MOST_XML_BYTES: Final = 20_000_000
+"""Of one XML file; meshes lie in files of their own."""
+
+MOST_FILE_BYTES: Final = 1 << 28
+"""Of a mesh, a picture or a height field."""
+
+MOST_FILES: Final = 1000
+"""That a model names."""
+
+MOST_ELEMENTS: Final = 20_000
+"""Of XML in one file, and copies of one element that a model may ask for."""
+
+MOST_LEVELS: Final = 100
+"""Of XML elements in each other, as in MuJoCo's own parser."""
+
+_NESTED: Final = frozenset({"include", "model"})
+_FILE_ATTRIBUTES: Final = frozenset(
+    {"file", "fileup", "filedown", "fileleft", "fileright", "filefront", "fileback"}
+)
+_COUNTS: Final = frozenset({"count", "nkey", "nuserdata", "njmax", "nconmax", "nstack"})
+_FOLDERS: Final = ("meshdir", "texturedir", "assetdir")
+
+
+@final
+@dataclass(frozen=True)
+class ModelXml:
+    """A model's XML.
+
+    Attributes:
+        root: its outermost element.
+        size: bytes of the file and of all files that it names.
+    """
+
+    root: Xml.Element
+    size: int
+
+
+def read_model_xml(path: Path) -> ModelXml:
+    """Read a URDF or MJCF file, and check every file that an MJCF names.
+
+    Args:
+        path: the file.
+
+    Raises:
+        UserError: it or a file that it names is no regular file or too large; it is not XML, declares a
+            document type, is nested too deep, repeats an element too often, or contains itself.
+    """
+    root, size = _read(path)
+    if root.tag == "mujoco":
+        for found, file in enumerate(_named(path, root, (path.resolve(),))):
+            if found >= MOST_FILES:
+                raise UserError(f"{path} names more than {MOST_FILES:,} files.")
+            size += file.stat().st_size
+    return ModelXml(root, size)
+
+
+def _read(path: Path) -> tuple[Xml.Element, int]:
+    text = read_bytes(path, MOST_XML_BYTES)
+    root = _tree(path, text)
+    _check_copies(path, root)
+    return root, len(text)
+
+
+def _tree(path: Path, text: bytes) -> Xml.Element:
+    """The file's elements; as MuJoCo does, it lets pass prefixes that are not declared."""
+
+    def refuse(*_: object) -> None:
+        # Without declarations nothing can expand or be fetched from elsewhere.
+        raise UserError(f"{path} declares a document type, which no robot model needs: remove that line.")
+
+    builder = Xml.TreeBuilder()
+    depth = elements = 0
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal depth, elements
+        depth += 1
+        elements += 1
+        if depth > MOST_LEVELS or elements > MOST_ELEMENTS:
+            raise UserError(
+                f"{path} has more than {MOST_ELEMENTS:,} elements, or more than {MOST_LEVELS} in each other."
+            )
+        builder.start(tag, attributes)
+
+    def end(tag: str) -> None:
+        nonlocal depth
+        depth -= 1
+        builder.end(tag)
+
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = refuse
+    parser.StartElementHandler = start
+    parser.EndElementHandler = end
+    parser.CharacterDataHandler = builder.data
+    try:
+        parser.Parse(text, True)
+    except (expat.ExpatError, ValueError) as error:
+        raise UserError(f"{path} is not valid XML: {error}.") from error
+    return builder.close()
+
+
+def _check_copies(path: Path, root: Xml.Element) -> None:
+    """Bound what elements such as <replicate> and <flexcomp> make of themselves."""
+    waiting = [(root, 1)]
+    while waiting:
+        element, copies = waiting.pop()
+        for name in _COUNTS & element.attrib.keys():
+            try:
+                asked = prod(max(int(float(number)), 1) for number in element.attrib[name].split())
+            except (ValueError, OverflowError):
+                asked = 1  # MuJoCo says what is wrong with it
+            if element.tag == "replicate":
+                copies *= asked
+            if max(asked, copies) > MOST_ELEMENTS:
+                raise UserError(
+                    f"{path}: <{element.tag}> asks for more than {MOST_ELEMENTS:,} copies or entries."
+                )
+        waiting.extend((child, copies) for child in element)
+
+
+def _named(path: Path, root: Xml.Element, above: tuple[Path, ...]) -> Iterator[Path]:
+    """Files that an MJCF names, as often as it does; those that it includes are searched too."""
+    folders = {above[0].parent}
+    for compiler in root.iter("compiler"):
+        folders |= {above[0].parent / compiler.attrib[key] for key in _FOLDERS if key in compiler.attrib}
+    for element in root.iter():
+        for file in _places(element.attrib, folders):
+            if element.tag not in _NESTED:
+                check_file(file, MOST_FILE_BYTES)
+                yield file
+                continue
+            if file.resolve() in above or len(above) > MOST_LEVELS // 10:
+                raise UserError(f"{path} contains itself by way of {file}, or too many files in each other.")
+            inner, _ = _read(file)
+            yield file
+            yield from _named(file, inner, (*above, file.resolve()))
+
+
+def _places(attributes: Mapping[str, str], folders: set[Path]) -> Iterator[Path]:
+    """Everywhere that MuJoCo may look for an element's files; what is not there it says itself."""
+    for key in _FILE_ATTRIBUTES & attributes.keys():
+        name = attributes[key].strip()
+        yield from (place for folder in folders if name and not is_missing(place := folder / name))

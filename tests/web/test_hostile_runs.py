@@ -1,0 +1,117 @@
+"""Runs that were made to end the page or to keep it loading: refused in a sentence, and driving goes on."""
+
+import asyncio
+import json
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from latentarm.web import trial
+from latentarm.web.setting import Spec
+from latentarm.web.trial import Trial
+
+from .conftest import wait_for
+
+
+def config(**changes: object) -> Callable[[Path], None]:
+    def change(run: Path) -> None:
+        path = run / "config.json"
+        path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+
+    return change
+
+
+def content(text: str) -> Callable[[Path], None]:
+    return lambda run: (run / "config.json").write_text(text) and None
+
+
+def replaced(name: str, make: Callable[[Path], None]) -> Callable[[Path], None]:
+    def change(run: Path) -> None:
+        (run / name).unlink()
+        make(run / name)
+
+    return change
+
+
+def piped_dataset(run: Path) -> None:
+    os.mkfifo(run / "pipe")
+    config(demonstrations=str(run / "pipe"))(run)
+
+
+HOSTILE = {
+    "a pipe": replaced("config.json", os.mkfifo),
+    "endless": replaced("config.json", lambda path: path.symlink_to("/dev/zero")),
+    "deep": content('{"a":' * 100_000),
+    "infinite": config(held_out=[float("inf")]),
+    "weights of a pipe": replaced("model.safetensors", os.mkfifo),
+    "a dataset that is a pipe": piped_dataset,
+    "a long name": config(demonstrations="x" * 60_000),
+    "an escape": config(demonstrations="\x1b]0;owned\x07"),
+    "a name that no path has": config(demonstrations="a\0b"),
+    "endless weights": replaced("model.safetensors", lambda path: path.symlink_to("/dev/zero")),
+}
+
+
+def make_runs(trained: Path, out: Path, kinds: list[str]) -> dict[str, str]:
+    """Runs by name in a server's folder, one of each kind."""
+    names = {kind.replace(" ", "-"): kind for kind in kinds}
+    for name, kind in names.items():
+        run = Path(shutil.copytree(trained, out / "runs" / name))
+        HOSTILE[kind](run)
+    return names
+
+
+@pytest.mark.parametrize("kinds", [["deep"], pytest.param(list(HOSTILE), marks=pytest.mark.slow)])
+def test_a_hostile_run_is_refused_and_driving_goes_on(tmp_path, serve, trained, kinds):
+    names = make_runs(trained, tmp_path, kinds)
+    with serve(Spec(trained, out=tmp_path)) as site, site.page() as page:
+        # A pipe named config.json is listed by name alone: nothing is opened before somebody picks it.
+        assert set(names) <= set(page.workshop["runs"])
+        for name in names:
+            page.send(type="run", run=name)
+            page.wait(lambda state, name=name: f"Checking the run {name}" in state["why"], within_s=20.0)
+            page.wait(lambda state: "Checking" not in state["why"], within_s=60.0)
+            why = page.state["why"]
+            assert why.count("\n") == 0
+            assert "\x1b" not in why
+            assert any(word in why for word in ("config.json", "model.safetensors", "dataset")), (name, why)
+        assert site.control.alive
+        assert page.welcome["run"] == "run"
+        before = np.array(page.state["tool"])
+        page.enable()
+        page.u = [1.0, 0.0]
+        page.wait(lambda state: np.linalg.norm(np.array(state["tool"]) - before) > 0.02, within_s=20.0)
+
+
+def test_while_the_arm_moves_no_run_is_tried(tmp_path, serve, trained):
+    make_runs(trained, tmp_path, ["deep"])
+    with serve(Spec(trained, out=tmp_path)) as site, site.page() as page:
+        page.enable()
+        page.send(type="run", run="deep")
+        page.wait(lambda state: "Stop the arm first" in state["why"])
+        assert page.state["phase"] == "ready"
+
+
+def test_a_run_that_loads_for_ever_is_given_up(tmp_path, trained, monkeypatch):
+    monkeypatch.setattr(trial, "WITHIN_S", 0.0)
+    tried = Trial(Spec(out=tmp_path), trained, "mine")
+    try:
+        assert "The run mine takes more than" in str(asyncio.run(tried.failure()))
+        assert wait_for(lambda: not tried._job.alive)
+    finally:
+        tried.end()
+
+
+def test_a_hostile_profile_is_refused(tmp_path, serve, trained):
+    run = Path(shutil.copytree(trained, tmp_path / "mine"))
+    (run / "profiles" / "ada").mkdir(parents=True)
+    os.mkfifo(run / "profiles" / "ada" / "config.json")
+    with serve(Spec(run, out=tmp_path)) as site, site.page() as page:
+        page.send(type="profile", name="ada")
+        page.wait(lambda state: "is a named pipe" in state["why"], within_s=20.0)
+        assert page.state["profile"] is None
+        page.enable()
