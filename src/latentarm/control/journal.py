@@ -1,6 +1,5 @@
 """Reading a journal, whole or cut short."""
 
-import json
 import math
 import sqlite3
 from collections.abc import Collection, Generator
@@ -15,10 +14,16 @@ from latentarm.control.recorder import EpisodeHeader, check_is_journal
 from latentarm.demonstrations.provenance import parse_provenance
 from latentarm.errors import UserError
 from latentarm.types import Command, Goal, Pose, StepRecord, Stop
+from latentarm.untrusted.documents import parse_object
+from latentarm.untrusted.memory import bounded_memory
+from latentarm.untrusted.opening import check_file, is_missing
 
 _PARTS = 8
 _SCALARS = 5
 _MOST_FIGURES = 100_000
+_MOST_CELL_BYTES = 1 << 20
+_MOST_BYTES = 1 << 38
+"""Of a journal: 256 GiB, which is days of driving."""
 
 
 @final
@@ -111,10 +116,21 @@ def _opened(path: Path) -> Generator[sqlite3.Connection]:
     Raises:
         UserError: there is no such file, it is damaged, or it is no journal; also for what fails within.
     """
-    if not path.is_file():
+    if is_missing(path):
         raise UserError(f"There is no journal {path}.")
+    check_file(path, _MOST_BYTES)
+    beside = [path.with_name(path.name + end) for end in ("-wal", "-shm", "-journal")]
+    for file in beside:
+        if not is_missing(file):
+            check_file(file, _MOST_BYTES)
     try:
-        with closing(sqlite3.connect(f"file:{_quoted(path)}?mode=ro", uri=True)) as database:
+        with (
+            bounded_memory(f"The journal {path}", path.stat().st_size + _size(beside[0])),
+            closing(sqlite3.connect(f"file:{_quoted(path)}?mode=ro", uri=True)) as database,
+        ):
+            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _MOST_CELL_BYTES)
+            database.execute("PRAGMA trusted_schema = OFF")
+            database.execute("PRAGMA cell_size_check = ON")
             check_is_journal(database, path, may_be_empty=False)
             yield database
     except sqlite3.Error as error:
@@ -132,8 +148,12 @@ def _duration_s(database: sqlite3.Connection, path: Path, number: int) -> float:
         return 0.0
     try:
         return _record(*ends[-1]).time_s - _record(*ends[0]).time_s
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, AttributeError, OverflowError) as error:
         raise _damaged(path, number, error) from error
+
+
+def _size(path: Path) -> int:
+    return 0 if is_missing(path) else path.stat().st_size
 
 
 def _quoted(path: Path) -> str:
@@ -150,15 +170,15 @@ def _episode(
     header = _checked_header(path, number, about)
     try:
         records = tuple(_record(*sample) for sample in samples)
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, AttributeError, OverflowError) as error:
         raise _damaged(path, number, error) from error
     return JournalEpisode(header, records, bool(complete))
 
 
 def _checked_header(path: Path, number: int, about: str) -> EpisodeHeader:
     try:
-        return _header(json.loads(about))
-    except (ValueError, KeyError, TypeError) as error:
+        return _header(parse_object(about, f"Episode {number} of the journal {path}"))
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise _damaged(path, number, error) from error
 
 
@@ -209,7 +229,7 @@ def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:
         command=Command(
             velocity=velocity,
             duration_s=duration_s,
-            stop=None if stop is None else Stop(stop),
+            stop=None if stop is None else Stop(str(stop)),
             limited_by=tuple(limited_by.split(",")) if limited_by else (),
         ),
         bound_rad=bound_rad,

@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ import numpy as np
 from latentarm.demonstrations.provenance import provenance_json
 from latentarm.errors import UserError
 from latentarm.types import FloatArray, Goal, Provenance, StepRecord
+from latentarm.untrusted.opening import check_file, is_missing
 
 SCHEMA_VERSION = 1
 
@@ -87,6 +89,8 @@ class Recorder:
         self._episode: int | None = None
         self._number = 0
         self._widths: tuple[int, ...] = ()
+        if not is_missing(path):
+            check_file(path, sys.maxsize)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._database = sqlite3.connect(path, isolation_level=None, timeout=1.0, check_same_thread=False)
@@ -234,10 +238,18 @@ def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: 
     (tables,) = database.execute("SELECT count(*) FROM sqlite_master").fetchone()
     if may_be_empty and version == 0 and tables == 0:
         return
+    # Views, triggers and virtual tables would have SQLite compute what a stranger wrote.
+    (plain,) = database.execute(
+        "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND sql LIKE 'CREATE TABLE %'"
+    ).fetchone()
     # Other programs count their versions too: the tables tell whose file it is.
-    if version == SCHEMA_VERSION and all(
-        [column for _, column, *_ in database.execute(f"PRAGMA table_info({table})")] == list(columns)
-        for table, columns in _COLUMNS.items()
+    if (
+        version == SCHEMA_VERSION
+        and plain == tables == len(_COLUMNS)
+        and all(
+            [column for _, column, *_ in database.execute(f"PRAGMA table_info({table})")] == list(columns)
+            for table, columns in _COLUMNS.items()
+        )
     ):
         return
     raise UserError(f"{path} is not a journal of this program's version: choose another file.")

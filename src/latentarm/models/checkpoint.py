@@ -17,6 +17,10 @@ from latentarm.errors import UserError
 from latentarm.files import written_whole
 from latentarm.models.optimiser import FlatAdam
 from latentarm.types import BoolArray, FloatArray, IntArray
+from latentarm.untrusted.opening import check_file
+
+_HEADER_BYTES: Final = 1 << 26
+"""That the names and the losses so far may take: 64 MiB."""
 
 METADATA_KEY: Final = "latentarm_training"
 
@@ -125,6 +129,7 @@ def read_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:
     Raises:
         UserError: the file is broken, foreign, or of another training.
     """
+    check_file(path, _HEADER_BYTES + sum(tensor.nbytes for tensor in state.tensors().values()))
     try:
         with safe_open(path, framework="pt") as stream:
             progress = json.loads((stream.metadata() or {})[METADATA_KEY])
