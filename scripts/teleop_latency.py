@@ -28,7 +28,8 @@ from websockets.sync.client import ClientConnection, connect
 
 from latentarm.control.clock import MonotonicClock
 from latentarm.web.addresses import TeleopConfig, listen
-from latentarm.web.server import build_app, gated, server_config
+from latentarm.web.connections import ConnectionLimits
+from latentarm.web.server import build_app, gated, serve_on, server_config
 from latentarm.web.setting import Spec, load_setting
 from latentarm.web.supervisor import ControlProcess
 from teleop_journal import Halt, halts, spread
@@ -123,7 +124,7 @@ def serve(spec: Spec, sender: Any) -> None:
     listening = listen(config)
     port = int(listening.getsockname()[1])
     control = ControlProcess(spec)
-    app = gated(build_app(load_setting(spec), control), config, port, None, lambda: None)
+    app = gated(build_app(load_setting(spec), control), control, config, port, None, lambda: None)
     server = uvicorn.Server(server_config(app, config))
 
     def block() -> None:
@@ -134,7 +135,7 @@ def serve(spec: Spec, sender: Any) -> None:
         loop = asyncio.get_running_loop()
         loop.add_signal_handler(signal.SIGUSR1, block)
         sender.send((port, control.pid))
-        await server.serve(sockets=[listening])
+        await serve_on(listening, server, ConnectionLimits())
 
     asyncio.run(run())
     control.end()

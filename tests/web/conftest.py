@@ -22,9 +22,10 @@ from latentarm.tasks.table_top import TableTop
 from latentarm.web.addresses import TeleopConfig, listen
 from latentarm.web.channel import Given, Order, Report, new_channel, parse_report
 from latentarm.web.cockpit import Cockpit
+from latentarm.web.connections import ConnectionLimits
 from latentarm.web.live_arm import LiveArm
 from latentarm.web.recording import EpisodeWriter
-from latentarm.web.server import build_app, gated, server_config
+from latentarm.web.server import build_app, gated, serve_on, server_config
 from latentarm.web.setting import PERIOD_S, Setting, Spec, load_setting
 from latentarm.web.supervisor import ControlProcess
 
@@ -247,13 +248,15 @@ def served(spec: Spec) -> Iterator[Site]:
     port = int(listening.getsockname()[1])
     control = ControlProcess(spec)
     server = uvicorn.Server(
-        server_config(gated(build_app(load_setting(spec), control), config, port, None, lambda: None), config)
+        server_config(
+            gated(build_app(load_setting(spec), control), control, config, port, None, lambda: None), config
+        )
     )
     loops: list[asyncio.AbstractEventLoop] = []
 
     async def run() -> None:
         loops.append(asyncio.get_running_loop())
-        await server.serve(sockets=[listening])
+        await serve_on(listening, server, ConnectionLimits())
 
     thread = threading.Thread(target=lambda: asyncio.run(run()), daemon=True)
     with ExitStack() as stack:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from latentarm.web.drive import BURST
+from latentarm.web.allowance import BURST
 from latentarm.web.messages import FRAME_LIMIT
 
 HELLO = '{"type": "hello", "version": 1}'

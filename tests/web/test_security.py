@@ -26,7 +26,6 @@ async def greet(socket):
 APP = Starlette(
     routes=[
         Route("/", hello, methods=["GET", "POST"]),
-        Route("/stop", hello, methods=["POST"]),
         WebSocketRoute("/drive", greet),
     ]
 )
@@ -43,8 +42,12 @@ class Visitor:
     """Speaks ASGI to a gate, and keeps its cookie."""
 
     def __init__(self, keys=None):
-        self.gate = Gate(APP, frozenset({HOST}), frozenset({ORIGIN}), keys, secure=True)
+        self.stops = 0
+        self.gate = Gate(APP, frozenset({HOST}), frozenset({ORIGIN}), keys, secure=True, stop=self.stop)
         self.cookie = None
+
+    def stop(self):
+        self.stops += 1
 
     def scope(self, kind, path, headers, **more):
         named = {"host": HOST, **({"cookie": self.cookie} if self.cookie else {}), **headers}
@@ -178,8 +181,10 @@ def test_sockets_and_posts_must_name_their_origin():
 
 def test_stop_needs_no_cookie_but_the_right_origin(keys):
     visitor = Visitor(keys)
-    assert visitor.ask("/stop", "POST", origin=ORIGIN).text == "hello"
+    assert visitor.ask("/stop", "POST", origin=ORIGIN).status == 204
+    assert visitor.stops == 1
     assert visitor.ask("/stop", "POST").status == 403
+    assert visitor.stops == 1
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,9 @@ from typing import Final, final
 from latentarm.errors import UserError
 from latentarm.web.setting import Spec
 
+_BACKLOG: Final = 2048
+"""Connections that the system keeps until they are accepted: a crowd of them shall not be turned away."""
+
 _OWN_PORTS: Final = {"http": 80, "https": 443}
 
 
@@ -76,7 +79,7 @@ def listen(config: TeleopConfig) -> socket.socket:
     try:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listening.bind(address)
-        listening.listen()
+        listening.listen(_BACKLOG)
     except OSError as error:
         listening.close()
         raise UserError(

@@ -1,13 +1,13 @@
 """The socket that pages drive through, and what they all see."""
 
 import asyncio
-import time
 from contextlib import suppress
 from typing import Final, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from latentarm.web.channel import ChooseMode, ChooseProfile, Enable, Given, Record, Reset
+from latentarm.web.frames import TOO_MANY
 from latentarm.web.messages import (
     FRAME_LIMIT,
     AskToDrive,
@@ -27,33 +27,42 @@ from latentarm.web.messages import (
     parse_message,
 )
 from latentarm.web.personalise_messages import AnswerQuestion, PersonaliseMessage
+from latentarm.web.security import EXPIRED, EXPIRED_WHY
 from latentarm.web.sessions import MOST, Page, Sessions
 from latentarm.web.states import GhostMemory, States
 from latentarm.web.supervisor import ControlProcess
 from latentarm.web.workshop import Bench
 from latentarm.web.workshop_messages import CancelTraining, PickRun, Train
 
-RATE: Final = 100.0
-"""Messages a second that a page may send."""
-
-BURST: Final = 100.0
-"""Messages that may come at once, as after a moment without network."""
-
 HELLO_WITHIN_S: Final = 5.0
+HANG_UP_WITHIN_S: Final = 1.0
 
 DRIVER_PERIOD_S: Final = 0.02
 WATCHER_PERIOD_S: Final = 0.033
 """How often a page is sent a state, save that it hears at once when the arm sets off. The driver's is also
 what makes the next input fresh."""
 
-_PROTOCOL_BROKEN: Final = (1002, 1003, 1007, 1009)
-"""Codes with which the server below us hangs up: no frame, no text, or far too long."""
+_PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)
+"""Codes with which the server below us hangs up: no frame, no text, too many frames, or one far too long."""
 
+_EXPIRED_DRIVER: Final = "The access of the person who drove has expired: the arm was stopped."
 _BROKEN: Final = "A page sent what is no message: the arm was stopped."
 
 
 class _ViolationError(Exception):
     """A page has sent what it must not."""
+
+
+class _ExpiredError(Exception):
+    """A page's cookie has expired."""
+
+
+async def _hang_up(socket: WebSocket, code: int, why: str) -> None:
+    """Say why, and close; a page that takes nothing any more is not waited for."""
+    with suppress(RuntimeError, WebSocketDisconnect, TimeoutError):
+        async with asyncio.timeout(HANG_UP_WITHIN_S):
+            await socket.send_text(Refused(why=why).model_dump_json())
+            await socket.close(code, why)
 
 
 @final
@@ -93,20 +102,24 @@ class DriveSocket:
     async def _serve(self, socket: WebSocket) -> None:
         page: Page | None = None
         sender: asyncio.Task[None] | None = None
-        allowance = _Allowance()
         try:
             async with asyncio.timeout(HELLO_WITHIN_S):
-                hello = await _receive(socket, allowance)
+                hello = await _receive(socket)
             if not isinstance(hello, Hello) or (page := self._sessions.join(hello.name)) is None:
                 raise _ViolationError
             sender = asyncio.create_task(self._send_states(socket, page))
             while True:
-                self._take(page, await _receive(socket, allowance))
-        except (_ViolationError, TimeoutError):
+                self._take(page, await _receive(socket))
+        except _ViolationError:
             self._control.stop(_BROKEN)
-            with suppress(RuntimeError, WebSocketDisconnect):
-                await socket.send_text(Refused(why="This is not what a page may send.").model_dump_json())
-                await socket.close(1008)
+            await _hang_up(socket, 1008, "This is not what a page may send.")
+        except TimeoutError:
+            # It is nobody yet: a slow network or a silent stranger is no reason to stop the arm.
+            await _hang_up(socket, 1008, "The page did not introduce itself.")
+        except _ExpiredError:
+            if page is not None and self._sessions.drives(page):
+                self._control.stop(_EXPIRED_DRIVER)
+            await _hang_up(socket, EXPIRED, EXPIRED_WHY)
         except WebSocketDisconnect:
             pass
         finally:
@@ -211,37 +224,23 @@ class DriveSocket:
         )
 
 
-@final
-class _Allowance:
-    """How many messages a page may still send: a bucket that fills up again."""
-
-    def __init__(self) -> None:
-        self._left = BURST
-        self._at_s = time.monotonic()
-
-    def spend(self) -> bool:
-        """Take one; False where there is none."""
-        now_s = time.monotonic()
-        self._left = min(self._left + (now_s - self._at_s) * RATE, BURST)
-        self._at_s = now_s
-        self._left -= 1.0
-        return self._left >= 0.0
-
-
-async def _receive(socket: WebSocket, allowance: _Allowance) -> ClientMessage:
+async def _receive(socket: WebSocket) -> ClientMessage:
     """The next message.
 
     Raises:
         _ViolationError: it is none, or one too many.
+        _ExpiredError: the page may not be here any longer.
         WebSocketDisconnect: the page has gone.
     """
     event = await socket.receive()
     if event["type"] == "websocket.disconnect":
         if event.get("code") in _PROTOCOL_BROKEN:
             raise _ViolationError
+        if event.get("code") == EXPIRED:
+            raise _ExpiredError
         raise WebSocketDisconnect
     text = event.get("text")
-    if not allowance.spend() or text is None or len(text) > FRAME_LIMIT or len(text.encode()) > FRAME_LIMIT:
+    if text is None or len(text) > FRAME_LIMIT or len(text.encode()) > FRAME_LIMIT:
         raise _ViolationError
     try:
         return parse_message(text)

@@ -1,10 +1,12 @@
 """Who may speak to the server at all: exact hosts and origins, a cookie off the loopback, strict headers."""
 
+import asyncio
 import hashlib
 import hmac
 import secrets
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
 from typing import Final, final
 from urllib.parse import parse_qs
@@ -17,14 +19,29 @@ COOKIE: Final = "latentarm"
 LIFE_S: Final = 8 * 3600
 """For how long a cookie opens the page, s."""
 
-BODY_LIMIT: Final = 1 << 20
+BODY_LIMIT: Final = 1 << 16
 """The longest body of a request, bytes."""
+
+MOST_REQUESTS: Final = 64
+"""Requests that may be at work at once; `STOP` is not among them."""
+
+MOST_SOCKETS: Final = 64
+"""WebSockets that may be open at once besides those that drive, which count themselves."""
+
+DRIVE: Final = "/drive"
+"""The WebSocket that drives."""
+
+EXPIRED: Final = 4401
+"""The code that a WebSocket is closed with when its cookie has expired, out of those for applications."""
+
+EXPIRED_WHY: Final = "Your access has ended after 8 hours. Open the newest link that latentarm has printed."
 
 ENTRY: Final = "/enter"
 STOP: Final = "/stop"
 """Needs no cookie: whoever reaches the page may stop the arm."""
 
 _MOST_VISITORS: Final = 64
+_MOST_DIGITS: Final = 20
 _READING: Final = ("GET", "HEAD")
 
 _HEADERS: Final = {
@@ -81,13 +98,14 @@ class Keys:
         self._cookies[_hash(cookie)] = self._now_s() + LIFE_S
         return cookie
 
-    def opens(self, cookie: str) -> bool:
-        """Whether a cookie is one of ours and not too old."""
+    def opens_for(self, cookie: str) -> float | None:
+        """For how much longer a cookie opens the page, s; None where it is not one of ours, or too old."""
         self._forget()
         given = _hash(cookie)
-        found = False
-        for known in self._cookies:
-            found |= hmac.compare_digest(known, given)
+        found: float | None = None
+        for known, until_s in self._cookies.items():
+            if hmac.compare_digest(known, given):
+                found = until_s - self._now_s()
         return found
 
     def _forget(self) -> None:
@@ -99,12 +117,16 @@ class Keys:
 class Gate:
     """Stands before the whole application, its sockets and those of the framework.
 
+    It answers `STOP` itself: before anything is counted, looked up or built. What is behind it sees whole
+    requests alone.
+
     Args:
         app: what is behind.
         hosts: exact ``Host`` headers, with the port where it is not the scheme's own.
         origins: exact ``Origin`` headers.
         keys: who may enter; None lets everybody in, for a server on the loopback.
         secure: whether the cookie is for TLS alone.
+        stop: stops the arm.
         entered: called after somebody has used up the link.
     """
 
@@ -116,6 +138,7 @@ class Gate:
         keys: Keys | None = None,
         *,
         secure: bool = False,
+        stop: Callable[[], None],
         entered: Callable[[], None] = lambda: None,
     ) -> None:
         self.app = app
@@ -123,24 +146,49 @@ class Gate:
         self._origins = origins
         self._keys = keys
         self._secure = secure
+        self._stop = stop
         self._entered = entered
+        self._requests = 0
+        self._sockets = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Let through what may pass, answer the rest."""
-        if scope["type"] not in ("http", "websocket"):
+        if scope["type"] == "http":
+            await self._request(scope, receive, _with_headers(send))
+        elif scope["type"] == "websocket":
+            await self._socket(scope, receive, send)
+        else:
             await self.app(scope, receive, send)
+
+    async def _request(self, scope: Scope, receive: Receive, send: Send) -> None:
+        answer = self._refusal(scope, Headers(scope=scope)) or self._own_answer(scope)
+        if answer is not None:
+            # What else comes on this connection, such as a body, is not waited for.
+            answer.headers["connection"] = "close"
+            await answer(scope, receive, send)
             return
+        body = await _whole_body(receive)
+        if body is None:
+            return
+        self._requests += 1
+        try:
+            await self.app(scope, _once(body, receive), send)
+        finally:
+            self._requests -= 1
+
+    async def _socket(self, scope: Scope, receive: Receive, send: Send) -> None:
         headers = Headers(scope=scope)
-        refusal = self._refusal(scope, headers)
-        if scope["type"] == "websocket":
-            if refusal is None:
-                await self.app(scope, receive, send)
-            else:
-                # Before it is accepted this is an answer of 403.
-                await send({"type": "websocket.close", "code": 1008})
+        drives = scope["path"] == DRIVE
+        if self._refusal(scope, headers) is not None or (not drives and self._sockets >= MOST_SOCKETS):
+            # Before it is accepted this is an answer of 403.
+            await send({"type": "websocket.close", "code": 1008})
             return
-        answer = refusal or self._own_answer(scope)
-        await (answer or self.app)(scope, receive, _with_headers(send))
+        left_s = None if self._keys is None else self._keys.opens_for(_cookie(headers))
+        self._sockets += not drives
+        try:
+            await self.app(scope, receive if left_s is None else _until_expired(receive, left_s), send)
+        finally:
+            self._sockets -= not drives
 
     def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
         if headers.getlist("host") not in [[host] for host in self._hosts]:
@@ -149,16 +197,23 @@ class Gate:
         must_name_origin = scope["type"] == "websocket" or scope["method"] not in _READING
         if (origins or must_name_origin) and origins not in [[origin] for origin in self._origins]:
             return PlainTextResponse("This page may not be used from another site.", 403)
+        if scope["path"] == STOP:
+            return None
         if not _short(headers):
             return PlainTextResponse("That is too long.", 413)
-        if self._keys is None or scope["path"] in (ENTRY, STOP):
-            return None
-        if self._keys.opens(_cookie(headers)):
+        if self._requests >= MOST_REQUESTS:
+            return PlainTextResponse("The server is busy: try again.", 503)
+        if self._keys is None or scope["path"] == ENTRY or self._keys.opens_for(_cookie(headers)) is not None:
             return None
         return PlainTextResponse("Open the link that latentarm has printed; each one works once.", 401)
 
     def _own_answer(self, scope: Scope) -> Response | None:
-        """The exchange of a link for a cookie."""
+        """Stop, and the exchange of a link for a cookie."""
+        if scope["path"] == STOP:
+            if scope["method"] != "POST":
+                return PlainTextResponse("Stop is a POST.", 405, headers={"allow": "POST"})
+            self._stop()
+            return Response(status_code=204)
         if self._keys is None or scope["path"] != ENTRY:
             return None
         key = parse_qs(scope["query_string"].decode("latin-1")).get("key", [""])[0]
@@ -171,6 +226,47 @@ class Gate:
         )
         self._entered()
         return answer
+
+
+async def _whole_body(receive: Receive) -> bytes | None:
+    """A request's body, or None where the peer has gone before it was whole."""
+    body = bytearray()
+    while True:
+        message = await receive()
+        if message["type"] != "http.request":
+            return None
+        body += message.get("body", b"")
+        if not message.get("more_body", False):
+            return bytes(body)
+
+
+def _once(body: bytes, receive: Receive) -> Receive:
+    """What an application receives of a request whose body has been read already."""
+    given = False
+
+    async def receive_body_first() -> Message:
+        nonlocal given
+        if given:
+            return await receive()
+        given = True
+        return {"type": "http.request", "body": body, "more_body": False}
+
+    return receive_body_first
+
+
+def _until_expired(receive: Receive, left_s: float) -> Receive:
+    """A socket's messages until its cookie expires; then it is as if the page had hung up with `EXPIRED`."""
+    until_s = time.monotonic() + left_s
+
+    async def receive_in_time() -> Message:
+        left_s = until_s - time.monotonic()
+        if left_s > 0.0:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(left_s):
+                    return await receive()
+        return {"type": "websocket.disconnect", "code": EXPIRED, "reason": EXPIRED_WHY}
+
+    return receive_in_time
 
 
 def _with_headers(send: Send) -> Send:
@@ -189,7 +285,7 @@ def _short(headers: Headers) -> bool:
     if "transfer-encoding" in headers:
         return False
     length = headers.get("content-length", "0")
-    return length.isascii() and length.isdigit() and int(length) <= BODY_LIMIT
+    return length.isascii() and length.isdigit() and len(length) <= _MOST_DIGITS and int(length) <= BODY_LIMIT
 
 
 def _cookie(headers: Headers) -> str:

@@ -1,10 +1,11 @@
 """`latentarm teleop`: the page, its server, and the control process behind it."""
 
 import asyncio
+import socket
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import uvicorn
 from fastapi import FastAPI
@@ -12,10 +13,14 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from latentarm.web.addresses import TeleopConfig, check_certificate, listen, origin
+from latentarm.web.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
 from latentarm.web.drive import DriveSocket
-from latentarm.web.security import ENTRY, STOP, Gate, Keys
+from latentarm.web.frames import MeteredSocket
+from latentarm.web.logs import LOGGING
+from latentarm.web.security import DRIVE, ENTRY, Gate, Keys
 from latentarm.web.sessions import Sessions
 from latentarm.web.setting import Setting, load_setting
 from latentarm.web.shelf import Shelf
@@ -28,7 +33,10 @@ _STATIC: Final = Path(__file__).parent / "static"
 _FRAMEWORK_FRAME_LIMIT: Final = 1 << 16
 """NiceGUI's own socket carries forms; the one that drives is held to `messages.FRAME_LIMIT`."""
 
-_MOST_CONNECTIONS: Final = 256
+STOPPED_BY_POST: Final = "Somebody pressed Stop."
+
+_STARTED_S: Final = 0.01
+"""How often is looked whether uvicorn has started, s."""
 
 
 def serve(
@@ -61,7 +69,7 @@ def serve(
     try:
         app = build_app(setting, control)
         _add_pages(app)
-        gate = gated(app, config, port, keys, invite)
+        gate = gated(app, control, config, port, keys, invite)
         first = link()
         say(f"The page is at {first} (end with Ctrl-C).")
         if keys is not None:
@@ -74,7 +82,9 @@ def serve(
                 "Without a run the page has end-effector control alone; `latentarm demo` or `latentarm train`"
                 " makes one, and `latentarm teleop RUN` drives it."
             )
-        uvicorn.Server(server_config(gate, config)).run(sockets=[listening])
+        server = uvicorn.Server(server_config(gate, config, LOGGING))
+        with asyncio.Runner(loop_factory=server.config.get_loop_factory()) as runner:
+            runner.run(serve_on(listening, server, limits_here()))
     except KeyboardInterrupt:
         say("The page is closed.")
     finally:
@@ -83,7 +93,7 @@ def serve(
 
 
 def build_app(setting: Setting, control: ControlProcess) -> FastAPI:
-    """The application without its pages: socket, scene, static files, and a Stop that needs no socket.
+    """The application without its pages: the socket that drives, scene, and static files.
 
     Args:
         setting: what is driven.
@@ -112,30 +122,33 @@ def build_app(setting: Setting, control: ControlProcess) -> FastAPI:
         return JSONResponse(states.stage.scene.description)
 
     async def mesh(request: Request) -> Response:
-        content = states.stage.scene.meshes.get(int(request.path_params["number"]))
+        # Compared as text: a number in a path may have any length.
+        named = {str(number): content for number, content in states.stage.scene.meshes.items()}
+        content = named.get(request.path_params["number"])
         if content is None:
             return JSONResponse({"detail": "There is no such mesh."}, 404)
         return Response(content, media_type="application/octet-stream")
 
-    async def stop(_: Request) -> Response:
-        drive.stop("Somebody")
-        return Response(status_code=204)
-
-    app.add_api_websocket_route("/drive", drive)
+    app.add_api_websocket_route(DRIVE, drive)
     app.add_route("/scene.json", describe)
-    app.add_route("/mesh/{number:int}", mesh)
-    app.add_route(STOP, stop, methods=["POST"])
+    app.add_route("/mesh/{number}", mesh)
     app.mount("/static", StaticFiles(directory=_STATIC))
     return app
 
 
 def gated(
-    app: ASGIApp, config: TeleopConfig, port: int, keys: Keys | None, entered: Callable[[], None]
+    app: ASGIApp,
+    control: ControlProcess,
+    config: TeleopConfig,
+    port: int,
+    keys: Keys | None,
+    entered: Callable[[], None],
 ) -> Gate:
     """The application behind its gate.
 
     Args:
         app: from `build_app`.
+        control: stops the arm for whoever posts to `STOP`.
         config: says by which names the page is reached.
         port: that it listens on.
         keys: None on the loopback.
@@ -144,26 +157,78 @@ def gated(
     names = ["127.0.0.1", "localhost", config.host] if config.loopback else [config.host]
     origins = frozenset(origin(config.scheme, name, port) for name in names)
     hosts = frozenset(origin.split("//")[1] for origin in origins)
-    return Gate(app, hosts, origins, keys, secure=config.scheme == "https", entered=entered)
+    return Gate(
+        app,
+        hosts,
+        origins,
+        keys,
+        secure=config.scheme == "https",
+        stop=lambda: control.stop(STOPPED_BY_POST),
+        entered=entered,
+    )
 
 
-def server_config(app: ASGIApp, config: TeleopConfig) -> uvicorn.Config:
-    """How the application is served: everything bounded, nothing compressed, no proxy believed."""
+def server_config(
+    app: ASGIApp, config: TeleopConfig, log_config: dict[str, Any] | None = None
+) -> uvicorn.Config:
+    """How the application is served: everything bounded, nothing compressed, no proxy believed.
+
+    Args:
+        app: from `gated`.
+        config: says where it is served.
+        log_config: how what happens is logged; None leaves it as it is.
+    """
     return uvicorn.Config(
         app,
-        log_level="warning",
+        log_config=log_config,
         access_log=False,
         server_header=False,
         proxy_headers=False,
+        http="h11",
+        h11_max_incomplete_event_size=HEAD_LIMIT,
+        ws=MeteredSocket,
         ws_max_size=_FRAMEWORK_FRAME_LIMIT,
         ws_ping_interval=5.0,
         ws_ping_timeout=10.0,
         ws_per_message_deflate=False,
-        limit_concurrency=_MOST_CONNECTIONS,
         timeout_graceful_shutdown=1,
         ssl_certfile=config.certfile,
         ssl_keyfile=config.keyfile,
     )
+
+
+async def serve_on(listening: socket.socket, server: uvicorn.Server, limits: ConnectionLimits) -> None:
+    """Serve until the server is told to exit.
+
+    Args:
+        listening: where connections come in.
+        server: of `server_config`.
+        limits: for connections.
+
+    Raises:
+        OSError: no connections can be accepted any more.
+    """
+
+    async def accept() -> None:
+        while not server.started:
+            await asyncio.sleep(_STARTED_S)
+
+        def protocol() -> H11Protocol:
+            return H11Protocol(server.config, server.server_state, server.lifespan.state)
+
+        await Connections(listening, protocol, server.config.ssl, limits).accept()
+
+    def exit_too(_: asyncio.Task[None]) -> None:
+        server.should_exit = True
+
+    accepting = asyncio.create_task(accept())
+    accepting.add_done_callback(exit_too)
+    try:
+        await server.serve(sockets=[])
+    finally:
+        accepting.cancel()
+    if accepting.done() and not accepting.cancelled():
+        accepting.result()
 
 
 def _add_pages(app: FastAPI) -> None:

@@ -1,0 +1,46 @@
+"""What the server and its libraries log, as the operator's terminal may show it."""
+
+import logging
+from typing import Any, Final
+
+from latentarm.untrusted.terminal import one_line, visible
+
+_TRACEBACKS: Final = logging.Formatter()
+
+_OTHERS: Final = ("uvicorn", "uvicorn.error", "nicegui", "engineio.server", "socketio.server")
+"""Loggers of libraries; handlers of their own, which some have, are taken from them."""
+
+LOGGING: Final[dict[str, Any]] = {
+    "version": 1,
+    "disable_existing_loggers": False,
+    "filters": {"printable": {"()": lambda: make_printable}},
+    "handlers": {
+        "terminal": {
+            "class": "logging.StreamHandler",
+            "formatter": "plain",
+            "filters": ["printable"],
+        }
+    },
+    "formatters": {"plain": {"format": "%(levelname)s: %(message)s"}},
+    "root": {"handlers": ["terminal"], "level": "WARNING"},
+    # These warn of every request for a page that does not exist, or that is not HTTP: strangers could flood
+    # the terminal.
+    "loggers": {name: {"level": "ERROR"} for name in _OTHERS},
+}
+"""For `logging.config.dictConfig`: warnings and errors, with nothing in them that a terminal would obey."""
+
+
+def make_printable(record: logging.LogRecord) -> bool:
+    """Escape what a terminal would obey in a record's message and traceback: both quote what strangers send.
+
+    Args:
+        record: changed in place.
+
+    Returns:
+        True: the record is logged.
+    """
+    record.msg = one_line(record.getMessage())
+    record.args = ()
+    if record.exc_info:
+        record.exc_text = visible(_TRACEBACKS.formatException(record.exc_info))
+    return True
