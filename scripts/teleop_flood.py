@@ -1,8 +1,9 @@
 """Stop and driving while somebody floods the page's server: idle connections, and headers without an end.
 
-A real `latentarm teleop` on this machine, a page without a browser that drives, and two processes that attack: one
-holds half-sent requests open and renews those that are closed, the other sends headers of many megabytes one after
-the other. First the page drives back and forth; then Stop is posted again and again while the arm moves. For example:
+A real `latentarm teleop`, a page without a browser that drives, and two processes that attack.
+One holds half-sent requests open and renews those that are closed; the other sends headers of many megabytes,
+one after the other. First the page drives back and forth, then Stop is posted again and again while the arm
+moves. For example:
 
     python scripts/teleop_flood.py --idle 500 --headers-mb 20 --stops 50 --out flood.json
 """
@@ -54,8 +55,8 @@ def serving(out: Path) -> Iterator[Server]:
     words = [sys.executable, "-m", "latentarm", "teleop", "--port", "0", "--json", "--out", str(out)]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         try:
-            assert process.stdout is not None
-            address = json.loads(process.stdout.readline())["address"]
+            said = "" if process.stdout is None else process.stdout.readline()
+            address = json.loads(said)["address"]
             port = urlsplit(address).port or 0
             until_s = time.monotonic() + PATIENCE_S
             while status(port, "/", "GET") != 200:
@@ -179,12 +180,12 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         with serving(Path(folder)) as server:
             memory_mb = server.memory_mb
-            with Page(server.port) as page:
-                with attacked(server.port, chosen.idle, chosen.headers_mb * 10**6) as counters:
-                    figures["driving"] = drive(page, chosen.seconds)
-                    posted_s, answered_s, statuses = press_stop(page, server.port, chosen.stops)
-                    figures |= {name: counter.value for name, counter in counters.items()}
-                    figures["memory grew by, MB"] = round(server.memory_mb - memory_mb, 1)
+            attack = attacked(server.port, chosen.idle, chosen.headers_mb * 10**6)
+            with Page(server.port) as page, attack as counters:
+                figures["driving"] = drive(page, chosen.seconds)
+                posted_s, answered_s, statuses = press_stop(page, server.port, chosen.stops)
+                figures |= {name: counter.value for name, counter in counters.items()}
+                figures["memory grew by, MB"] = round(server.memory_mb - memory_mb, 1)
         (journal,) = Path(folder).glob("*.sqlite")
         found = [one for one in halts(journal, posted_s) if one is not None]
     figures["answered 204"] = statuses.count(204)

@@ -8,7 +8,16 @@ from starlette.applications import Starlette
 from starlette.responses import PlainTextResponse
 from starlette.routing import Route, WebSocketRoute
 
-from latentarm.web.security import COOKIE, LIFE_S, Gate, Keys
+from latentarm.web.security import (
+    COOKIE,
+    EXPIRED,
+    EXPIRED_WHY,
+    LIFE_S,
+    MOST_REQUESTS,
+    MOST_SOCKETS,
+    Gate,
+    Keys,
+)
 
 HOST = "arm.example:8460"
 ORIGIN = "https://arm.example:8460"
@@ -54,18 +63,27 @@ class Visitor:
         raw = [(name.encode(), value.encode()) for name, value in named.items() if value is not None]
         return {"type": kind, "path": path, "headers": raw, "query_string": b"", **more}
 
-    def ask(self, path="/", method="GET", query="", **headers):
+    async def told(self, path="/", method="GET", query="", *, body_follows=False, **headers):
+        """What is sent in answer; where a body was to follow, the visitor hangs up instead."""
         sent = []
+        parts = [
+            {"type": "http.request", "body": b"", "more_body": body_follows},
+            {"type": "http.disconnect"},
+        ]
 
         async def receive():
-            return {"type": "http.request", "body": b"", "more_body": False}
+            return parts.pop(0)
 
         async def send(message):
             sent.append(message)
 
         scope = self.scope("http", path, headers, method=method)
         scope["query_string"] = query.encode()
-        asyncio.run(self.gate(scope, receive, send))
+        await self.gate(scope, receive, send)
+        return sent
+
+    def ask(self, path="/", method="GET", query="", **headers):
+        sent = asyncio.run(self.told(path, method, query, **headers))
         headers = {name.decode(): value.decode() for name, value in sent[0]["headers"]}
         if "set-cookie" in headers:
             self.cookie = headers["set-cookie"].split(";")[0]
@@ -204,3 +222,103 @@ def test_every_answer_says_what_a_page_may_do(keys):
         assert "frame-ancestors 'none'" in answer.headers["content-security-policy"]
         assert answer.headers["x-content-type-options"] == "nosniff"
         assert answer.headers["referrer-policy"] == "no-referrer"
+
+
+def test_stop_is_a_post_and_builds_no_page(keys):
+    visitor = Visitor(keys)
+    for method in ("GET", "HEAD", "PUT", "OPTIONS"):
+        answer = visitor.ask("/stop", method, origin=ORIGIN)
+        assert answer.status == 405
+        assert answer.headers["allow"] == "POST"
+    assert visitor.stops == 0
+
+
+def test_stop_is_outside_the_cap_on_requests():
+    async def run():
+        visitor = Visitor()
+        held = asyncio.Event()
+
+        async def wait(scope, receive, send):
+            await held.wait()
+
+        visitor.gate.app = wait
+        waiting = [asyncio.create_task(visitor.told("/")) for _ in range(MOST_REQUESTS)]
+        await asyncio.sleep(0)
+        assert (await visitor.told("/"))[0]["status"] == 503
+        assert (await visitor.told("/stop", "POST", origin=ORIGIN, body_follows=True))[0]["status"] == 204
+        held.set()
+        await asyncio.gather(*waiting)
+
+    asyncio.run(run())
+
+
+def test_a_refused_request_ends_its_connection():
+    assert Visitor().ask(host="evil").headers["connection"] == "close"
+    assert "connection" not in Visitor().ask().headers
+
+
+def test_a_body_that_never_comes_reaches_nobody():
+    async def run():
+        visitor = Visitor()
+        reached = []
+
+        async def app(scope, receive, send):
+            reached.append(await receive())
+
+        visitor.gate.app = app
+        assert await visitor.told("/", "POST", origin=ORIGIN, body_follows=True) == []
+        assert not reached
+
+    asyncio.run(run())
+
+
+def test_an_open_socket_ends_with_its_cookie(keys, watch):
+    visitor = Visitor(keys)
+    visitor.ask("/enter", query=f"key={keys.new_link()}")
+    watch.now_s = LIFE_S - 0.01
+    heard = []
+
+    async def app(scope, receive, send):
+        heard.append(await receive())
+
+    visitor.gate.app = app
+
+    async def receive():
+        await asyncio.Event().wait()
+
+    async def send(message):
+        raise AssertionError(message)
+
+    asyncio.run(visitor.gate(visitor.scope("websocket", "/drive", {"origin": ORIGIN}), receive, send))
+    assert heard == [{"type": "websocket.disconnect", "code": EXPIRED, "reason": EXPIRED_WHY}]
+
+
+def test_other_sockets_are_capped_and_leave_room_to_drive():
+    async def run():
+        visitor = Visitor()
+        held = asyncio.Event()
+
+        async def app(scope, receive, send):
+            await send({"type": "websocket.accept"})
+            await held.wait()
+
+        visitor.gate.app = app
+
+        async def opened(path):
+            sent = []
+
+            async def send(message):
+                sent.append(message["type"])
+
+            task = asyncio.create_task(
+                visitor.gate(visitor.scope("websocket", path, {"origin": ORIGIN}), None, send)
+            )
+            await asyncio.sleep(0)
+            return sent == ["websocket.accept"], task
+
+        others = [await opened("/other") for _ in range(MOST_SOCKETS + 1)]
+        assert [accepted for accepted, _ in others] == [True] * MOST_SOCKETS + [False]
+        assert (await opened("/drive"))[0]
+        held.set()
+
+    asyncio.run(run())
