@@ -2,15 +2,24 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# Every version is that of the lock. `make LOCK= ...` takes the newest of everything instead, torch included, whose default
+# build brings gigabytes of CUDA: `make LOCK= TORCH=torch==2.13.0 ...` keeps the small one where that is the index's.
+LOCK ?= constraints.txt
+TORCH ?=
+# The environment variable reaches the isolated build of this package too; the option would not.
+PIP := $(if $(LOCK),PIP_CONSTRAINT=$(abspath $(LOCK))) $(BIN)/pip install --quiet --disable-pip-version-check $(TORCH)
+WORKERS ?= $(shell env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)
+# One thread for each worker, and a test file stays with one worker, so that what it trains is trained once.
+PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
+PARALLEL := --numprocesses $(WORKERS) --dist loadfile
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-thorough check format bench docs clean
+.PHONY: help demo test test-all test-thorough check format bench docs lock clean
 
 help: ## Show what can be made.
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
-$(VENV)/installed: pyproject.toml constraints.txt
+$(VENV)/installed: pyproject.toml $(LOCK)
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) --editable .
 	@touch $@
@@ -29,10 +38,12 @@ check: $(VENV)/installed-dev ## Lint, formatting, types and import layers.
 	$(BIN)/lint-imports
 
 test: check ## Everything that must hold, in minutes.
-	$(BIN)/python -m pytest -m "not slow"
+	$(PYTEST) -m "not slow and not clock" $(PARALLEL)
+	$(PYTEST) -m "not slow and clock"
 
 test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of approaches.
-	$(BIN)/python -m pytest
+	$(PYTEST) -m "not clock and not browser" $(PARALLEL)
+	$(PYTEST) -m "clock or browser"
 
 test-thorough: $(VENV)/installed-dev ## 10,000 Hypothesis examples for motion and geometry, 2,000 drives (hours; nightly).
 	$(BIN)/python -m pytest --hypothesis-profile=thorough tests/control tests/kinematics tests/robots
@@ -44,6 +55,13 @@ bench: $(VENV)/installed ## The online step and the batched fit, as ratios in on
 docs: $(VENV)/installed ## The documentation as a site, in site/; any warning is an error.
 	$(PIP) --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --site-dir site
+
+lock: ## Pin the newest version of every package, direct or not, in constraints.txt.
+	$(PYTHON) -m venv .lock
+	.lock/bin/pip install --quiet --disable-pip-version-check $$(sed -n 's/^torch==/&/p' constraints.txt) hatchling --editable '.[dev,docs]'
+	{ grep '^#' constraints.txt; .lock/bin/pip freeze --exclude-editable | sed 's/+[a-z0-9.]*$$//'; } > .lock/constraints.txt
+	mv .lock/constraints.txt constraints.txt
+	rm -rf .lock
 
 format: $(VENV)/installed-dev ## Format and fix what can be fixed by machine.
 	$(BIN)/ruff check --fix .

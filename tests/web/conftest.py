@@ -29,6 +29,17 @@ from latentarm.web.server import build_app, gated, serve_on, server_config
 from latentarm.web.setting import PERIOD_S, Setting, Spec, load_setting
 from latentarm.web.supervisor import ControlProcess
 
+HERE = Path(__file__).parent
+
+DRIVE_IN_REAL_TIME = {"site", "serve", "recorded", "secured"}
+"""Fixtures with a control process, which stops the arm where the computer keeps it waiting."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if HERE in item.path.parents and DRIVE_IN_REAL_TIME & set(getattr(item, "fixturenames", ())):
+            item.add_marker(pytest.mark.clock)
+
 
 def wait_for(what: Callable[[], Any], within_s: float = 60.0) -> Any:
     """What there is once there is something."""
