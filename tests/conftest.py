@@ -1,6 +1,26 @@
+from collections.abc import Iterator
+
+import pytest
 from hypothesis import settings
+from matplotlib.figure import Figure
+
+from figure_faults import faults
 
 # On a busy machine a single example may take long without anything being wrong.
 settings.register_profile("latentarm", deadline=None)
 settings.register_profile("thorough", max_examples=10_000, deadline=None)
 settings.load_profile("latentarm")
+
+
+@pytest.fixture(autouse=True, scope="session")
+def well_drawn() -> Iterator[None]:
+    """No test saves a figure with one of the faults that `figure_faults` looks for."""
+
+    def look_and_save(figure: Figure, *where: object, **how: object) -> None:
+        assert faults(figure) == []
+        save(figure, *where, **how)
+
+    save = Figure.savefig
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Figure, "savefig", look_and_save)
+        yield

@@ -1,5 +1,6 @@
 """One look for every figure: a colour, a marker and a dash per model, legible without colour."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,6 +9,7 @@ from latentarm.files import written_whole
 from latentarm.untrusted.terminal import visible
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -69,6 +71,8 @@ TWO_COLUMNS_MM = 175.0
 FONT_SIZE = 8.0
 SMALL_FONT_SIZE = 7.0
 MM_PER_INCH = 25.4
+LEGEND_MARGIN_MM = 4.0
+"""Kept free beside a legend, both sides together."""
 
 
 def tidy(axes: "Axes") -> None:
@@ -119,6 +123,45 @@ def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> "Figure":
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), layout="constrained")
+
+
+def legend_below(
+    figure: "Figure",
+    handles: "Sequence[Artist]",
+    labels: Sequence[str],
+    *,
+    heading: str | None = None,
+    handle_length: float = 2.0,
+) -> None:
+    """A legend under all panels, in as many columns as fit the figure's width, so that none is cut off.
+
+    Args:
+        figure: its size is set.
+        handles: what is named.
+        labels: of each.
+        heading: over the legend.
+        handle_length: of the samples of lines, in font sizes.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    room = figure.bbox.width - LEGEND_MARGIN_MM / MM_PER_INCH * figure.dpi
+    for rows in range(1, len(labels) + 1):
+        legend = figure.legend(
+            handles,
+            labels,
+            loc="outside lower center",
+            ncols=-(-len(labels) // rows),
+            frameon=False,
+            fontsize=SMALL_FONT_SIZE,
+            title=heading,
+            title_fontsize=SMALL_FONT_SIZE,
+            handlelength=handle_length,
+            columnspacing=1.4,
+        )
+        if rows == len(labels) or legend.get_window_extent(renderer).width <= room:
+            return
+        legend.remove()
 
 
 def save_figure(figure: "Figure", path: Path) -> None:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from figure_faults import faults
 from latentarm.errors import UserError
 from latentarm.metrics.comparison_figure import comparison_figure
 from latentarm.metrics.effects import axis_effects, axis_grid, held_paths
@@ -18,13 +18,7 @@ def texts_of(figure):
 
 
 def assert_nothing_is_cut_off(figure):
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    drawn = figure.get_tightbbox(canvas.get_renderer())  # inches
-    width, height = figure.get_size_inches()
-    assert min(drawn.x0, drawn.y0) >= -0.01
-    assert drawn.x1 <= width + 0.01
-    assert drawn.y1 <= height + 0.01
+    assert faults(figure) == []
 
 
 @pytest.fixture(params=[1, 2, 3])

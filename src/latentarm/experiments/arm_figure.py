@@ -7,7 +7,7 @@ import numpy as np
 
 from latentarm.experiments.drive_figures import GOAL_COLOURS, GOAL_MARKERS
 from latentarm.robots.robot import Robot
-from latentarm.style import SMALL_FONT_SIZE, literal, new_figure, save_figure
+from latentarm.style import SMALL_FONT_SIZE, legend_below, literal, new_figure, save_figure
 from latentarm.tasks.task import Task
 from latentarm.types import Demonstrations, FloatArray
 
@@ -53,7 +53,7 @@ def draw_task(task: Task, demonstrations: Demonstrations, path: Path) -> None:
             zorder=4,
         )
     frame(axes, np.concatenate(places))
-    figure.legend(loc="outside lower center", ncols=6, frameon=False, fontsize=SMALL_FONT_SIZE)
+    legend_below(figure, *axes.get_legend_handles_labels())
     save_figure(figure, path)
 
 

@@ -167,7 +167,7 @@ def _write(
     write_results(out / "results.json", [*rows, *properties], _about(config))
     draw_drives(traces, task, out / "paths.png")
     save_figure(comparison_figure(headline(properties)), out / "properties.png")
-    draw_inputs({condition: drives[0] for condition, drives in traces.items()}, out / "inputs.png")
+    draw_inputs(traces, out / "inputs.png")
     count = config.drives * len(task.goals)
     write_text(
         out / "results.md",

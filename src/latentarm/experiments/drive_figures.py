@@ -2,19 +2,23 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
 from latentarm.experiments.simulation import Trace
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, look_of, new_figure, save_figure, tidy
+from latentarm.style import FONT_SIZE, legend_below, look_of, new_figure, save_figure, tidy
 from latentarm.tasks.task import Task
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
 GOAL_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 GOAL_MARKERS = ("o", "s", "^", "D", "v", "P")
+OUTCOMES: Final[dict[str, Literal["-", ":"]]] = {"goal reached": "-", "goal not reached": ":"}
+"""What became of a drive -> the line that its path has."""
+
 PANEL_MM = 51.0
 WIDTH_MM = 170.0
 
@@ -44,10 +48,15 @@ def draw_drives(traces: Mapping[str, Sequence[Trace]], task: Task, path: Path) -
     for axes in panels.flat:
         tidy(axes)
     handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=6, frameon=False, fontsize=SMALL_FONT_SIZE
-    )
+    legend_below(figure, [*handles, *outcome_lines()], [*labels, *OUTCOMES])
     save_figure(figure, path)
+
+
+def outcome_lines() -> "list[Line2D]":
+    """Samples for the legend, in the order of `OUTCOMES`."""
+    from matplotlib.lines import Line2D
+
+    return [Line2D([], [], color="black", linestyle=dash, linewidth=0.9) for dash in OUTCOMES.values()]
 
 
 def _draw_view(axes: "Axes", drives: Sequence[Trace], task: Task, across: int, up: int) -> None:
@@ -56,7 +65,7 @@ def _draw_view(axes: "Axes", drives: Sequence[Trace], task: Task, across: int, u
             trace.position[:, across],
             trace.position[:, up],
             color=GOAL_COLOURS[trace.goal % len(GOAL_COLOURS)],
-            linestyle="-" if trace.figures.success else ":",
+            linestyle=OUTCOMES["goal reached" if trace.figures.success else "goal not reached"],
             linewidth=0.7,
             alpha=0.6,
         )
@@ -74,11 +83,13 @@ def _draw_view(axes: "Axes", drives: Sequence[Trace], task: Task, across: int, u
     axes.set_aspect("equal", adjustable="box")
 
 
-def draw_inputs(traces: Mapping[str, Trace], path: Path) -> None:
-    """Draw one drive per condition over time: what the person did, and in which mode.
+def draw_inputs(traces: Mapping[str, Sequence[Trace]], path: Path) -> None:
+    """Draw the typical drive of each condition over time: what the person did, and when they changed modes.
+
+    Typical is the drive that takes the median time.
 
     Args:
-        traces: one drive by condition, all to the same goal from the same start.
+        traces: drives by condition.
         path: the PNG to write.
 
     Raises:
@@ -86,7 +97,8 @@ def draw_inputs(traces: Mapping[str, Trace], path: Path) -> None:
     """
     figure = new_figure(height_mm=30.0 * len(traces) + 15.0, width_mm=WIDTH_MM)
     panels = figure.subplots(len(traces), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, (condition, trace) in zip(panels, traces.items(), strict=True):
+    for axes, (condition, drives) in zip(panels, traces.items(), strict=True):
+        trace = median_drive(drives)
         for axis in range(trace.input.shape[1]):
             axes.plot(
                 trace.time_s,
@@ -99,15 +111,25 @@ def draw_inputs(traces: Mapping[str, Trace], path: Path) -> None:
             )
         switches = trace.time_s[1:][np.diff(trace.mode) != 0]
         for moment in switches:
-            axes.axvline(moment, color="black", linewidth=0.8, linestyle=":")
+            axes.axvline(moment, color="black", linewidth=0.8, linestyle=":", label="mode switch")
         outcome = "done" if trace.figures.success else "not done"
-        said = f"{outcome} after {trace.time_s[-1]:.1f} s"
+        said = f"{outcome} after {trace.time_s[-1]:.1f} s, the median of {len(drives)} drives"
         if len(switches):
-            said += f", {len(switches)} mode switches (dotted)"
+            said += f"; {len(switches)} mode switches"
         axes.set_title(f"{look_of(condition).label}: {said}", loc="left", fontsize=FONT_SIZE)
         axes.set_ylim(-1.15, 1.15)
         axes.set_ylabel("input u")
         tidy(axes)
     panels[-1].set_xlabel("time (s)")
-    panels[0].legend(loc="upper right", ncols=2, frameon=False, fontsize=SMALL_FONT_SIZE)
+    named = {
+        label: handle
+        for axes in panels
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    legend_below(figure, list(named.values()), list(named))
     save_figure(figure, path)
+
+
+def median_drive(drives: Sequence[Trace]) -> Trace:
+    """The drive that takes the median time; of an even number, the shorter of the two in the middle."""
+    return sorted(drives, key=lambda trace: float(trace.time_s[-1]))[(len(drives) - 1) // 2]

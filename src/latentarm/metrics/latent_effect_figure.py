@@ -6,7 +6,7 @@ import numpy as np
 
 from latentarm.metrics.contract import DecodesActions, PlacesTool
 from latentarm.metrics.effects import held_paths
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, legend_below, look_of, new_figure, tidy
 from latentarm.types import FloatArray
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def latent_effect_figure(
     axes.set_ylabel(f"{BASE_AXES[up]} (m)")
     axes.set_title(f"{look_of(model).label}, held for {HOLD_S:g} s")
     tidy(axes)
-    figure.legend(loc="outside lower center", ncols=3, fontsize=SMALL_FONT_SIZE, frameon=False)
+    legend_below(figure, *axes.get_legend_handles_labels())
     axes.title.set_fontsize(FONT_SIZE)
     return figure
 

@@ -1,6 +1,7 @@
+import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from figure_faults import faults
 from latentarm.errors import UserError
 from latentarm.experiments.alignment.conditions import CONDITIONS
 from latentarm.experiments.alignment.curves import CHOICES
@@ -20,20 +21,14 @@ def words_of(figure):
 
 
 def assert_well_drawn(figure):
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    drawn = figure.get_tightbbox(canvas.get_renderer())  # inches
-    width, height = figure.get_size_inches()
-    assert min(drawn.x0, drawn.y0) >= -0.01
-    assert drawn.x1 <= width + 0.01
-    assert drawn.y1 <= height + 0.01
-    assert width * MM_PER_INCH == pytest.approx(TWO_COLUMNS_MM)
+    assert faults(figure) == []
+    assert figure.get_size_inches()[0] * MM_PER_INCH == pytest.approx(TWO_COLUMNS_MM)
     assert any("simulated" in word for word in words_of(figure))
 
 
 @pytest.mark.parametrize("models", [["cae"], ["scl", "isometric"]])
 @pytest.mark.parametrize("spread", [0.02, 0.9])
-def test_every_condition_has_a_bar_in_every_panel(result, models, spread):
+def test_every_condition_has_points_with_intervals_in_every_panel(result, models, spread):
     results = [
         result(task=task, model=model, noise=noise, spread=spread)
         for task in TASKS
@@ -46,7 +41,13 @@ def test_every_condition_has_a_bar_in_every_panel(result, models, spread):
     assert len(figure.axes) == len(TASKS) * len(models)
     for axes in figure.axes:
         assert axes.get_yscale() == "log"
-        assert len(axes.patches) == len(CONDITIONS) * len(NOISES)
+        assert len(axes.containers) == len(CONDITIONS)
+        for points, _, (bars,) in axes.containers:
+            assert len(points.get_xdata()) == len(NOISES)
+            low, high = np.array(bars.get_segments())[..., 1].T
+            assert (low > 0).all()
+            assert (low <= points.get_ydata()).all()
+            assert (points.get_ydata() <= high).all()
 
 
 def test_one_run_has_bars_without_spread(result):

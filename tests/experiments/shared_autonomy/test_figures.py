@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from figure_faults import faults
 from latentarm.errors import UserError
 from latentarm.experiments.shared_autonomy.cell import METHODS, TASKS, Cell, CellResult, Entropy, Outcome
 from latentarm.experiments.shared_autonomy.drive import steps_of
@@ -46,14 +46,8 @@ def words_of(figure):
 
 
 def assert_well_drawn(figure, width_mm):
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    drawn = figure.get_tightbbox(canvas.get_renderer())  # inches
-    width, height = figure.get_size_inches()
-    assert min(drawn.x0, drawn.y0) >= -0.01
-    assert drawn.x1 <= width + 0.01
-    assert drawn.y1 <= height + 0.01
-    assert width * MM_PER_INCH == pytest.approx(width_mm)
+    assert faults(figure) == []
+    assert figure.get_size_inches()[0] * MM_PER_INCH == pytest.approx(width_mm)
     assert any("simulated" in word for word in words_of(figure))
 
 

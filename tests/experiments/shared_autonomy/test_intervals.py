@@ -40,10 +40,20 @@ def test_one_unit_has_no_interval():
     assert (found.mean, found.sd, found.half_width, found.n) == (0.3, 0.0, 0.0, 1)
 
 
-def test_courses_have_the_interval_of_each_moment():
-    courses = np.random.default_rng(1).normal(size=(4, 7))
-    mean, half_width = band(courses)
-    for moment in range(7):
-        found = interval(courses[:, moment, None])
-        assert (mean[moment], half_width[moment]) == pytest.approx((found.mean, found.half_width))
-    assert (band(courses[:2])[1] == 0.0).all()
+def test_bands_of_probabilities_stay_within_zero_and_one():
+    """Where most seeds are sure, mean ± t SE leaves [0, 1] and the bootstrap does not."""
+    courses = np.array([[0.99, 0.01]] * 9 + [[0.2, 0.9]])
+    mean, low, high = band(courses)
+    t_half_width = interval(courses[:, :1]).half_width
+    assert mean[0] + t_half_width > 1
+    assert (low >= courses.min(axis=0)).all()
+    assert (high <= courses.max(axis=0)).all()
+    assert (low < mean).all()
+    assert (mean < high).all()
+
+
+def test_of_few_courses_there_is_no_band():
+    courses = np.random.default_rng(1).normal(size=(2, 7))
+    mean, low, high = band(courses)
+    np.testing.assert_array_equal(low, mean)
+    np.testing.assert_array_equal(high, mean)

@@ -1,11 +1,11 @@
 """Means with 95 % intervals of drives that come in clusters: those with one trained model are one cluster."""
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
-import numpy as np
 from scipy import stats
 
+from latentarm.experiments.studies.bootstrap import bootstrap_interval
 from latentarm.types import FloatArray
 
 CONFIDENCE: Final = 0.95
@@ -70,9 +70,23 @@ def student(n: int) -> float:
     return float(stats.t.ppf((1.0 + CONFIDENCE) / 2.0, n - 1)) if n > 1 else 0.0
 
 
-def band(courses: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Mean (T,) and half-width (T,) of what S seeds did over time, (S, T); 0 for fewer than two."""
-    seeds = len(courses)
-    if seeds < FEWEST_SEEDS:
-        return courses.mean(axis=0), np.zeros(courses.shape[1])
-    return courses.mean(axis=0), student(seeds) * courses.std(axis=0, ddof=1) / seeds**0.5
+class Band(NamedTuple):
+    """What seeds did over time, each (T,).
+
+    Attributes:
+        mean: over seeds.
+        low: lower end of the 95 % bootstrap interval for the mean.
+        high: upper end.
+    """
+
+    mean: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+def band(courses: FloatArray) -> Band:
+    """Mean and interval of what S seeds did over time, (S, T); the mean alone for fewer than three."""
+    mean = courses.mean(axis=0)
+    if len(courses) < FEWEST_SEEDS:
+        return Band(mean, mean, mean)
+    return Band(mean, *bootstrap_interval(courses))

@@ -219,7 +219,7 @@ def _by_seed(figure: Figure) -> dict[str, object]:
 
 
 def _courses(results: Sequence[CellResult], preset: Preset) -> list[dict[str, object]]:
-    """What the figures show over time: state error and belief of the paper's model, mean and half-width."""
+    """What the figures show over time: state error and belief of the paper's model, mean and interval."""
     shown = {person.label for person in preset.drawn_people}
     return [
         {
@@ -229,7 +229,7 @@ def _courses(results: Sequence[CellResult], preset: Preset) -> list[dict[str, ob
             **{
                 f"{what}_{part}": values.round(5).tolist()
                 for what, course in (("error", outcome.error), ("belief", outcome.belief))
-                for part, values in zip(("mean", "half_width_95"), band(course), strict=True)
+                for part, values in zip(("mean", "low_95", "high_95"), band(course), strict=True)
             },
         }
         for result in results

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from latentarm.experiments.alignment.cell import CellResult
-from latentarm.experiments.alignment.conditions import CONDITIONS, IDEAL
+from latentarm.experiments.alignment.conditions import CONDITIONS
 from latentarm.experiments.alignment.rows import ENCODED
+from latentarm.experiments.studies.bootstrap import bootstrap_interval, reach_of_interval
 from latentarm.experiments.studies.panels import plain_ticks, title
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, look_of, new_figure, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,16 +19,16 @@ if TYPE_CHECKING:
 ROW_MM: Final = 48.0
 FRAME_MM: Final = 20.0
 GROUP: Final = 0.86
-"""Width of a group of bars; groups are 1 apart."""
+"""Width of a group of conditions; groups are 1 apart."""
 
 ROOM: Final = 1.6
-"""Free room below and above all bars on the logarithmic axis, as a factor."""
+"""Free room below and above everything on the logarithmic axis, as a factor."""
 
 
 def conditions_figure(
     results: Sequence[CellResult], models: Sequence[str], tasks: Sequence[str], noises: Sequence[float]
 ) -> "Figure":
-    """Bars with their SD, a panel per task, a row per model, grouped by noise.
+    """Means with 95 % intervals, a panel per task, a row per model, grouped by noise.
 
     Args:
         results: every cell.
@@ -37,7 +38,8 @@ def conditions_figure(
     """
     figure = new_figure(ROW_MM * len(models) + FRAME_MM, TWO_COLUMNS_MM)
     figure.suptitle(
-        "Relative alignment error, mean ± SD over runs; people and arm simulated", fontsize=FONT_SIZE
+        "Relative alignment error, mean over runs with 95 % interval; people and arm simulated",
+        fontsize=FONT_SIZE,
     )
     panels = figure.subplots(len(models), len(tasks), sharex=True, sharey="row", squeeze=False)
     for line, model in zip(panels, models, strict=True):
@@ -53,18 +55,8 @@ def conditions_figure(
     for axes in panels[-1]:
         axes.set_xticks(range(len(noises)), [f"{noise:g}" for noise in noises])
         axes.set_xlabel("coefficient of variation of answers", fontsize=FONT_SIZE)
-    (line, *bars), (encoded, *names) = panels[0, 0].get_legend_handles_labels()
-    labels = [*names, encoded]
-    figure.legend(
-        [*bars, line],
-        labels,
-        loc="outside lower center",
-        ncols=(len(labels) + 1) // 2,
-        frameon=False,
-        fontsize=SMALL_FONT_SIZE,
-        handlelength=1.2,
-        columnspacing=1.4,
-    )
+    (line, *points), (encoded, *names) = panels[0, 0].get_legend_handles_labels()
+    legend_below(figure, [*points, line], [*names, encoded])
     return figure
 
 
@@ -74,17 +66,17 @@ def _draw(axes: "Axes", results: Sequence[CellResult]) -> None:
     groups = np.arange(len(results))
     for index, name in enumerate(CONDITIONS):
         errors = [result.errors[name] for result in results]
-        axes.bar(
+        look = look_of(name)
+        axes.errorbar(
             groups + (index - (len(CONDITIONS) - 1) / 2) * width,
             [values.mean() for values in errors],
-            width=0.92 * width,
-            yerr=[values.std(ddof=1) if len(values) > 1 else 0.0 for values in errors],
-            error_kw={"elinewidth": 0.7, "capsize": 0.0},
-            color=look_of(name).colour,
-            hatch="////" if name == IDEAL else None,
-            edgecolor="white",
-            linewidth=0.0,
-            label=look_of(name).label,
+            yerr=np.transpose([reach_of_interval(values) for values in errors]),
+            color=look.colour,
+            marker=look.marker,
+            linestyle="none",
+            markersize=4.2,
+            elinewidth=1.0,
+            label=look.label,
             zorder=2,
         )
     axes.axhline(
@@ -100,14 +92,10 @@ def _draw(axes: "Axes", results: Sequence[CellResult]) -> None:
 
 
 def _log_axis(axes: "Axes", results: Sequence[CellResult]) -> None:
-    """A logarithmic axis around all means, SDs upwards and the encoder's choice."""
-    means = [float(values.mean()) for result in results for values in result.errors.values()]
-    spreads = [
-        float(values.mean() + values.std(ddof=1))
-        for result in results
-        for values in result.errors.values()
-        if len(values) > 1
-    ]
+    """A logarithmic axis around all intervals and the encoder's choice."""
+    ends = [bootstrap_interval(values) for result in results for values in result.errors.values()]
+    encoded = [result.encoded for result in results]
+    low, high = min(float(low) for low, _ in ends), max(float(high) for _, high in ends)
     axes.set_yscale("log")
-    axes.set_ylim(min(means + [result.encoded for result in results]) / ROOM, max(means + spreads) * ROOM)
+    axes.set_ylim(min(low, *encoded) / ROOM, max(high, *encoded) * ROOM)
     plain_ticks(axes)

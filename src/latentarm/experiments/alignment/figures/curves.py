@@ -3,11 +3,13 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from latentarm.experiments.alignment.curves import AT_RANDOM, BY_NOVELTY, CHOICES, CurveResult
 from latentarm.experiments.alignment.targets import RANDOM_ANSWERS
+from latentarm.experiments.studies.bootstrap import reach_of_interval
 from latentarm.experiments.studies.panels import plain_ticks, title
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
-from latentarm.types import FloatArray
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, look_of, new_figure, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +22,7 @@ NUDGE: Final = 0.16
 
 
 def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figure":
-    """Mean and SD over runs against the number of answers, a panel per task, a row per model and noise.
+    """Means with 95 % intervals over the number of answers, a panel per task, a row per model and noise.
 
     Args:
         curves: every curve.
@@ -29,7 +31,7 @@ def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figur
     places = list(dict.fromkeys((curve.cell.learned.cell.model, curve.cell.noise) for curve in curves))
     figure = new_figure(ROW_MM * len(places) + FRAME_MM, TWO_COLUMNS_MM)
     figure.suptitle(
-        "Relative alignment error with all priors, mean ± SD over runs; people and arm simulated",
+        "Relative alignment error, all priors, mean over runs with 95 % interval; people and arm simulated",
         fontsize=FONT_SIZE,
     )
     panels = figure.subplots(len(places), len(tasks), sharex=True, squeeze=False)
@@ -45,16 +47,7 @@ def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figur
     for axes in panels[-1]:
         axes.set_xlabel("answers", fontsize=FONT_SIZE)
     handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        loc="outside lower center",
-        ncols=len(labels),
-        frameon=False,
-        fontsize=SMALL_FONT_SIZE,
-        handlelength=2.6,
-        columnspacing=1.4,
-    )
+    legend_below(figure, handles, labels, handle_length=2.6)
     return figure
 
 
@@ -66,11 +59,7 @@ def _draw(axes: "Axes", curve: CurveResult) -> None:
         axes.errorbar(
             [count + (index - 1) * NUDGE for count in errors],
             means,
-            yerr=[
-                # No lower end at or below zero, which a logarithmic axis has no place for.
-                [min(_sd(values), 0.9 * mean) for values, mean in zip(errors.values(), means, strict=True)],
-                [_sd(values) for values in errors.values()],
-            ],
+            yerr=np.transpose([reach_of_interval(values) for values in errors.values()]),
             color=look.colour,
             marker=look.marker,
             linestyle=look.dash,
@@ -104,7 +93,3 @@ def _draw(axes: "Axes", curve: CurveResult) -> None:
     plain_ticks(axes)
     axes.set_xlim(left=0.0)
     tidy(axes)
-
-
-def _sd(values: FloatArray) -> float:
-    return float(values.std(ddof=1)) if len(values) > 1 else 0.0

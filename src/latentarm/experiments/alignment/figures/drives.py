@@ -5,17 +5,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from latentarm.experiments.alignment.drives import DRIVEN, Driven, DrivesResult
-from latentarm.experiments.drive_figures import GOAL_COLOURS, GOAL_MARKERS
+from latentarm.experiments.drive_figures import GOAL_COLOURS, GOAL_MARKERS, OUTCOMES, outcome_lines
 from latentarm.experiments.studies.panels import title
-from latentarm.style import SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, save_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, look_of, new_figure, save_figure, tidy
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Goal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ROW_MM: Final = 44.0
-LEGEND_MM: Final = 12.0
+ROW_MM: Final = 36.0
+LEGEND_MM: Final = 18.0
 VIEW: Final = ((-0.6, 0.6), (-0.2, 0.85))
 """What is shown, y from and to, x from and to, m."""
 
@@ -32,6 +32,8 @@ def draw_drive_paths(results: Sequence[DrivesResult], path: Path) -> None:
     """
     goals = TableTop().goals
     figure = new_figure(height_mm=ROW_MM * len(results) + LEGEND_MM, width_mm=TWO_COLUMNS_MM)
+    figure.set_layout_engine("compressed")  # panels keep their shape; without it the rest of a row is blank
+    figure.suptitle("Simulated drives from above, and how many reach their goal", fontsize=FONT_SIZE)
     panels = figure.subplots(len(results), len(DRIVEN), squeeze=False, sharex=True, sharey=True)
     for row, result in zip(panels, results, strict=True):
         for axes, condition in zip(row, DRIVEN, strict=True):
@@ -43,16 +45,7 @@ def draw_drive_paths(results: Sequence[DrivesResult], path: Path) -> None:
     for axes in panels[-1]:
         axes.set_xlabel("y (m)")
     handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        loc="outside lower center",
-        ncols=len(goals),
-        frameon=False,
-        fontsize=SMALL_FONT_SIZE,
-        title="simulated drives from above, and how many reach their goal (dotted: not)",
-        title_fontsize=SMALL_FONT_SIZE,
-    )
+    legend_below(figure, [*handles, *outcome_lines()], [*labels, *OUTCOMES])
     save_figure(figure, path)
 
 
@@ -62,7 +55,7 @@ def _draw(axes: "Axes", drives: Sequence[Driven], goals: Sequence[Goal]) -> None
             one.path[:, 1],
             one.path[:, 0],
             color=GOAL_COLOURS[one.goal],
-            linestyle=":" if one.reached_s is None else "-",
+            linestyle=OUTCOMES["goal not reached" if one.reached_s is None else "goal reached"],
             linewidth=0.6,
             alpha=0.6,
         )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 from latentarm.experiments.compare.figures.scale import logarithmic_with_zero
 from latentarm.experiments.compare.rows import condition, with_demonstrations
 from latentarm.experiments.studies.panels import title
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, literal, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, look_of, new_figure, tidy
 from latentarm.types import Row
 
 if TYPE_CHECKING:
@@ -54,9 +54,7 @@ def fewer_figure(
         axes.set_xlabel("training demonstrations", fontsize=FONT_SIZE)
         axes.set_xticks(range(len(counts)), [str(count) for count in counts])
     handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=SMALL_FONT_SIZE
-    )
+    legend_below(figure, handles, labels)
     return figure
 
 
@@ -84,11 +82,7 @@ def _draw(
             axes.errorbar(
                 [at + 0.06 * (place - (len(models) - 1) / 2) for at, _ in known],
                 [scale * (row.mean or 0.0) for _, row in known],
-                # What lies below zero cannot be: the lower half of a bar is cut there.
-                yerr=[
-                    [scale * min(row.sd or 0.0, 0.9 * (row.mean or 0.0)) for _, row in known],
-                    [scale * (row.sd or 0.0) for _, row in known],
-                ],
+                yerr=[scale * (row.sd or 0.0) for _, row in known],
                 color=look.colour,
                 marker=look.marker,
                 fillstyle="none" if level else "full",

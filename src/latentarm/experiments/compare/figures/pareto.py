@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 from latentarm.experiments.compare.figures.scale import logarithmic_with_zero
 from latentarm.experiments.compare.rows import condition
 from latentarm.experiments.studies.panels import title
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, literal, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, look_of, new_figure, tidy
 from latentarm.types import Row
 
 if TYPE_CHECKING:
@@ -53,9 +53,7 @@ def pareto_figure(rows: Sequence[Row], datasets: Sequence[str], noises_rad: Sequ
     for axes in panels[-1]:
         axes.set_xlabel("error (% of PCA's)", fontsize=FONT_SIZE)
     handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=5, frameon=False, fontsize=SMALL_FONT_SIZE
-    )
+    legend_below(figure, handles, labels)
     return figure
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from latentarm.experiments.properties.figures.bars import draw_paper, draw_spread, log_axis
+from latentarm.experiments.properties.figures.dots import draw_paper, draw_spread, log_axis
 from latentarm.experiments.properties.figures.panels import Point, points
 from latentarm.experiments.properties.tables import OURS
 from latentarm.experiments.studies.panels import title

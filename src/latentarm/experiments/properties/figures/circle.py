@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.experiments.properties.figures.bars import beside, draw_bars
+from latentarm.experiments.properties.figures.dots import beside, draw_points
 from latentarm.experiments.properties.figures.guides import draw_guides
 from latentarm.experiments.properties.figures.losses import draw_losses
 from latentarm.experiments.properties.figures.panels import points
@@ -51,7 +51,7 @@ def circle_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     losses, angles = parts[0].subplots(1, 2)
     draw_losses(losses, rows, motion.name)
     between = points(rows, motion.name, "disentanglement_deg")
-    draw_bars(angles, between, 0.0)
+    draw_points(angles, between, 0.0)
     title(angles, "angle between the axes", "B")
     angles.set_xlim(0.0, 100.0)
     angles.set_xticks([0, 30, 60, 90])

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from latentarm.experiments.properties.figures.bars import draw_bars, log_axis
+from latentarm.experiments.properties.figures.dots import draw_points, log_axis
 from latentarm.experiments.properties.figures.panels import in_mm, points
 from latentarm.experiments.studies.panels import title
-from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure
 from latentarm.types import Row
 
 if TYPE_CHECKING:
@@ -41,11 +41,16 @@ def controllability_figure(rows: Sequence[Row], tasks: Sequence[str]) -> "Figure
         distances = in_mm(points(rows, task, measure_of(task)))
         starts = in_mm(points(rows, task, "start_distance_m"))
         left = log_axis(axes, [*distances.values(), *starts.values()], LEAST_MM)
-        draw_bars(axes, distances, left, LEAST_MM)
+        draw_points(axes, distances, left, LEAST_MM)
         for start in list(starts.values())[:1]:  # the same pairs for all models
-            axes.axvline(start.mean, color="black", linestyle=":", linewidth=1.0, zorder=1)
-        title(axes, task.capitalize() + (" (dotted: at the start)" if starts else ""))
+            axes.axvline(
+                start.mean, color="black", linestyle=":", linewidth=1.0, zorder=1, label="at the start"
+            )
+        title(axes, task.capitalize())
         axes.set_xlabel("tool from goal (mm)")
     for axes in panels[len(tasks) :]:
         axes.remove()
+    handles, labels = panels[0].get_legend_handles_labels()
+    if handles:
+        legend_below(figure, handles, labels)
     return figure

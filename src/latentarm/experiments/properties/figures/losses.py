@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from latentarm.experiments.properties.figures.bars import beside, draw_bars, log_axis
+from latentarm.experiments.properties.figures.dots import beside, draw_points, log_axis
 from latentarm.experiments.properties.figures.panels import points
 from latentarm.experiments.studies.panels import title
 from latentarm.types import Row
@@ -21,6 +21,6 @@ def draw_losses(axes: "Axes", rows: Sequence[Row], task: str) -> None:
         task: which task.
     """
     losses = points(rows, task, "error_percent_of_pca")
-    draw_bars(axes, losses, log_axis(axes, losses.values()))
+    draw_points(axes, losses, log_axis(axes, losses.values()))
     title(axes, "test loss, mean ± SD", "A")
     axes.set_xlabel(f"% of PCA's{beside(losses)}")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 from latentarm.experiments.properties.figures.panels import points
 from latentarm.experiments.studies.panels import title
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, look_of, new_figure, tidy
 from latentarm.types import Row
 
 if TYPE_CHECKING:
@@ -44,21 +44,15 @@ def noise_figure(rows: Sequence[Row], tasks: Sequence[str], noises_rad: Sequence
             _draw_sweep(axes, rows, task, measure, noises_rad)
             tidy(axes)
         line[0].set_ylabel(f"loss on {where}\n(% of PCA)", fontsize=FONT_SIZE)
+    lowest = min((row.mean for row in rows if row.measure in MEASURES and row.mean), default=1.0)
+    panels[0, 0].set_ylim(bottom=lowest / 2.0)
     for axes, task in zip(panels[0], tasks, strict=True):
         title(axes, task.capitalize())
     for axes in panels[-1]:
         axes.set_xlabel("noise (rad)", fontsize=FONT_SIZE)
         axes.set_xticks(range(len(noises_rad)), [f"{noise:g}" for noise in noises_rad])
     handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        loc="outside lower center",
-        ncols=4,
-        frameon=False,
-        fontsize=SMALL_FONT_SIZE,
-        handlelength=4.0,
-    )
+    legend_below(figure, handles, labels, handle_length=4.0)
     return figure
 
 
@@ -75,11 +69,7 @@ def _draw_sweep(
         axes.errorbar(
             [place + shift for place, _ in known],
             [figure.mean for _, figure in known],
-            # What lies below zero cannot be drawn on a logarithmic axis.
-            yerr=[
-                [min(figure.sd, 0.9 * figure.mean) for _, figure in known],
-                [figure.sd for _, figure in known],
-            ],
+            yerr=[figure.sd for _, figure in known],
             color=look.colour,
             marker=look.marker,
             linestyle=look.dash,
@@ -88,5 +78,6 @@ def _draw_sweep(
             elinewidth=0.8,
             label=look.label,
         )
-    axes.set_yscale("log")
+    # An SD that reaches zero leaves the panel at its foot.
+    axes.set_yscale("log", nonpositive="clip")
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.experiments.properties.figures.bars import draw_bars, log_axis
+from latentarm.experiments.properties.figures.dots import draw_points, log_axis
 from latentarm.experiments.properties.figures.losses import draw_losses
 from latentarm.experiments.properties.figures.panels import in_mm, points
 from latentarm.experiments.properties.figures.shown import (
@@ -51,7 +51,7 @@ def reach_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     losses, distances = parts[0].subplots(1, 2)
     draw_losses(losses, rows, motion.name)
     final = in_mm(points(rows, motion.name, "final_distance"))
-    draw_bars(distances, final, log_axis(distances, final.values()))
+    draw_points(distances, final, log_axis(distances, final.values()))
     title(distances, "distance to the goal in the end", "B")
     distances.set_xlabel("mm")
     for axes, model in zip(row_of_panels(parts[1], len(shown)), shown, strict=True):

@@ -49,8 +49,8 @@ def changes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequenc
         error.set_ylabel("final state error", fontsize=FONT_SIZE)
         for axes, after_s in zip(beliefs, drawn, strict=True):
             draw_course(axes, outcomes, changing(after_s).label, "belief")
-            axes.axvline(after_s, color="black", linestyle=":", linewidth=1.0)
-            title(axes, f"change after {after_s:g} s (dotted)")
+            axes.axvline(after_s, color="black", linestyle=":", linewidth=1.0, label="change of mind")
+            title(axes, f"change after {after_s:g} s")
             axes.set_ylim(-0.03, 1.03)
             axes.set_ylabel("belief in the true goal", fontsize=FONT_SIZE)
         for axes in (error, *beliefs):
@@ -58,5 +58,5 @@ def changes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequenc
     panels[-1, 0].set_xlabel("change after (s)", fontsize=FONT_SIZE)
     for axes in panels[-1, 1:]:
         axes.set_xlabel("time (s)", fontsize=FONT_SIZE)
-    name_methods(figure, panels[0, 0])
+    name_methods(figure, *panels[0])
     return figure

@@ -8,7 +8,7 @@ import numpy as np
 from latentarm.experiments.shared_autonomy.cell import METHODS, CellResult, Outcome
 from latentarm.experiments.shared_autonomy.drive import STEP_S
 from latentarm.experiments.shared_autonomy.intervals import band, interval
-from latentarm.style import SMALL_FONT_SIZE, look_of
+from latentarm.style import legend_below, look_of
 from latentarm.types import FloatArray
 
 if TYPE_CHECKING:
@@ -79,12 +79,10 @@ def draw_course(axes: "Axes", outcomes: dict[tuple[str, str], Outcome], person: 
     for index, method in enumerate(METHODS):
         if (method, person) not in outcomes:
             continue
-        mean, half_width = band(getattr(outcomes[method, person], what))
+        mean, low, high = band(getattr(outcomes[method, person], what))
         time_s = STEP_S * np.arange(len(mean))
         look = look_of(method)
-        axes.fill_between(
-            time_s, mean - half_width, mean + half_width, color=look.colour, alpha=0.2, linewidth=0.0
-        )
+        axes.fill_between(time_s, low, high, color=look.colour, alpha=0.2, linewidth=0.0)
         every = max(len(mean) // 5, 1)
         axes.plot(
             time_s,
@@ -101,16 +99,11 @@ def draw_course(axes: "Axes", outcomes: dict[tuple[str, str], Outcome], person: 
         )
 
 
-def name_methods(figure: "Figure", axes: "Axes") -> None:
-    """A legend below all panels, from the labels of one of them."""
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        loc="outside lower center",
-        ncols=len(labels),
-        frameon=False,
-        fontsize=SMALL_FONT_SIZE,
-        handlelength=3.0,
-        columnspacing=1.2,
-    )
+def name_methods(figure: "Figure", *panels: "Axes") -> None:
+    """A legend below all panels, from the labels of some of them; what has a name twice is named once."""
+    named = {
+        label: handle
+        for axes in panels
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    legend_below(figure, list(named.values()), list(named), handle_length=3.0)

@@ -10,7 +10,7 @@ from latentarm.experiments.drive_figures import GOAL_COLOURS, GOAL_MARKERS
 from latentarm.experiments.studies.panels import plane
 from latentarm.experiments.studies.planar_arms import arm_line
 from latentarm.experiments.studies.planar_arms import draw_arm as draw_planar_arm
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, look_of, new_figure
+from latentarm.style import FONT_SIZE, legend_below, look_of, new_figure
 from latentarm.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
 from latentarm.types import FloatArray
 
@@ -52,15 +52,7 @@ def task_figure(task: TwoCups) -> "Figure":
         places = draw_solid_arm(solid, task.robot, task.start)
         _draw_paths(solid, task, paths, nearest)
         frame(solid, np.concatenate([places, *paths]))
-    figure.legend(
-        loc="outside lower center",
-        ncols=3,
-        frameon=False,
-        fontsize=SMALL_FONT_SIZE,
-        handlelength=1.0,
-        handletextpad=0.5,
-        columnspacing=1.2,
-    )
+    legend_below(figure, *figure.axes[0].get_legend_handles_labels(), handle_length=1.0)
     return figure
 
 

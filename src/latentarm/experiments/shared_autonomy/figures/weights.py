@@ -9,7 +9,7 @@ from latentarm.experiments.shared_autonomy.ablations import weight_label
 from latentarm.experiments.shared_autonomy.preset import Ablation
 from latentarm.experiments.shared_autonomy.rows import RECONSTRUCTION, Figure
 from latentarm.experiments.studies.panels import title
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, legend_below, look_of, new_figure, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,15 +46,7 @@ def weights_figure(
         axes.set_xlabel("weight $\\lambda_2$", fontsize=FONT_SIZE)
         tidy(axes)
     handles, names = left.get_legend_handles_labels()
-    figure.legend(
-        handles,
-        names,
-        loc="outside lower center",
-        ncols=2,
-        frameon=False,
-        fontsize=SMALL_FONT_SIZE,
-        handlelength=3.0,
-    )
+    legend_below(figure, handles, names, handle_length=3.0)
     return figure
 
 

@@ -1,4 +1,4 @@
-"""Panel: one bar per model with its SD and its figure, and the paper's beside it."""
+"""Panel: one point per model with its SD and its figure, and the paper's beside it."""
 
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Final
@@ -10,9 +10,8 @@ from latentarm.style import SMALL_FONT_SIZE, look_of, tidy
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BAR_WIDTH: Final = 0.62
-BELOW: Final = 0.2
-"""How far the paper's figure stands below the middle of a bar, so that no SD is taken for the other."""
+BELOW: Final = 0.25
+"""How far the paper's figure stands below ours, so that no SD is taken for the other."""
 DECADES: Final = 50.0
 """Ratio of the ends of a logarithmic axis from which powers of ten are numbers enough."""
 PAPER_SIGN: Final = "($\\diamond$: the paper)"
@@ -27,7 +26,7 @@ def log_axis(axes: "Axes", figures: Collection[Point], least: float = 0.0) -> fl
         least: the axis goes no further down.
 
     Returns:
-        Its left edge, where bars begin.
+        Its left edge.
     """
     from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -44,16 +43,17 @@ def log_axis(axes: "Axes", figures: Collection[Point], least: float = 0.0) -> fl
     return left
 
 
-def draw_bars(axes: "Axes", figures: Mapping[str, Point], left: float, least: float = 0.0) -> None:
-    """Draw bars from the left edge, named on the left and with their figures on the right.
+def draw_points(axes: "Axes", figures: Mapping[str, Point], left: float, least: float = 0.0) -> None:
+    """Draw points with their SD, named on the left and with their figures on the right.
 
-    Named and numbered, they need no colour.
+    An SD that reaches the left edge goes on beyond it, on a logarithmic axis as far as zero.
+    Points and not bars, because a bar's length means nothing on a logarithmic axis.
 
     Args:
         axes: where to draw; its scale is already set.
         figures: by model.
-        left: where bars begin; on a logarithmic axis above zero.
-        least: a figure below it is no bar, but the words that it is, at the left edge.
+        left: the left edge of the axis.
+        least: a figure below it is no point, but the words that it is, at the left edge.
     """
     for place, (model, figure) in enumerate(figures.items()):
         if figure.mean < least:
@@ -67,10 +67,9 @@ def draw_bars(axes: "Axes", figures: Mapping[str, Point], left: float, least: fl
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},  # no grid line through them
             )
             continue
-        axes.barh(
-            place, figure.mean - left, BAR_WIDTH, left=left, color=look_of(model).colour, alpha=0.85, zorder=2
-        )
+        look = look_of(model)
         draw_spread(axes, place, figure.mean, figure.sd, left)
+        axes.plot(figure.mean, place, look.marker, color=look.colour, markersize=5.5, zorder=7)
         draw_paper(axes, place + BELOW, figure, left)
         axes.text(
             1.02,
@@ -89,8 +88,6 @@ def draw_bars(axes: "Axes", figures: Mapping[str, Point], left: float, least: fl
 def draw_spread(axes: "Axes", place: float, mean: float, sd: float, left: float) -> None:
     """One SD to either side of a mean, no further down than the left edge."""
     ends = [max(mean - sd, left), mean + sd]
-    # A white rim shows it on dark bars too.
-    axes.plot(ends, [place, place], color="white", linewidth=2.4, zorder=3.9)
     axes.plot(ends, [place, place], color="black", linewidth=0.9, zorder=4)
 
 
