@@ -48,6 +48,7 @@ def test_the_properties_for_people_and_for_machines(
     assert "results.md" in err
 
 
+@pytest.mark.slow
 def test_the_smallest_study_of_shared_autonomy_runs_from_end_to_end(run: Run, workplace: Path) -> None:
     code, out, err = run("reproduce", "shared-autonomy", "--preset", "smoke", "--jobs", 2)
     assert code == 0

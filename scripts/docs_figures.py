@@ -1,0 +1,56 @@
+"""Redraw the figures of ``docs/figures`` by the commands that the pages name.
+
+``python scripts/docs_figures.py demo alignment`` redraws those of some commands. All take about an hour on
+two cores that have nothing else to do: demo 2 minutes, properties 14, shared-autonomy 17, alignment 31.
+``compare`` needs the recordings that are not part of the repository, and 2 hours: it runs only if named.
+"""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+FIGURES = Path(__file__).parents[1] / "docs" / "figures"
+RECORDINGS = FIGURES.parents[2] / "shared" / "demonstrations"
+COMMANDS = {
+    "demo": ["demo"],
+    "properties": ["reproduce", "properties", "--preset", "paper"],
+    "shared-autonomy": ["reproduce", "shared-autonomy", "--preset", "paper"],
+    "alignment": ["reproduce", "alignment", "--preset", "paper"],
+    "compare": [
+        "compare",
+        "--demonstrations",
+        *(str(RECORDINGS / name) for name in ("pick_banana", "pick_cereal", "pour_coffee")),
+        *["--noise", "0.01", "0.1", "--preset", "paper"],
+    ],
+}
+PREFIXES = {
+    "demo": "",
+    "properties": "properties_",
+    "shared-autonomy": "shared_autonomy_",
+    "alignment": "alignment_",
+    "compare": "compare_",
+}
+"""What a command's figures are called in ``docs/figures``, before their own name."""
+
+
+def redraw(name: str) -> None:
+    """Run one command and put those of its figures in place that a page shows already."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "made"
+        done = subprocess.run(
+            [sys.executable, "-m", "latentarm", *COMMANDS[name], "--out", str(out)], check=False
+        )
+        if done.returncode not in (0, 1):  # 1: something was measured and not reached
+            raise SystemExit(done.returncode)
+        for made in sorted(out.glob("*.png")):
+            shown = FIGURES / (PREFIXES[name] + made.name)
+            if shown.exists():
+                shutil.copyfile(made, shown)
+                print(f"{name}: {shown.name}")
+
+
+if __name__ == "__main__":
+    for chosen in sys.argv[1:] or [name for name in COMMANDS if name != "compare"]:
+        redraw(chosen)
