@@ -201,3 +201,23 @@ def test_what_goes_too_far_or_too_fast_is_named(arm):
         nearer = nearer + 0.01 * down
     assert objection(nearer, down) == "clearance"
     assert objection(nearer, -down) is None
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1.0, 4.0]))
+def test_the_path_ends_where_the_command_and_its_brake_lead(arm, seed, share):
+    """Within `stray`, joint by joint; `fastest` is never passed on the way."""
+    rng = np.random.default_rng(seed)
+    bounds = Bounds(SafetyConfig(), arm, 0.01)
+    velocity = rng.uniform(-0.5, 0.5, 7)
+    brake = bounds.brake(velocity, share * rng.uniform(-1.0, 1.0, 7) * bounds.acceleration)
+    path = Path(velocity, brake, bounds.hold_s)
+    settling = np.linspace(0.0, brake.settle_s, 50)
+    ramp = np.linspace(brake.settle_s, brake.duration_s, 300)
+    covered = velocity * bounds.hold_s
+    for times in (settling, ramp):
+        speeds = np.array([brake.at(float(time))[0] for time in times])
+        assert (np.abs(speeds) <= path.fastest + 1e-12).all()
+        covered = covered + np.trapezoid(speeds, times, axis=0)
+    assert (np.abs(covered - path.way) <= path.stray + 3e-6).all()
+    # Along each joint the settling is bounded by its whole time at the faster of both speeds.
+    assert (np.abs(covered) <= path.fastest * (path.before_s + path.after_s) + 3e-6).all()
