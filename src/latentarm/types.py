@@ -94,6 +94,38 @@ class Episode:
 
 
 @dataclass(frozen=True)
+class StatedJointLimits:
+    """What somebody states of one joint; None where they do not. A sliding joint has m instead of rad.
+
+    Attributes:
+        position: lowest and highest, rad.
+        velocity: rad/s.
+        acceleration: rad/s².
+        jerk: rad/s³.
+        sliding: whether the figures are those of a sliding joint; None where there are no figures.
+    """
+
+    position: tuple[float, float] | None = None
+    velocity: float | None = None
+    acceleration: float | None = None
+    jerk: float | None = None
+    sliding: bool | None = None
+
+
+@dataclass(frozen=True)
+class StatedLimits:
+    """What somebody states of a robot's limits, as in a limits file.
+
+    Attributes:
+        joints: by name; joints that nothing is said of are left out.
+        tool_speed: largest speed of the tool, m/s, or None.
+    """
+
+    joints: Mapping[str, StatedJointLimits]
+    tool_speed: float | None = None
+
+
+@dataclass(frozen=True)
 class Demonstrations:
     """The dataset ``D`` as it lies on disk: whole episodes of one robot.
 
@@ -105,6 +137,9 @@ class Demonstrations:
         goals: the discrete goals ``G``, empty where none are known.
         import_record: what importing decided about units, joints and so on, by subject, in words; empty for
             demonstrations that were never imported.
+        end_effector: which site, body or link of a model file is the end-effector; None where the robot
+            has but one.
+        limits: what was stated of the robot's limits, or None.
     """
 
     episodes: tuple[Episode, ...]
@@ -113,6 +148,8 @@ class Demonstrations:
     robot: str = ""
     goals: tuple[Goal, ...] = ()
     import_record: Mapping[str, str] = field(default_factory=dict)
+    end_effector: str | None = None
+    limits: StatedLimits | None = None
 
     @property
     def dof(self) -> int:

@@ -106,7 +106,9 @@ def test_joints_without_names_get_some(written):
 
 def test_the_end_effector_may_be_left_out_where_there_is_one(written):
     fork = '<site name="other"/><body name="left"/><body name="right"/>'
-    with pytest.raises(UserError, match=r"robot\.xml: name the end-effector.*tip, other, left, right"):
+    with pytest.raises(
+        UserError, match=r"robot\.xml: several.*--end-effector, one of left \(1 joint\), other"
+    ):
         load_model_file(written(arm(more=fork)))
     assert load_model_file(written(arm(more=fork)), "left").chain.tools[0].name == "left"
     # Two sites but one last body: that is it.

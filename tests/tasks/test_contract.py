@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -5,6 +7,7 @@ from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.reach import Reach
 from latentarm.tasks.replay import Replay
+from latentarm.tasks.task import check_not_done
 from latentarm.tasks.two_cups import PandaTwoCups, PlanarTwoCups
 
 
@@ -64,3 +67,44 @@ def test_unknown_goals_manners_and_no_demonstrations_are_refused(task):
     ):
         with pytest.raises(UserError):
             call()
+
+
+def test_a_task_that_is_done_where_the_arm_starts_is_refused(task):
+    way = task.waypoints(0, task.manners[0])
+    check_not_done(task, task.sample_start(0, np.random.default_rng(0)), way)
+    with pytest.raises(UserError, match="done before it begins"):
+        check_not_done(
+            task, task.goals[0].configuration, [task.robot.chain.forward(task.goals[0].configuration)]
+        )
+
+
+TURNTABLE = """<mujoco><compiler angle="radian"/><worldbody><body name="table">
+<joint name="turn" axis="0 0 1" range="-0.1 0.1"/><geom size="0.1"/><site name="middle"/>
+</body></worldbody></mujoco>"""
+
+
+def test_a_tool_that_hardly_moves_has_nowhere_to_reach_to(tmp_path):
+    """As a site on the first link of an arm: every goal is where it stands."""
+    path = tmp_path / "turntable.xml"
+    path.write_text(TURNTABLE)
+    with pytest.raises(UserError, match=r"nowhere to reach to: middle of .* hardly moves with the 1 joints?"):
+        Reach(load_robot(str(path)))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_reaching_starts_away_from_every_goal(seed):
+    task = Reach(load_robot("planar"), seed=seed)
+    for goal in range(len(task.goals)):
+        start = task.sample_start(goal, np.random.default_rng(seed))
+        assert not task.reached(task.robot.chain.forward(start), task.goals[goal].pose)
+
+
+def test_episodes_in_which_the_tool_goes_nowhere_are_not_followed(table_top):
+    shown = table_top.demonstrate(2, np.random.default_rng(0))
+    first = shown.episodes[0]
+    # Joints twitch by more than counts as standing still; the tool stays within 3 cm.
+    twitch = replace(first, state=first.state[:1] + 0.02 * np.sin(first.timestamp)[:, None])
+    task = Replay(table_top.robot, replace(shown, episodes=(twitch, shown.episodes[1])))
+    assert len(task.goals) == 1
+    with pytest.raises(UserError, match=r"In none of these episodes does tool of panda go anywhere"):
+        Replay(table_top.robot, replace(shown, episodes=(twitch,)))

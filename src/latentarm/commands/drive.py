@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import EndEffector, Jobs, Json, MovedDataset, Seed
-from latentarm.commands.output import say, show
+from latentarm.commands.options import EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seed
+from latentarm.commands.output import note, say, show
 
 
 def drive(
@@ -28,6 +28,7 @@ def drive(
         arg(help="A robot's name or the path of an MJCF or URDF file; that of the run by default."),
     ] = None,
     end_effector: EndEffector = None,
+    limits: LimitsFile = None,
     profile: Annotated[
         str | None, arg(metavar="NAME", help="A person that `latentarm align` has asked; z = u without.")
     ] = None,
@@ -83,6 +84,7 @@ def drive(
             task=task,
             robot=robot,
             end_effector=end_effector,
+            limits=limits,
             profile=profile,
             drives=drives,
             operator=operator,
@@ -97,7 +99,8 @@ def drive(
             dataset=demonstrations,
             out=out,
             bars=not json and sys.stderr.isatty(),
-        )
+        ),
+        note,
     )
     write_options(
         out,

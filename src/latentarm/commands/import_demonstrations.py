@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import EndEffector, Json, RobotName
-from latentarm.commands.output import say, show
+from latentarm.commands.options import EndEffector, Json, LimitsFile, RobotName
+from latentarm.commands.output import note, say, show
 
 
 def import_demonstrations(
@@ -17,6 +17,7 @@ def import_demonstrations(
     destination: Annotated[Positional[Path], arg(metavar="DST", help="New folder for the dataset.")],
     robot: RobotName = "panda",
     end_effector: EndEffector = None,
+    limits: LimitsFile = None,
     rate_hz: Annotated[float | None, arg(help="Sampling rate, for a file that does not say it.")] = None,
     instruction: Annotated[
         str | None, arg(help="What was done, in words, for a file that does not say it.")
@@ -36,11 +37,15 @@ def import_demonstrations(
     from latentarm.demonstrations.importing import import_to
     from latentarm.experiments.inspection import summary
     from latentarm.robots.catalogue import load_robot
+    from latentarm.robots.limits_file import read_limits
+    from latentarm.robots.notices import notices
 
+    arm = load_robot(robot, end_effector, None if limits is None else read_limits(limits))
+    note(notices(arm))
     demonstrations = import_to(
         source,
         destination,
-        load_robot(robot, end_effector),
+        arm,
         rate_hz=rate_hz,
         task=instruction,
         actions=actions,

@@ -15,6 +15,10 @@ RobotName = Annotated[
 EndEffector = Annotated[
     str | None, arg(help="Site, body or link of the model file that is the end-effector.", metavar="NAME")
 ]
+LimitsFile = Annotated[
+    Path | None,
+    arg(metavar="FILE", help="TOML or YAML file that states the robot's limits, see docs/arms.md."),
+]
 Dataset = Annotated[Path, arg(metavar="DST", help="Folder of a native dataset.")]
 MovedDataset = Annotated[
     Path | None, arg(metavar="DST", help="Where the run's dataset lies now, if it was moved.")

@@ -44,6 +44,12 @@ def say(sentence: str, json: bool) -> None:
     print(visible(sentence), file=sys.stderr if json else sys.stdout)
 
 
+def note(sentences: "Sequence[str]") -> None:
+    """Tell a person on standard error what to keep in mind, with ``--json`` too."""
+    for sentence in sentences:
+        print(f"latentarm: note: {visible(sentence)}", file=sys.stderr)
+
+
 def print_renderables(*renderables: "RenderableType") -> None:
     """Print tables and other things that rich can draw."""
     from latentarm.untrusted.console import VisibleConsole

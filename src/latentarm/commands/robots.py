@@ -5,7 +5,7 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
-from latentarm.commands.options import EndEffector, Json
+from latentarm.commands.options import EndEffector, Json, LimitsFile
 from latentarm.commands.output import print_renderables
 
 
@@ -15,6 +15,7 @@ def robots(
         arg(metavar="ROBOT", help="One robot, by name or path; all known ones without."),
     ] = None,
     end_effector: EndEffector = None,
+    limits: LimitsFile = None,
     json: Json = False,
 ) -> int:
     """List the robots, or show one: joints, limits and end-effector.
@@ -24,7 +25,7 @@ def robots(
     from latentarm.experiments.robot_sheet import describe, sheets
 
     if json:
-        print(json_format.dumps(describe(robot, end_effector), indent=2))
+        print(json_format.dumps(describe(robot, end_effector, limits), indent=2))
     else:
-        print_renderables(*sheets(robot, end_effector))
+        print_renderables(*sheets(robot, end_effector, limits))
     return 0

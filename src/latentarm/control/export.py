@@ -57,6 +57,8 @@ def demonstrations_of(
         joint_names=first.joint_names,
         robot=first.robot,
         goals=first.goals,
+        end_effector=first.end_effector,
+        limits=first.limits,
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from latentarm.control.recorder import EpisodeHeader, check_is_journal
 from latentarm.demonstrations.provenance import parse_provenance
 from latentarm.errors import UserError
+from latentarm.robots.limits_file import parse_limits
 from latentarm.types import Command, Goal, Pose, StepRecord, Stop
 from latentarm.untrusted.documents import parse_object
 from latentarm.untrusted.memory import bounded_memory
@@ -193,6 +194,9 @@ def _header(about: dict[str, Any]) -> EpisodeHeader:
         rate_hz=float(about["rate_hz"]),
         task=str(about["task"]),
         modes=tuple(str(mode) for mode in about["modes"]),
+        # Journals from before these were kept have neither.
+        end_effector=None if about.get("end_effector") is None else str(about["end_effector"]),
+        limits=None if about.get("limits") is None else parse_limits(about["limits"], "its limits"),
         goals=tuple(_goal(goal) for goal in about["goals"]),
         # Journals from before this was recorded have none.
         provenance=parse_provenance(about.get("provenance", {})),

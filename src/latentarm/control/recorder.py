@@ -13,7 +13,8 @@ import numpy as np
 
 from latentarm.demonstrations.provenance import provenance_json
 from latentarm.errors import UserError
-from latentarm.types import FloatArray, Goal, Provenance, StepRecord
+from latentarm.robots.limits_file import limits_document
+from latentarm.types import FloatArray, Goal, Provenance, StatedLimits, StepRecord
 from latentarm.untrusted.opening import check_file, is_missing
 
 SCHEMA_VERSION = 1
@@ -53,6 +54,8 @@ class EpisodeHeader:
         goals: the discrete goals ``G``.
         modes: names of the controller's modes.
         provenance: who and what records it.
+        end_effector: site, body or link of the robot's model file, or None.
+        limits: what was stated of the robot's limits, or None.
     """
 
     robot: str
@@ -62,6 +65,8 @@ class EpisodeHeader:
     goals: tuple[Goal, ...] = ()
     modes: tuple[str, ...] = ("",)
     provenance: Provenance = field(default_factory=Provenance)
+    end_effector: str | None = None
+    limits: StatedLimits | None = None
 
 
 @final
@@ -128,6 +133,8 @@ class Recorder:
             "rate_hz": header.rate_hz,
             "task": header.task,
             "modes": list(header.modes),
+            "end_effector": header.end_effector,
+            "limits": None if header.limits is None else limits_document(header.limits),
             "goals": [
                 {
                     "name": goal.name,

@@ -92,6 +92,8 @@ def write_dataset(demonstrations: Demonstrations, path: Path) -> None:
         goals=demonstrations.goals,
         import_record=demonstrations.import_record,
         provenance=tuple(episode.provenance for episode in demonstrations.episodes),
+        end_effector=demonstrations.end_effector,
+        limits=demonstrations.limits,
     )
     with staged_folder(path) as staging:
         for place in sorted(set(places)):
@@ -167,6 +169,8 @@ def read_dataset(path: Path) -> Demonstrations:
         robot=info.robot,
         goals=info.goals,
         import_record=info.import_record,
+        end_effector=info.end_effector,
+        limits=info.limits,
     )
     validate(demonstrations, str(path))
     return demonstrations

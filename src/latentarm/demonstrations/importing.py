@@ -140,4 +140,10 @@ def _as_recorded_on(robot: Robot, demonstrations: Demonstrations, source: Path) 
             f"{source}: the joints are in the order {', '.join(names)}, "
             f"but the robot {robot.name} has them in the order {', '.join(robot.joint_names)}; reorder them."
         )
-    return replace(demonstrations, robot=robot.name, joint_names=robot.joint_names)
+    return replace(
+        demonstrations,
+        robot=robot.name,
+        joint_names=robot.joint_names,
+        end_effector=robot.end_effector,
+        limits=robot.stated_limits,
+    )

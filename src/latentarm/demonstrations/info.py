@@ -15,7 +15,8 @@ import numpy as np
 from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.provenance import parse_provenance, provenance_json
 from latentarm.errors import UserError
-from latentarm.types import Demonstrations, Goal, Pose, Provenance
+from latentarm.robots.limits_file import limits_document, parse_limits
+from latentarm.types import Demonstrations, Goal, Pose, Provenance, StatedLimits
 from latentarm.untrusted.documents import read_object
 from latentarm.untrusted.opening import is_missing
 
@@ -69,6 +70,8 @@ class Info:
         robot: name of the robot, or "".
         features: the float vectors; pictures, text and integers of other writers are left out.
         goals: the discrete goals.
+        end_effector: site, body or link of the robot's model file, or None.
+        limits: what was stated of the robot's limits, or None.
         native: whether this package laid the dataset out (its actions are joint velocities then).
         chunk_files: files in one chunk folder.
         data_file_mb: size at which a data file is followed by the next.
@@ -83,6 +86,8 @@ class Info:
     robot: str
     features: tuple[Feature, ...]
     goals: tuple[Goal, ...] = ()
+    end_effector: str | None = None
+    limits: StatedLimits | None = None
     native: bool = True
     chunk_files: int = CHUNK_FILES
     data_file_mb: int = DATA_FILE_MB
@@ -143,6 +148,8 @@ def info_json(info: Info) -> str:
         "latentarm": {
             "format": 1,
             "action": "joint velocity, rad/s",
+            "end_effector": info.end_effector,
+            "limits": None if info.limits is None else limits_document(info.limits),
             "goals": [
                 {
                     "name": goal.name,
@@ -198,6 +205,8 @@ def read_info(root: Path) -> Info:
         robot=robot if isinstance(robot, str) else "",
         features=features,
         goals=_read_goals(ours, path),
+        end_effector=_read_end_effector(ours, path),
+        limits=_read_limits(ours, path),
         native=isinstance(ours, dict),
         chunk_files=max(_count(mapping, "chunks_size", path), 1),
         data_file_mb=_count(mapping, "data_files_size_in_mb", path),
@@ -241,6 +250,18 @@ def _entry_names(names: object, width: int) -> tuple[str, ...] | None:
     if isinstance(names, list) and len(names) == width and all(isinstance(name, str) for name in names):
         return tuple(cast(Sequence[str], names))
     return None
+
+
+def _read_end_effector(ours: object, path: Path) -> str | None:
+    name: object = cast(Mapping[str, Any], ours).get("end_effector") if isinstance(ours, dict) else None
+    if name is not None and not isinstance(name, str):
+        raise UserError(f"{path}: the entry 'end_effector' is not a name.")
+    return name
+
+
+def _read_limits(ours: object, path: Path) -> StatedLimits | None:
+    limits: object = cast(Mapping[str, Any], ours).get("limits") if isinstance(ours, dict) else None
+    return None if limits is None else parse_limits(limits, f"{path}, limits")
 
 
 def _read_goals(ours: object, path: Path) -> tuple[Goal, ...]:

@@ -39,4 +39,6 @@ def read_lerobot(source: Path, actions: Literal["known", "joint_velocity"] = "kn
         joint_names=info.joint_names,
         robot=info.robot,
         goals=info.goals,
+        end_effector=info.end_effector,
+        limits=info.limits,
     )

@@ -1,6 +1,6 @@
 """`latentarm drive`: simulated operators drive a task, with latent actions or with mode switching."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Final, Literal
@@ -26,6 +26,8 @@ from latentarm.metrics.results import as_document
 from latentarm.metrics.summary import Subject
 from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.operators.catalogue import PLANNING, OperatorName, usual_operator
+from latentarm.robots.limits_file import read_limits
+from latentarm.robots.notices import notices
 from latentarm.runs.checks import check_count, check_positive, check_seed
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.setting import TaskName, latent_controller, task_of_run, task_without_run
@@ -60,6 +62,7 @@ class DriveConfig:
         task: what is to be done; what the run was trained for where None.
         robot: a robot's name or model file; that of the run where None.
         end_effector: site, body or link of a model file.
+        limits: a limits file, or None.
         profile: name of the person whose alignment stands between input and latent action; z = u where None.
         drives: for each goal.
         operator: who gives inputs; `usual_operator` of the task where None.
@@ -85,6 +88,7 @@ class DriveConfig:
     task: TaskName | None = None
     robot: str | None = None
     end_effector: str | None = None
+    limits: Path | None = None
     profile: str | None = None
     drives: int = 3
     operator: OperatorName | None = None
@@ -139,8 +143,12 @@ class Driven:
     time_limit_s: float
 
 
-def drive_run(config: DriveConfig) -> Driven:
+def drive_run(config: DriveConfig, tell: Callable[[Sequence[str]], None] = lambda sentences: None) -> Driven:
     """Drive every goal of a task several times and write ``drives.json``, ``drives.csv`` and a figure.
+
+    Args:
+        config: what was asked for.
+        tell: is given what to keep in mind of the robot, before it moves.
 
     Raises:
         UserError: the run, the robot or the task does not exist, they do not fit each other, or the folder
@@ -149,10 +157,12 @@ def drive_run(config: DriveConfig) -> Driven:
     arbitration = _arbitration(config)
     run = None if config.run is None else read_run(config.run)
     demonstrations = None if run is None else run.dataset(config.dataset)
+    limits = None if config.limits is None else read_limits(config.limits)
     if run is None or demonstrations is None:
-        task = task_without_run(config.task, config.robot, config.end_effector)
+        task = task_without_run(config.task, config.robot, config.end_effector, limits)
     else:
-        task = task_of_run(run, demonstrations, config.task, config.robot, config.end_effector)
+        task = task_of_run(run, demonstrations, config.task, config.robot, config.end_effector, limits)
+    tell(notices(task.robot))
     operator = config.operator or usual_operator(task.name)
     setup = Setup(
         task=task,
@@ -195,6 +205,7 @@ def _about(
     arbitration: FixedAlpha | ConfidenceAlpha | None,
 ) -> dict[str, object]:
     """What the figures depend on."""
+    robot = setup.task.robot
     model = None if run is None or config.controller == "end_effector" else run.folder
     return {
         "study": "drive",
@@ -202,8 +213,9 @@ def _about(
         "model": None if model is None else weights_fingerprint(model),
         "controller": config.controller,
         "task": setup.task.name,
-        "robot": setup.task.robot.name,
-        "end_effector": config.end_effector,
+        "robot": robot.name,
+        "end_effector": robot.chain.tools[0].name,
+        "limit_sources": asdict(robot.limits.sources) | {"tool_speed": robot.tool_speed_source},
         "profile": config.profile,
         "drives_per_goal": config.drives,
         "seed": config.seed,
@@ -287,6 +299,8 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
                         device="simulated",
                         controller=config.controller,
                     ),
+                    end_effector=task.robot.end_effector,
+                    limits=task.robot.stated_limits,
                 )
             )
             traces.append(simulate(setup, goal, manner, rng, recorder.record))

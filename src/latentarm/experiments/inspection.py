@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from latentarm.demonstrations.summary import Summary, summarise
 from latentarm.errors import UserError
-from latentarm.robots.catalogue import load_robot
+from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, Provenance
 from latentarm.untrusted.terminal import visible
@@ -22,7 +22,7 @@ _FINGERPRINT_LENGTH: Final = 64
 def known_robot(demonstrations: Demonstrations) -> Robot | None:
     """The robot that a dataset names, or None where it names none or that one is not to be had here."""
     try:
-        return load_robot(demonstrations.robot) if demonstrations.robot else None
+        return load_recorded_robot(demonstrations) if demonstrations.robot else None
     except UserError:
         return None
 

@@ -1,9 +1,12 @@
 """What `latentarm robots` tells: the names it knows, or one robot's joints, limits and end-effector."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from latentarm.errors import UserError
 from latentarm.robots.catalogue import ROBOTS, load_robot
 from latentarm.robots.limits import QUANTITIES, Quantity
+from latentarm.robots.limits_file import read_limits
 from latentarm.robots.notices import notices
 
 if TYPE_CHECKING:
@@ -21,24 +24,27 @@ _SOURCES: "dict[Source, str]" = {
 }
 
 
-def describe(name: str | None, end_effector: str | None = None) -> list[dict[str, object]]:
+def describe(
+    name: str | None, end_effector: str | None = None, limits: Path | None = None
+) -> list[dict[str, object]]:
     """Robots as plain data.
 
     Args:
         name: a robot's name or model file, or None for all built-in ones.
         end_effector: site, body or link of the model file that is the end-effector.
+        limits: a limits file.
 
     Raises:
         UserError: no such robot, or its model cannot be used.
     """
-    return [_facts(robot) for robot in _robots(name, end_effector)]
+    return [_facts(robot) for robot in _robots(name, end_effector, limits)]
 
 
-def sheets(name: str | None, end_effector: str | None = None) -> "list[Table]":
+def sheets(name: str | None, end_effector: str | None = None, limits: Path | None = None) -> "list[Table]":
     """Robots as tables, see `describe`."""
     from rich.table import Table
 
-    robots = _robots(name, end_effector)
+    robots = _robots(name, end_effector, limits)
     if name is None:
         table = Table("robot", "joints", "arms", "joint speed limits, rad/s", title="Built-in robots")
         for robot in robots:
@@ -49,8 +55,15 @@ def sheets(name: str | None, end_effector: str | None = None) -> "list[Table]":
     return [_sheet(robot) for robot in robots]
 
 
-def _robots(name: str | None, end_effector: str | None) -> "list[Robot]":
-    return [load_robot(known, end_effector) for known in ([name] if name is not None else list(ROBOTS))]
+def _robots(name: str | None, end_effector: str | None, limits: Path | None) -> "list[Robot]":
+    if name is None and (end_effector or limits):
+        raise UserError(
+            "An end-effector and limits belong to one robot: name it, as in `latentarm robots PATH`."
+        )
+    stated = None if limits is None else read_limits(limits)
+    return [
+        load_robot(known, end_effector, stated) for known in ([name] if name is not None else list(ROBOTS))
+    ]
 
 
 def _facts(robot: "Robot") -> dict[str, object]:
@@ -60,6 +73,7 @@ def _facts(robot: "Robot") -> dict[str, object]:
         "end_effectors": [tool.name for tool in robot.chain.tools],
         "tool_speed_limit_m_per_s": robot.tool_speed_limit,
         "tool_speed_source": robot.tool_speed_source,
+        "still_joints": list(robot.still_joints),
         "joints": [
             {
                 "name": joint,
@@ -107,6 +121,7 @@ def _sheet(robot: "Robot") -> "Table":
         f"end-effector: {tools}; limits in rad, rad/s, rad/s², rad/s³ (m for a sliding joint);"
         f" {_known_from(robot)}; tool at most {robot.tool_speed_limit:g} m/s{assumed};"
         f" {len(robot.capsules.name)} capsules, {len(robot.self_pairs)} pairs of them watched"
+        + "".join(f"\n{sentence}" for sentence in notices(robot))
     )
     return table
 

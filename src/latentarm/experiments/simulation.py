@@ -19,7 +19,7 @@ from latentarm.operators.catalogue import make_operator
 from latentarm.operators.foresight import Foresight
 from latentarm.operators.planning import PlanningConfig
 from latentarm.robots.simulated import SimulatedArm
-from latentarm.tasks.task import Task
+from latentarm.tasks.task import Task, check_not_done
 from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
 
 RATE_HZ = 100.0
@@ -107,6 +107,9 @@ def simulate(
 
     Returns:
         The drive.
+
+    Raises:
+        UserError: the task is done where the arm starts.
     """
     task, controller = setup.task, setup.controller
     dt_s = 1.0 / RATE_HZ
@@ -116,6 +119,7 @@ def simulate(
     operator = make_operator(task.robot, setup.operator, setup.planning, setup.foresight, dt_s)
     remaining = list(task.waypoints(goal, manner))
     since_s = 0.0
+    check_not_done(task, start, remaining)
     step.reset(start)
     records = [step(Input(np.zeros(controller.input_dim)), 0.0, start, 0.0)]
     step.enable()

@@ -13,6 +13,10 @@ from latentarm.types import BoolArray, FloatArray, IntArray
 
 _HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 _SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
+_EQ_CONNECT = int(mujoco.mjtEq.mjEQ_CONNECT)
+_EQ_WELD = int(mujoco.mjtEq.mjEQ_WELD)
+_EQ_JOINT = int(mujoco.mjtEq.mjEQ_JOINT)
+_SITE = int(mujoco.mjtObj.mjOBJ_SITE)
 
 
 @final
@@ -66,10 +70,11 @@ def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> Reading:
 
     Raises:
         UserError: an end-effector is unknown or does not move, or a joint on the way is neither
-            a hinge nor a slide.
+            a hinge nor a slide, follows another joint, or is part of a closed chain.
     """
     tools = [_find(model, name) for name in end_effectors]
     joints = _joints_on_the_way(model, [body for _, body, _ in tools])
+    _check_open(model, joints)
     index = {int(joint): link for link, joint in enumerate(joints)}
     data = mujoco.MjData(model)
     data.qpos[:] = reference_positions(model)
@@ -161,11 +166,7 @@ def _joints_on_the_way(model: mujoco.MjModel, bodies: Sequence[int]) -> IntArray
     """Ids of the joints between the world and the bodies, parents first."""
     found: set[int] = set()
     for body in bodies:
-        mine: set[int] = set()
-        at = body
-        while at > 0:
-            mine.update(_joints_of(model, at))
-            at = int(model.body_parentid[at])
+        mine = _joints_above(model, body)
         if not mine:
             raise UserError(f"No joint moves {model.body(body).name!r}: name an end-effector that does move.")
         found |= mine
@@ -177,6 +178,43 @@ def _joints_on_the_way(model: mujoco.MjModel, bodies: Sequence[int]) -> IntArray
                 " can be driven between the world and the end-effector."
             )
     return np.array(sorted(found), dtype=np.int64)
+
+
+def _check_open(model: mujoco.MjModel, joints: IntArray) -> None:
+    """Refuse joints that cannot be driven each by itself.
+
+    Raises:
+        UserError: one follows another joint, or lies in a loop that the model closes.
+    """
+    driven = {int(joint) for joint in joints}
+    for i in np.flatnonzero(model.eq_active0):
+        kind, first, second = int(model.eq_type[i]), int(model.eq_obj1id[i]), int(model.eq_obj2id[i])
+        if kind == _EQ_JOINT and first in driven:
+            leader = f"joint {model.joint(second).name!r}" if second >= 0 else "a fixed position"
+            raise UserError(
+                f"Joint {model.joint(first).name!r} follows {leader}, so it cannot be driven by itself: name"
+                " an end-effector that it does not move."
+            )
+        if kind in (_EQ_CONNECT, _EQ_WELD):
+            if model.eq_objtype[i] == _SITE:
+                first, second = int(model.site_bodyid[first]), int(model.site_bodyid[second])
+            if model.body_mocapid[first] >= 0 or model.body_mocapid[second] >= 0:
+                continue  # a handle to drag the simulated arm by, and no part of it
+            loop = (_joints_above(model, first) ^ _joints_above(model, second)) & driven
+            if loop:
+                raise UserError(
+                    f"Joint {model.joint(min(loop)).name!r} is part of a closed chain (<equality>): only arms"
+                    " whose joints move each by itself can be driven."
+                )
+
+
+def _joints_above(model: mujoco.MjModel, body: int) -> set[int]:
+    """Ids of the joints between the world and a body."""
+    found: set[int] = set()
+    while body > 0:
+        found.update(_joints_of(model, body))
+        body = int(model.body_parentid[body])
+    return found
 
 
 def _base_bodies(model: mujoco.MjModel, body_link: IntArray, tools: Sequence[int]) -> tuple[int, ...]:

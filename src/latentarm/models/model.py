@@ -38,7 +38,7 @@ from latentarm.models.torch_decoder import TorchDecoder
 from latentarm.models.trained import TrainedModel, TrainingSummary
 from latentarm.models.training import Report, TrainingResult
 from latentarm.models.unfitted import UnfittedError
-from latentarm.robots.catalogue import load_robot
+from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs
 
 ROWS_AT_ONCE: Final = 4096
@@ -301,7 +301,7 @@ class LatentActionModel(BaseEstimator, ABC):
                     f"The {self.kind} model looks at the arm's tool, and the demonstrations do not say which "
                     "arm they are of: name it when they are imported (--robot)."
                 )
-            chain = load_robot(demonstrations.robot).chain
+            chain = load_recorded_robot(demonstrations).chain
         if chain.dof != demonstrations.dof:
             raise UserError(f"The arm has {chain.dof} joints and the demonstrations {demonstrations.dof}.")
         return chain

@@ -1,17 +1,20 @@
 """Make a `Robot` of a MuJoCo model."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 
 from latentarm.kinematics.capsules import Capsules
 from latentarm.kinematics.reader import read
+from latentarm.robots.end_effector import arm_joints, finger_joints
 from latentarm.robots.limits import JointLimits, Source
+from latentarm.robots.limits_file import with_stated
 from latentarm.robots.robot import Robot
 from latentarm.robots.self_pairs import self_pairs
 from latentarm.robots.shapes import body_name, read_capsules
-from latentarm.types import BoolArray, FloatArray
+from latentarm.types import BoolArray, FloatArray, StatedLimits
 
 
 def assemble(
@@ -49,6 +52,7 @@ def assemble(
         model = mujoco.MjModel.from_xml_string(mjcf)
     reading = read(model, end_effectors)
     capsules = read_capsules(model, reading)
+    joints = frozenset(int(joint) for joint in reading.joints)
     return Robot(
         name=name,
         chain=reading.chain,
@@ -57,10 +61,42 @@ def assemble(
         capsules=capsules,
         self_pairs=self_pairs(reading.chain, capsules, limits, home, _excluded(model, capsules)),
         mjcf=mjcf,
+        still_joints=_names(model, arm_joints(model) - joints),
+        driven_fingers=_names(model, finger_joints(model) & joints),
         tool_speed_limit=tool_speed_limit,
         tool_speed_source=tool_speed_source,
         model_path=model_path,
     )
+
+
+def restate(robot: Robot, stated: StatedLimits) -> Robot:
+    """The robot with limits that somebody states, in place of what was known or assumed.
+
+    Args:
+        robot: the robot.
+        stated: what is stated of some or all of its joints.
+
+    Raises:
+        UserError: a joint is not the robot's, or its figures make no sense together.
+    """
+    chain = robot.chain
+    limits = with_stated(robot.limits, stated, chain.joint_names, chain.slide.tolist())
+    home = robot.home
+    if limits.violation(home).any():
+        home = np.clip(home, limits.lower, limits.upper)
+    tool_speed, source = robot.tool_speed_limit, robot.tool_speed_source
+    if stated.tool_speed is not None:
+        tool_speed, source = stated.tool_speed, "limits_file"
+    names = [tool.name for tool in chain.tools]
+    # Anew, since which capsules can meet depends on how far the joints move.
+    anew = assemble(
+        robot.name, robot.mjcf, names, limits, home, tool_speed, robot.model_path, tool_speed_source=source
+    )
+    return replace(anew, stated_limits=stated)
+
+
+def _names(model: mujoco.MjModel, joints: frozenset[int]) -> tuple[str, ...]:
+    return tuple(str(model.joint(joint).name) or f"joint{joint}" for joint in sorted(joints))
 
 
 def _excluded(model: mujoco.MjModel, capsules: Capsules) -> BoolArray:

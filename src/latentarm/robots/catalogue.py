@@ -4,11 +4,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from latentarm.errors import UserError
+from latentarm.robots.assemble import restate
+from latentarm.robots.end_effector import AmbiguousEndEffectorError
 from latentarm.robots.menagerie import menagerie_file
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
+from latentarm.types import Demonstrations, StatedLimits
 
 ROBOTS: dict[str, Callable[[], Robot]] = {
     "panda": panda,
@@ -18,21 +21,55 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
 """The robots that come with a plain install."""
 
 
-def load_robot(name_or_path: str, end_effector: str | None = None) -> Robot:
+def load_robot(
+    name_or_path: str, end_effector: str | None = None, limits: StatedLimits | None = None
+) -> Robot:
     """A robot of the catalogue, or any robot whose MJCF or URDF file is given.
 
     Args:
         name_or_path: a name in `ROBOTS`, the path of an .xml or .urdf file, or a name in the MuJoCo
             Menagerie where the package `mujoco-menagerie` is installed.
         end_effector: site or body of a file's model; see `load_model_file`.
+        limits: what somebody states of its limits, in place of what is known or assumed.
 
     Returns:
         The robot.
 
     Raises:
-        UserError: the name is unknown, an end-effector is given for a named robot, or the file
-            cannot be used.
+        AmbiguousEndEffectorError: the model's end-effector must be named.
+        UserError: the name is unknown, an end-effector is given for a named robot, the file cannot be
+            used, or the limits are not those of its joints.
     """
+    robot = _load(name_or_path, end_effector)
+    return robot if limits is None else restate(robot, limits)
+
+
+def load_recorded_robot(demonstrations: Demonstrations, dataset: str = "") -> Robot:
+    """The robot that demonstrations were recorded on, with the end-effector and limits that they name.
+
+    Args:
+        demonstrations: of a robot that they name.
+        dataset: their folder, for messages.
+
+    Raises:
+        UserError: they name no robot or no end-effector where one is needed, or it cannot be loaded.
+    """
+    whose = dataset or "The dataset"
+    if not demonstrations.robot:
+        raise UserError(f"{whose} does not say which robot it is of: import it again with --robot.")
+    try:
+        return load_robot(demonstrations.robot, demonstrations.end_effector, demonstrations.limits)
+    except AmbiguousEndEffectorError as error:
+        command = (
+            f"latentarm import {dataset or 'DATASET'} NEW --robot {demonstrations.robot} --end-effector NAME"
+        )
+        raise UserError(
+            f"{whose} does not say which end-effector of {demonstrations.robot} was recorded. Add it with"
+            f" `{command}`, where NAME is one of {error.choices}."
+        ) from error
+
+
+def _load(name_or_path: str, end_effector: str | None) -> Robot:
     if name_or_path in ROBOTS:
         if end_effector is not None:
             raise UserError(

@@ -12,6 +12,7 @@ from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.reader import Reading, read
 from latentarm.robots.assemble import assemble
+from latentarm.robots.end_effector import AmbiguousEndEffectorError, choose_end_effector
 from latentarm.robots.limits import JointLimits, LimitSources, Source
 from latentarm.robots.model_xml import read_model_xml
 from latentarm.robots.robot import Robot
@@ -60,16 +61,17 @@ def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
 
     Args:
         path: the file.
-        end_effector: name of a site or body. Needed only where it is ambiguous, that is, where the
-            model has not exactly one site that moves, nor exactly one last moving body.
+        end_effector: name of a site or body; needed where `choose_end_effector` chooses none. One that
+            only some of the joints move is accepted: the others stay still, see `Robot.still_joints`.
 
     Returns:
         The robot, with the file's absolute path as its name: datasets remember it, and are read from
         other folders.
 
     Raises:
-        UserError: the file or a mesh is missing or broken, the end-effector is unknown or ambiguous,
-            a joint on the way is neither a hinge nor a slide, or a limit is not a limit.
+        AmbiguousEndEffectorError: an end-effector must be named.
+        UserError: the file or a mesh is missing or broken, the end-effector is unknown, a joint on the way
+            cannot be driven by itself, or a limit is not a limit.
     """
     source = read_model_xml(path)
     if source.root.tag not in ("robot", "mujoco"):
@@ -90,7 +92,7 @@ def _loaded(path: Path, urdf: Urdf | None, end_effector: str | None) -> Robot:
     except (ValueError, RuntimeError) as error:  # MuJoCo's for what is wrong, and for what it did not foresee
         raise UserError(f"{path} cannot be used as a robot: {_one_line(error)}") from error
     try:
-        tool = end_effector if end_effector is not None else _only_end_effector(model)
+        tool = choose_end_effector(model) if end_effector is None else end_effector
         reading = read(model, [tool])
         if reading.chain.dof > MOST_JOINTS:
             raise UserError(f"it has {reading.chain.dof} joints, and {MOST_JOINTS} are the most for an arm.")
@@ -98,6 +100,8 @@ def _loaded(path: Path, urdf: Urdf | None, end_effector: str | None) -> Robot:
         home = _home(model, reading, limits)
         whole_path = str(path.resolve())
         return assemble(whole_path, mjcf, [tool], limits, home, TOOL_SPEED_LIMIT, whole_path, model)
+    except AmbiguousEndEffectorError as error:
+        raise AmbiguousEndEffectorError(f"{path}: {error.why}", error.choices) from error
     except UserError as error:
         raise UserError(f"{path}: {error}") from error
 
@@ -118,27 +122,6 @@ def _as_mjcf(spec: mujoco.MjSpec, path: Path) -> str:
             joint.name = f"joint{i}"
     spec.compile()
     return spec.to_xml()
-
-
-def _only_end_effector(model: mujoco.MjModel) -> str:
-    """The one site that moves, or else the one moving body that carries no other.
-
-    Raises:
-        UserError: there are none or several.
-    """
-    if not model.njnt:
-        raise UserError("the model has no hinge or slide joint, so nothing in it can be driven.")
-    moved = np.zeros(model.nbody, dtype=np.bool_)
-    for body in range(1, model.nbody):
-        moved[body] = moved[model.body_parentid[body]] or model.body_jntnum[body] > 0
-    parents = {int(parent) for parent in model.body_parentid[1:]}
-    sites = [model.site(i).name for i in range(model.nsite) if moved[model.site_bodyid[i]]]
-    bodies = [model.body(i).name for i in range(1, model.nbody) if moved[i] and i not in parents]
-    for candidates in (sites, bodies):
-        if len(candidates) == 1 and candidates[0]:
-            return str(candidates[0])
-    names = ", ".join(name for name in [*sites, *bodies] if name)
-    raise UserError(f"name the end-effector (--end-effector), a site or body such as: {names}.")
 
 
 def _limits(model: mujoco.MjModel, reading: Reading, velocity: Mapping[str, float]) -> JointLimits:

@@ -19,6 +19,17 @@ def assumed_limits(robot: Robot) -> str:
 def notices(robot: Robot) -> list[str]:
     """Sentences for the person who is about to drive or record a robot; none where all is known."""
     said: list[str] = []
+    tool = robot.chain.tools[0].name
+    if robot.still_joints:
+        total = robot.dof - len(robot.driven_fingers) + len(robot.still_joints)
+        still = ", ".join(robot.still_joints)
+        said.append(
+            f"{total - len(robot.still_joints)} of {total} joints move {tool}; these stay still: {still}."
+        )
+    if robot.driven_fingers:
+        said.append(
+            f"{_listed(robot.driven_fingers)} looks like a gripper's joint and is driven as one of the arm's."
+        )
     assumed = assumed_limits(robot)
     if assumed:
         said.append(f"Assumed limits of {robot.name}: {assumed}. State the real ones with --limits FILE.")

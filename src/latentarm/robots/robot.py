@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, final
 from latentarm.kinematics.capsules import Capsules
 from latentarm.kinematics.chain import Chain
 from latentarm.robots.limits import JointLimits, Source
-from latentarm.types import FloatArray, IntArray
+from latentarm.types import FloatArray, IntArray, StatedLimits
 
 if TYPE_CHECKING:
     import mujoco
@@ -28,6 +28,9 @@ class Robot:
         tool_speed_limit: largest speed of the tool, m/s.
         tool_speed_source: how that is known.
         model_path: the file that the model was read from, or None for a built-in robot.
+        still_joints: joints of the model's arms that do not move the end-effector; they stay where they are.
+        driven_fingers: joints that look like a gripper's and are driven as the arm's.
+        stated_limits: what a limits file says of it, or None.
     """
 
     name: str
@@ -40,6 +43,9 @@ class Robot:
     tool_speed_limit: float
     tool_speed_source: Source = "assumed"
     model_path: str | None = None
+    still_joints: tuple[str, ...] = ()
+    driven_fingers: tuple[str, ...] = ()
+    stated_limits: StatedLimits | None = None
 
     @property
     def dof(self) -> int:
@@ -50,6 +56,11 @@ class Robot:
     def joint_names(self) -> tuple[str, ...]:
         """The n joints' names."""
         return self.chain.joint_names
+
+    @property
+    def end_effector(self) -> str | None:
+        """What has to be named to load this robot again: the end-effector of a model file, else None."""
+        return None if self.model_path is None else self.chain.tools[0].name
 
     def model(self) -> "mujoco.MjModel":
         """The robot's MuJoCo model, compiled anew."""

@@ -13,8 +13,10 @@ from latentarm.errors import UserError
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, WEIGHTS_NAME
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.end_effector import AmbiguousEndEffectorError
+from latentarm.robots.limits_file import limits_document, parse_limits
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations
+from latentarm.types import Demonstrations, StatedLimits
 from latentarm.untrusted.opening import is_missing, read_bytes
 
 _LARGEST_WEIGHTS: Final = 1 << 30
@@ -33,6 +35,7 @@ class Run:
         context: what its decoder sees, ``state`` or ``state_belief``.
         robot: name or model file of the robot, or "" where it is unknown.
         end_effector: which site, body or link of a model file is the end-effector.
+        limits: what was stated of the robot's limits, or None.
         fingerprint: of the dataset's states, so that another dataset is not taken for it.
     """
 
@@ -44,6 +47,7 @@ class Run:
     robot: str
     end_effector: str | None
     fingerprint: str
+    limits: StatedLimits | None = None
 
     def dataset(self, moved_to: Path | None = None) -> Demonstrations:
         """The dataset that the model was trained on.
@@ -95,6 +99,7 @@ def run_facts(run: Run) -> dict[str, object]:
         "context": run.context,
         "robot": run.robot,
         "end_effector": run.end_effector,
+        "limits": None if run.limits is None else limits_document(run.limits),
         "fingerprint": run.fingerprint,
     }
 
@@ -109,6 +114,8 @@ def read_run(folder: Path) -> Run:
     if is_missing(path):
         raise UserError(f"{folder} is not a run: it has no config.json (see `latentarm train`).")
     config = Section.of_file(path, CONFIG_LIMIT)
+    # Runs from before limits could be stated have none.
+    limits = config.plain().get("limits")
     return Run(
         folder=folder,
         demonstrations=Path(config.text("demonstrations")),
@@ -118,6 +125,7 @@ def read_run(folder: Path) -> Run:
         robot=config.text("robot"),
         end_effector=None if config.plain().get("end_effector") is None else config.text("end_effector"),
         fingerprint=config.text("fingerprint"),
+        limits=None if limits is None else parse_limits(limits, f"{path}, limits"),
     )
 
 
@@ -131,7 +139,14 @@ def robot_of(run: Run) -> Robot:
         raise UserError(
             f"{run.demonstrations} does not say which robot it is of: import it again with --robot."
         )
-    return load_robot(run.robot, run.end_effector)
+    try:
+        return load_robot(run.robot, run.end_effector, run.limits)
+    except AmbiguousEndEffectorError as error:
+        command = f"latentarm train --demonstrations {run.demonstrations} --end-effector NAME"
+        raise UserError(
+            f"{run.folder} does not say which end-effector of {run.robot} it was trained for: train it anew"
+            f" with `{command}`, where NAME is one of {error.choices}."
+        ) from error
 
 
 def git_commit() -> str | None:

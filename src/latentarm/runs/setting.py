@@ -1,5 +1,6 @@
 """Where and with what a run drives: the task that it was trained for, and its latent actions."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
@@ -18,7 +19,7 @@ from latentarm.tasks.reach import Reach
 from latentarm.tasks.replay import Replay
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
-from latentarm.types import Demonstrations
+from latentarm.types import Demonstrations, StatedLimits
 
 TaskName = Literal["table_top", "held_out", "reach"]
 
@@ -29,6 +30,7 @@ def task_of_run(
     name: TaskName | None = None,
     robot: str | None = None,
     end_effector: str | None = None,
+    limits: StatedLimits | None = None,
 ) -> Task:
     """The task that is asked for, or else the one that a run was trained for.
 
@@ -37,7 +39,8 @@ def task_of_run(
         demonstrations: its dataset.
         name: the task; by the dataset's goals where None.
         robot: a robot's name or model file; that of the run where None.
-        end_effector: site, body or link of a model file.
+        end_effector: site, body or link of a model file; that of the run where None.
+        limits: what is stated of the robot's limits; what the run states where None.
 
     Raises:
         UserError: the robot is not to be had, or the task does not suit it, or has other goals than those
@@ -45,9 +48,13 @@ def task_of_run(
     """
     chosen = name or _usual_task(demonstrations)
     if chosen == "table_top":
-        task: Task = _table_top(robot)
+        task: Task = _table_top(robot, end_effector, limits)
     else:
-        arm = robot_of(run) if robot is None else load_robot(robot, end_effector)
+        if robot is None:
+            chosen_tool, stated = end_effector or run.end_effector, limits or run.limits
+            arm = robot_of(replace(run, end_effector=chosen_tool, limits=stated))
+        else:
+            arm = load_robot(robot, end_effector, limits)
         task = Reach(arm) if chosen == "reach" else Replay(arm, select_episodes(demonstrations, run.held_out))
     if run.context == "state_belief":
         _check_goals(run, demonstrations, task)
@@ -55,7 +62,10 @@ def task_of_run(
 
 
 def task_without_run(
-    name: TaskName | None = None, robot: str | None = None, end_effector: str | None = None
+    name: TaskName | None = None,
+    robot: str | None = None,
+    end_effector: str | None = None,
+    limits: StatedLimits | None = None,
 ) -> Task:
     """The task that is asked for, or the table-top task for a Panda, and poses in reach for other arms.
 
@@ -63,15 +73,16 @@ def task_without_run(
         name: the task.
         robot: a robot's name or model file; a Panda where None.
         end_effector: site, body or link of a model file.
+        limits: what is stated of the robot's limits.
 
     Raises:
         UserError: the robot is not to be had, or the task does not suit it, or belongs to a run.
     """
     chosen = name or ("table_top" if robot in (None, "panda") else "reach")
     if chosen == "table_top":
-        return _table_top(robot)
+        return _table_top(robot, end_effector, limits)
     if chosen == "reach":
-        return Reach(load_robot(robot or "panda", end_effector))
+        return Reach(load_robot(robot or "panda", end_effector, limits))
     raise UserError("Held-out episodes belong to a run: name one, as in `latentarm drive RUN`.")
 
 
@@ -95,9 +106,13 @@ def latent_controller(run: Path, profile: str | None, robot: Robot) -> LatentCon
     return LatentController(decoder, identity if alignment is None else alignment)
 
 
-def _table_top(robot: str | None) -> TableTop:
+def _table_top(robot: str | None, end_effector: str | None, limits: StatedLimits | None) -> TableTop:
     if robot not in (None, "panda"):
         raise UserError(f"The table-top task is set for the Panda, not for {robot}: use --task reach.")
+    if end_effector is not None or limits is not None:
+        raise UserError(
+            "The table-top task has a Panda of its own: for another tool or limits use --task reach."
+        )
     return TableTop()
 
 

@@ -21,7 +21,7 @@ from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.neural import NeuralModel
 from latentarm.models.training import Report
-from latentarm.robots.catalogue import ROBOTS, load_robot
+from latentarm.robots.catalogue import ROBOTS, load_recorded_robot
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import Run, fingerprint, git_commit, run_facts
 from latentarm.types import Demonstrations, Row
@@ -53,7 +53,7 @@ class TrainConfig:
         kl_weight: lambda of equations 7 and 8, for models that have it; their own where None.
         goal_entropy: lambda_2 of equation 16; 0 leaves the entropy over goals out of the loss.
         device: where to train.
-        end_effector: site, body or link, where the dataset's robot is a model file.
+        end_effector: site, body or link of the robot's model file; the dataset's where None.
         resume: go on with a training that was cut off.
     """
 
@@ -97,9 +97,11 @@ def train_run(config: TrainConfig, report: Report | None = None) -> list[Row]:
     _check_folder(config)
     demonstrations = prepared(read_dataset(config.demonstrations), config.context)
     chain = None
+    if config.end_effector is not None:
+        demonstrations = replace(demonstrations, end_effector=config.end_effector)
     if demonstrations.robot in ROBOTS or Path(demonstrations.robot).is_file():
         # Says now what evaluating would say later.
-        chain = load_robot(demonstrations.robot, config.end_effector).chain
+        chain = load_recorded_robot(demonstrations, str(config.demonstrations)).chain
     training, held_out = split_episodes(
         demonstrations, config.held_out, np.random.default_rng([HOLD_OUT_STREAM, config.seed])
     )
@@ -121,7 +123,8 @@ def train_run(config: TrainConfig, report: Report | None = None) -> list[Row]:
         model=config.model,
         context=config.context,
         robot=demonstrations.robot,
-        end_effector=config.end_effector,
+        end_effector=demonstrations.end_effector,
+        limits=demonstrations.limits,
         fingerprint=fingerprint(demonstrations),
     )
     said = [str(warning.message) for warning in caught]

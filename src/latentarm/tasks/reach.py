@@ -18,6 +18,9 @@ SPREAD = 0.5
 START_SPREAD = 0.1
 """How far a start's joints lie from home at most, rad."""
 
+TRIES = 100
+"""Starts and goals that are drawn before there is said to be none."""
+
 MARGIN = 0.15
 """How far starts and goals stay from joint limits, rad."""
 
@@ -32,7 +35,7 @@ class Reach(Task):
         seed: which poses; the same seed gives the same task.
 
     Raises:
-        UserError: fewer than one goal is asked for.
+        UserError: fewer than one goal is asked for, or the tool hardly moves.
     """
 
     def __init__(self, robot: Robot, goals: int = 3, seed: int = 0) -> None:
@@ -41,6 +44,7 @@ class Reach(Task):
         self._robot = robot
         self._count = goals
         self._seed = seed
+        _ = self._goals  # says at once where there are none
 
     @property
     def name(self) -> str:
@@ -68,8 +72,16 @@ class Reach(Task):
         return ()
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
-        """About home, (n,), rad."""
-        return self._about_home(START_SPREAD, rng)
+        """About home and not yet at the goal, (n,), rad.
+
+        Raises:
+            UserError: the goal is wherever the arm could start.
+        """
+        for _ in range(TRIES):
+            start = self._about_home(START_SPREAD, rng)
+            if not self.reached(self.robot.chain.forward(start), self.goals[goal].pose):
+                return start
+        raise self._hardly_moves()
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
         """The goal's pose alone.
@@ -100,6 +112,8 @@ class Reach(Task):
             joint_names=self.robot.joint_names,
             robot=self.robot.name,
             goals=self.goals,
+            end_effector=self.robot.end_effector,
+            limits=self.robot.stated_limits,
         )
 
     def _episode(self, goal: int, hand: Hand, rng: np.random.Generator) -> Episode:
@@ -114,8 +128,22 @@ class Reach(Task):
         return tuple(self._goal(f"goal {index + 1}", rng) for index in range(self._count))
 
     def _goal(self, name: str, rng: np.random.Generator) -> Goal:
-        configuration = self._about_home(SPREAD, rng)
-        return Goal(name, configuration, self.robot.chain.forward(configuration))
+        """A goal that is not where the arm stands at home."""
+        chain = self.robot.chain
+        home = chain.forward(self._about_home(0.0, rng))
+        for _ in range(TRIES):
+            configuration = self._about_home(SPREAD, rng)
+            pose = chain.forward(configuration)
+            if not self.reached(home, pose):
+                return Goal(name, configuration, pose)
+        raise self._hardly_moves()
+
+    def _hardly_moves(self) -> UserError:
+        tool = self.robot.chain.tools[0].name
+        return UserError(
+            f"There is nowhere to reach to: {tool} of {self.robot.name} hardly moves with the"
+            f" {self.robot.dof} joints that move it. Choose another end-effector."
+        )
 
     def _about_home(self, spread: float, rng: np.random.Generator) -> FloatArray:
         """Home with each joint moved at random, kept off the limits (half-way between narrow ones)."""

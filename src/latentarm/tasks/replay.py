@@ -29,10 +29,10 @@ class Replay(Task):
 
     Args:
         robot: the arm that was recorded.
-        demonstrations: the episodes to follow, at least one that moves.
+        demonstrations: the episodes to follow; those in which the tool goes nowhere are left out.
 
     Raises:
-        UserError: no episode moves.
+        UserError: the tool goes nowhere in any of them.
     """
 
     def __init__(self, robot: Robot, demonstrations: Demonstrations) -> None:
@@ -41,9 +41,13 @@ class Replay(Task):
         moving = [
             one.state[slice(*moving_range(one.state, one.timestamp))] for one in demonstrations.episodes
         ]
-        self._paths = tuple(path for path in moving if len(path))
+        self._paths = tuple(path for path in moving if len(path) and self._leaves(path))
         if not self._paths:
-            raise UserError("None of these episodes moves, so there is nothing to follow.")
+            tool = robot.chain.tools[0].name
+            raise UserError(
+                f"In none of these episodes does {tool} of {robot.name} go anywhere, so there is nothing to"
+                " follow: see whether it is the end-effector that was recorded."
+            )
 
     @property
     def name(self) -> str:
@@ -109,6 +113,14 @@ class Replay(Task):
                 f"There are {len(self._demonstrations.episodes)} episodes to follow, not {episodes}."
             )
         return replace(self._demonstrations, episodes=self._demonstrations.episodes[:episodes])
+
+    def _leaves(self, path: FloatArray) -> bool:
+        """Whether the tool is ever anywhere but where it began."""
+        poses = self._robot.chain.forward(path)
+        start = Pose(poses.position[0], poses.rotation[0])
+        return not all(
+            self.reached(start, Pose(*pose)) for pose in zip(poses.position, poses.rotation, strict=True)
+        )
 
     def _path(self, goal: int) -> FloatArray:
         if not 0 <= goal < len(self._paths):

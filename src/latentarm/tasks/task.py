@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, FloatArray, Goal, Pose
@@ -74,3 +75,22 @@ class Task(ABC):
         Raises:
             UserError: fewer than one episode is asked for.
         """
+
+
+def check_not_done(task: Task, start: FloatArray, waypoints: Sequence[Pose]) -> None:
+    """Refuse a start from which nothing is left to do: to stand still is no success.
+
+    Args:
+        task: the task.
+        start: (n,), where the arm is to start, rad.
+        waypoints: what the tool must come to.
+
+    Raises:
+        UserError: the tool is at every waypoint already.
+    """
+    pose = task.robot.chain.forward(start)
+    if all(task.reached(pose, waypoint) for waypoint in waypoints):
+        raise UserError(
+            f"The task {task.name} is done before it begins: {task.robot.chain.tools[0].name} of"
+            f" {task.robot.name} starts where it is to go. Choose another end-effector or task."
+        )

@@ -260,6 +260,8 @@ class Cockpit(InputSource):
                     profile=spec.profile or "",
                     controller=self._mode,
                 ),
+                end_effector=robot.end_effector,
+                limits=robot.stated_limits,
             )
         )
 

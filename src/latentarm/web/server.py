@@ -15,6 +15,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
+from latentarm.robots.notices import notices
 from latentarm.web.addresses import TeleopConfig, check_certificate, listen, origin
 from latentarm.web.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
 from latentarm.web.drive import DriveSocket
@@ -65,6 +66,8 @@ def serve(
     def invite() -> None:
         say(f"For the next person, a link that works once: {link()}")
 
+    for sentence in notices(setting.task.robot):
+        say(sentence)
     control = ControlProcess(config.spec)
     try:
         app = build_app(setting, control)

@@ -20,7 +20,7 @@ from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.models.scaling import CollapseWarning
-from latentarm.robots.catalogue import load_robot
+from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray
 
@@ -105,7 +105,7 @@ def measure_cell(cell: Cell) -> CellResult:
         UserError: the demonstrations or the sizes make no sense to the model.
     """
     with threadpool_limits(limits=1):
-        robot = load_robot(cell.dataset.demonstrations.robot)
+        robot = load_recorded_robot(cell.dataset.demonstrations)
         began = perf_counter()
         model = _fit(cell, robot)
         fit_s = perf_counter() - began

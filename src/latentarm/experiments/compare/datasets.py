@@ -11,7 +11,7 @@ from latentarm.errors import UserError
 from latentarm.experiments.compare.folds import Fold, make_folds
 from latentarm.experiments.compare.streams import Stream
 from latentarm.experiments.studies.streams import sequence
-from latentarm.robots.catalogue import load_robot
+from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.types import Demonstrations
 
 
@@ -61,14 +61,12 @@ def read_datasets(paths: Sequence[Path], folds: int, seed: int) -> list[Dataset]
 
 def _check_robot(path: Path, demonstrations: Demonstrations, before: Sequence[Dataset]) -> None:
     robot = demonstrations.robot
-    if not robot:
-        raise UserError(f"{path} does not say which robot it is of: import it again with --robot.")
+    joints = load_recorded_robot(demonstrations, str(path)).dof
     for other in before:
         if other.demonstrations.robot != robot:
             raise UserError(
                 f"{path} is of robot {robot}, and {other.name} of {other.demonstrations.robot}: compare on"
                 " datasets of one robot."
             )
-    joints = load_robot(robot).dof
     if demonstrations.dof != joints:
         raise UserError(f"{path} has {demonstrations.dof} joints, but robot {robot} has {joints}.")

@@ -29,7 +29,7 @@ from latentarm.metrics.undone import undone_share
 from latentarm.models.decoder import Decoder
 from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.operators.catalogue import PLANNING, usual_operator
-from latentarm.robots.catalogue import load_robot
+from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.tasks.replay import Replay
 from latentarm.types import Row
 
@@ -129,7 +129,7 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
     """Drive once; the start and the operator's randomness hang on the episode, not on the controller."""
     with threadpool_limits(limits=1):
         began = perf_counter()
-        robot = load_robot(cell.dataset.demonstrations.robot)
+        robot = load_recorded_robot(cell.dataset.demonstrations)
         task = Replay(robot, select_episodes(cell.dataset.demonstrations, [cell.episode]))
         controller: Controller = (
             EndEffectorController(robot) if cell.decoder is None else LatentController(cell.decoder)

@@ -1,0 +1,157 @@
+"""Which site or body of a model is the end-effector, and which of the model's joints move it."""
+
+import re
+from dataclasses import dataclass
+from typing import Final, final
+
+import mujoco
+
+from latentarm.errors import UserError
+
+FINGER: Final = re.compile(r"finger|jaw|gripper|knuckle|thumb|claw", re.IGNORECASE)
+"""Names of joints that open and close a gripper."""
+
+FINGER_BODY: Final = re.compile(r"finger|jaw|knuckle|thumb|claw|mover", re.IGNORECASE)
+"""Names of bodies that only a gripper's joint moves; "gripper" is often the whole hand."""
+
+MOST_NAMED: Final = 12
+"""End-effectors that a sentence lists, at most."""
+
+_DRIVABLE: Final = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+_JOINT: Final = int(mujoco.mjtEq.mjEQ_JOINT)
+
+
+class AmbiguousEndEffectorError(UserError):
+    """A model does not say which end-effector is meant.
+
+    Attributes:
+        why: why none was chosen, without a full stop.
+        choices: what can be named, in words.
+    """
+
+    def __init__(self, why: str, choices: str) -> None:
+        super().__init__(f"{why}: name the end-effector with --end-effector, one of {choices}.")
+        self.why = why
+        self.choices = choices
+
+
+@final
+@dataclass(frozen=True)
+class Moved:
+    """A site or body that could be the end-effector.
+
+    Attributes:
+        name: its name.
+        joints: ids of the arm's joints that move it.
+        fingers: ids of a gripper's joints that move it.
+    """
+
+    name: str
+    joints: frozenset[int]
+    fingers: frozenset[int]
+
+
+def choose_end_effector(model: mujoco.MjModel) -> str:
+    """The one site that moves, or else the one moving body that carries no other.
+
+    It must be moved by every joint of the arm and by none of a gripper's. A model in which several could
+    be meant, or in which that one leaves joints unused, is left for the person to decide.
+
+    Args:
+        model: a robot's model.
+
+    Returns:
+        The name of a site or body.
+
+    Raises:
+        AmbiguousEndEffectorError: there is no such site or body.
+        UserError: nothing in the model can be driven.
+    """
+    arm = arm_joints(model)
+    if not arm and not finger_joints(model):
+        raise UserError("the model has no hinge or slide joint, so nothing in it can be driven.")
+    sites = [_moved(model, model.site(i).name, int(model.site_bodyid[i])) for i in range(model.nsite)]
+    sites = [site for site in sites if site.joints or site.fingers]
+    leaves = [
+        leaf for leaf in (_moved(model, *leaf) for leaf in _leaves(model)) if leaf.joints or leaf.fingers
+    ]
+    choices = _choices(model, [*sites, *leaves])
+    for found, what in ((sites, "site that moves"), (leaves, "last moving body")):
+        if len(found) == 1 and found[0].name:
+            (only,) = found
+            if only.fingers:
+                names = ", ".join(repr(_joint_name(model, joint)) for joint in sorted(only.fingers))
+                why = (
+                    f"{only.name!r}, the only {what}, is moved by {names}, which looks like a gripper's joint"
+                )
+                raise AmbiguousEndEffectorError(why, choices)
+            if len(only.joints) < len(arm):
+                why = f"only {len(only.joints)} of {len(arm)} joints move {only.name!r}, the only {what}"
+                raise AmbiguousEndEffectorError(why, choices)
+            return only.name
+    raise AmbiguousEndEffectorError("several sites or bodies could be the end-effector", choices)
+
+
+def arm_joints(model: mujoco.MjModel) -> frozenset[int]:
+    """Ids of the joints that can be driven each by itself, without a gripper's."""
+    joints = {joint for joint in range(model.njnt) if model.jnt_type[joint] in _DRIVABLE}
+    return frozenset(joints - finger_joints(model) - set(followers(model)))
+
+
+def finger_joints(model: mujoco.MjModel) -> frozenset[int]:
+    """Ids of the joints that look like a gripper's, by their name or by that of the body they move."""
+    return frozenset(
+        joint
+        for joint in range(model.njnt)
+        if model.jnt_type[joint] in _DRIVABLE
+        and (
+            FINGER.search(model.joint(joint).name)
+            or FINGER_BODY.search(model.body(int(model.jnt_bodyid[joint])).name)
+        )
+    )
+
+
+def followers(model: mujoco.MjModel) -> dict[int, int]:
+    """Joints that follow another one (<mimic> in URDF, <equality><joint> in MJCF), and which; -1 for none."""
+    return {
+        int(model.eq_obj1id[i]): int(model.eq_obj2id[i])
+        for i in range(model.neq)
+        if model.eq_type[i] == _JOINT and model.eq_active0[i]
+    }
+
+
+def _choices(model: mujoco.MjModel, found: list[Moved]) -> str:
+    """What can be named, those that most joints move first."""
+    palms = {int(model.body_parentid[model.jnt_bodyid[joint]]) for joint in finger_joints(model)}
+    found = [*found, *(_moved(model, model.body(palm).name, palm) for palm in sorted(palms))]
+    named = {one.name: one for one in found if one.name and one.joints}
+    ordered = sorted(named.values(), key=lambda one: (-len(one.joints), len(one.fingers), one.name))
+    texts = [
+        f"{one.name} ({_count(len(one.joints))}{' and a finger' if one.fingers else ''})" for one in ordered
+    ]
+    return (
+        ", ".join([*texts[:MOST_NAMED], *(["..."] if len(texts) > MOST_NAMED else [])]) or "none with a name"
+    )
+
+
+def _count(joints: int) -> str:
+    return f"{joints} joint{'' if joints == 1 else 's'}"
+
+
+def _leaves(model: mujoco.MjModel) -> list[tuple[str, int]]:
+    """Names and ids of the bodies that carry no other."""
+    parents = {int(parent) for parent in model.body_parentid[1:]}
+    return [(model.body(i).name, i) for i in range(1, model.nbody) if i not in parents]
+
+
+def _moved(model: mujoco.MjModel, name: str, body: int) -> Moved:
+    joints: set[int] = set()
+    while body > 0:
+        first = int(model.body_jntadr[body])
+        joints |= set(range(first, first + int(model.body_jntnum[body])))
+        body = int(model.body_parentid[body])
+    return Moved(name, frozenset(joints) & arm_joints(model), frozenset(joints) & finger_joints(model))
+
+
+def _joint_name(model: mujoco.MjModel, joint: int) -> str:
+    return str(model.joint(joint).name) or f"joint{joint}"

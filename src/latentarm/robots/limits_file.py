@@ -1,0 +1,220 @@
+"""A limits file: what somebody states of a robot's limits, in TOML or YAML, with the units in the keys.
+
+An example in TOML::
+
+    tool_speed_m_per_s = 1.0
+
+    [joints.shoulder_pan_joint]
+    lower_deg = -360
+    upper_deg = 360
+    velocity_rad_per_s = 3.14
+    acceleration_rad_per_s2 = 8.0
+    jerk_rad_per_s3 = 500.0
+"""
+
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final, cast
+
+import numpy as np
+import yaml
+
+from latentarm.errors import UserError
+from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
+from latentarm.types import StatedJointLimits, StatedLimits
+from latentarm.untrusted.opening import read_bytes
+
+MOST_BYTES: Final = 100_000
+"""A longer file is refused: a joint takes some 200 bytes."""
+
+_DEEPEST: Final = 4
+"""Tables within tables of YAML; the parser takes time with the square of the depth."""
+
+TOOL_SPEED: Final = "tool_speed_m_per_s"
+
+_FIGURES: Final = {
+    "lower": "",
+    "upper": "",
+    "velocity": "_per_s",
+    "acceleration": "_per_s2",
+    "jerk": "_per_s3",
+}
+_UNITS: Final = {"rad": 1.0, "deg": math.pi / 180.0, "m": 1.0}
+
+
+def read_limits(path: Path) -> StatedLimits:
+    """Read a limits file.
+
+    Args:
+        path: ending in .toml, .yaml or .yml.
+
+    Raises:
+        UserError: the file cannot be read, or something in it is not as it must be; the key is named.
+    """
+    text = read_bytes(path, MOST_BYTES)
+    try:
+        if path.suffix.lower() == ".toml":
+            document: object = tomllib.loads(text.decode("utf-8"))
+        elif path.suffix.lower() in (".yaml", ".yml"):
+            _check_plain(text, path)
+            document = yaml.safe_load(text)
+        else:
+            raise UserError(f"The limits file {path} must be TOML or YAML: name it .toml, .yaml or .yml.")
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, yaml.YAMLError, RecursionError) as error:
+        what = "nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
+        raise UserError(f"The limits file {path} cannot be read: {what}.") from error
+    return parse_limits(document, str(path))
+
+
+def _check_plain(text: bytes, path: Path) -> None:
+    """Refuse YAML that is deep or repeats itself, before anything is built of it."""
+    depth = 0
+    for event in yaml.parse(text, yaml.SafeLoader):
+        if isinstance(event, yaml.AliasEvent):
+            raise UserError(f"{path} uses YAML's aliases (*name): write the figures out.")
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if depth > _DEEPEST:
+            raise UserError(f"{path} nests its tables too deeply: give figures under joints and their names.")
+
+
+def parse_limits(document: object, where: str) -> StatedLimits:
+    """Check what a limits file, a dataset or a run says of limits.
+
+    Args:
+        document: mappings and numbers, as `limits_document` gives them or with degrees.
+        where: the file, for messages.
+
+    Raises:
+        UserError: a key is unknown, given twice or in the wrong unit, or its value is no sensible number.
+    """
+    top = _mapping(document, where, "")
+    _check_keys(top, ("joints", TOOL_SPEED), where, "")
+    joints = _mapping(top.get("joints", {}), where, "joints")
+    tool_speed = _number(top[TOOL_SPEED], where, TOOL_SPEED) if TOOL_SPEED in top else None
+    if tool_speed is not None and tool_speed <= 0.0:
+        raise UserError(f"{where}: {TOOL_SPEED} is {tool_speed:g}; it must be above zero.")
+    if not joints and tool_speed is None:
+        raise UserError(f"{where} states no limits: give figures under joints, or {TOOL_SPEED}.")
+    return StatedLimits(
+        joints={name: _joint(entry, where, f"joints.{name}") for name, entry in joints.items()},
+        tool_speed=tool_speed,
+    )
+
+
+def limits_document(stated: StatedLimits) -> dict[str, object]:
+    """What `parse_limits` reads, in rad or m."""
+    joints: dict[str, dict[str, float]] = {}
+    for name, one in stated.joints.items():
+        figures = {"velocity": one.velocity, "acceleration": one.acceleration, "jerk": one.jerk}
+        if one.position is not None:
+            figures |= {"lower": one.position[0], "upper": one.position[1]}
+        unit = "m" if one.sliding else "rad"
+        joints[name] = {
+            f"{figure}_{unit}{_FIGURES[figure]}": value
+            for figure, value in figures.items()
+            if value is not None
+        }
+    document: dict[str, object] = {"joints": joints}
+    return document if stated.tool_speed is None else document | {TOOL_SPEED: stated.tool_speed}
+
+
+def with_stated(
+    limits: JointLimits, stated: StatedLimits, names: Sequence[str], slide: Sequence[bool]
+) -> JointLimits:
+    """The limits with what is stated in place of what was known or assumed.
+
+    Args:
+        limits: of n joints.
+        stated: what somebody states.
+        names: n names of joints.
+        slide: (n,), which of them slide.
+
+    Raises:
+        UserError: a joint that is named is none of these, or has figures in rad where it slides.
+    """
+    known = list(names)
+    figures = {name: np.array(getattr(limits, name)) for name in _FIGURES}
+    sources: dict[Quantity, list[Source]] = {
+        quantity: list(limits.sources.of(quantity)) for quantity in _SAID_BY
+    }
+    for name, one in stated.joints.items():
+        if name not in known:
+            raise UserError(
+                f"The limits file names the joint {name!r}; the arm's joints are {', '.join(known)}."
+            )
+        joint = known.index(name)
+        if one.sliding is not None and one.sliding != slide[joint]:
+            unit = "m" if slide[joint] else "rad or deg"
+            raise UserError(
+                f"The limits file's joints.{name} must be in {unit}: the joint {_moves(slide[joint])}."
+            )
+        for quantity, fields in _SAID_BY.items():
+            value = getattr(one, quantity)
+            if value is not None:
+                for field, figure in zip(fields, np.atleast_1d(value), strict=True):
+                    figures[field][joint] = figure
+                sources[quantity][joint] = "limits_file"
+    said = {quantity: tuple(each) for quantity, each in sources.items()}
+    return JointLimits(**figures, sources=LimitSources(**said))
+
+
+_SAID_BY: Final[Mapping[Quantity, tuple[str, ...]]] = {
+    "position": ("lower", "upper"),
+    "velocity": ("velocity",),
+    "acceleration": ("acceleration",),
+    "jerk": ("jerk",),
+}
+
+
+def _moves(slides: bool) -> str:
+    return "slides" if slides else "turns"
+
+
+def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
+    given = _mapping(entry, where, key)
+    spelt = {f"{figure}_{unit}{per}": (figure, unit) for figure, per in _FIGURES.items() for unit in _UNITS}
+    _check_keys(given, tuple(spelt), where, f"{key}.")
+    values: dict[str, float] = {}
+    sliding: set[bool] = set()
+    for name, value in given.items():
+        figure, unit = spelt[name]
+        if figure in values:
+            raise UserError(f"{where}: {key} gives {figure} twice, in different units: keep one of them.")
+        values[figure] = _number(value, where, f"{key}.{name}") * _UNITS[unit]
+        if figure not in ("lower", "upper") and values[figure] <= 0.0:
+            raise UserError(f"{where}: {key}.{name} is {value}; it must be above zero.")
+        sliding.add(unit == "m")
+    if len(sliding) > 1:
+        raise UserError(f"{where}: {key} mixes m with rad or deg: a joint either slides or turns.")
+    if ("lower" in values) != ("upper" in values):
+        raise UserError(f"{where}: {key} gives only one of lower and upper: give both.")
+    position = (values["lower"], values["upper"]) if "lower" in values else None
+    if position is not None and position[0] >= position[1]:
+        raise UserError(f"{where}: {key} has a lower limit that is not below its upper one.")
+    return StatedJointLimits(
+        position=position,
+        velocity=values.get("velocity"),
+        acceleration=values.get("acceleration"),
+        jerk=values.get("jerk"),
+        sliding=next(iter(sliding), None),
+    )
+
+
+def _mapping(value: object, where: str, key: str) -> Mapping[str, Any]:
+    if not isinstance(value, dict) or not all(isinstance(name, str) for name in cast(dict[Any, Any], value)):
+        raise UserError(f"{where}: {key or 'the outermost level'} must be a table of names.")
+    return cast(Mapping[str, Any], value)
+
+
+def _check_keys(given: Mapping[str, Any], known: Sequence[str], where: str, prefix: str) -> None:
+    for name in given:
+        if name not in known:
+            raise UserError(f"{where}: there is no key {prefix}{name}; use {', '.join(known)}.")
+
+
+def _number(value: object, where: str, key: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e9:
+        raise UserError(f"{where}: {key} must be a finite number, not {str(value)[:40]!r}.")
+    return float(value)
