@@ -14,7 +14,7 @@ PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
 PARALLEL := --numprocesses $(WORKERS) --dist loadfile
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-thorough check format bench docs lock clean
+.PHONY: help demo test test-all test-thorough check format bench docs lock arms clean
 
 help: ## Show what can be made.
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -48,6 +48,11 @@ test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of app
 test-thorough: $(VENV)/installed-dev ## 10,000 Hypothesis examples for motion and geometry, 2,000 drives (hours; nightly).
 	$(BIN)/python -m pytest --hypothesis-profile=thorough tests/control tests/kinematics tests/robots
 	$(BIN)/python scripts/clearance_drives.py
+
+arms: $(VENV)/installed-dev ## Fetch some 25 arms of other packages (420 MB), load each, and write docs/arms.md.
+	$(BIN)/python scripts/fetch_arms.py
+	$(BIN)/python scripts/arms_table.py
+	$(BIN)/python -m pytest tests/robots/test_arms.py
 
 bench: $(VENV)/installed ## The online step and the batched fit, as ratios in one run.
 	$(BIN)/latentarm bench

@@ -41,9 +41,7 @@ def measure(path: Path, end_effector: str | None) -> None:
     took_s = time.perf_counter() - began
     peak_mb = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     kinds = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
-    known = [
-        quantity for quantity in QUANTITIES if set(robot.limits.sources.of(quantity)) == {"model"}
-    ]
+    known = [quantity for quantity in QUANTITIES if set(robot.limits.sources.of(quantity)) == {"model"}]
     print(
         json.dumps(
             {
@@ -72,7 +70,7 @@ def load(arm: dict[str, Any], packages: dict[str, Any]) -> dict[str, Any]:
             text=True,
             check=False,
             timeout=DEADLINE_S,
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES)),  # noqa: PLW1509
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES)),
         )
     except subprocess.TimeoutExpired:
         return {"refused": f"Not loaded within {DEADLINE_S:.0f} s."}
@@ -92,8 +90,9 @@ def row(arm: dict[str, Any], version: str, found: dict[str, Any]) -> str:
     known = ", ".join(found["known"]) or "none"
     passed = f"`--end-effector {arm['end_effector']}`" if "end_effector" in arm else "nothing"
     shape = "" if found["capsules"] else "; no shape in the model, so no collisions are watched for"
+    joints = f"{found['joints']} of {found['model_joints']}"
     return (
-        f"| {name} | {source} | yes | {found['joints']} of {found['model_joints']} | {found['end_effector']} |"
+        f"| {name} | {source} | yes | {joints} | {found['end_effector']} |"
         f" {known} | {found['took_s']:.1f} | {found['peak_mb']:.0f} | {passed}{shape} |"
     )
 
