@@ -7,7 +7,7 @@ from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json
-from latentarm.commands.output import say, show
+from latentarm.commands.output import note, say, show
 
 
 def inspect(
@@ -22,9 +22,12 @@ def inspect(
     For example: latentarm inspect pour
     """
     from latentarm.demonstrations.dataset import read_dataset
-    from latentarm.experiments.inspection import draw, summary, summary_tables
+    from latentarm.experiments.inspection import draw, summary, summary_tables, why_unknown
 
     demonstrations = read_dataset(dataset)
+    unknown = why_unknown(demonstrations, str(dataset))
+    if unknown:
+        note([unknown])
     figure = draw(demonstrations, out or dataset.with_name(f"{dataset.name}-figures"))
     write_options(figure.parent, "inspect")
     show(summary(demonstrations).rows(), json, *summary_tables(demonstrations))

@@ -27,6 +27,16 @@ def known_robot(demonstrations: Demonstrations) -> Robot | None:
         return None
 
 
+def why_unknown(demonstrations: Demonstrations, dataset: str) -> str | None:
+    """Why the robot that a dataset names cannot be loaded; None where it can, or where it names none."""
+    try:
+        if demonstrations.robot:
+            load_recorded_robot(demonstrations, dataset)
+    except UserError as error:
+        return f"Limits and the tool's path are not known. {error}"
+    return None
+
+
 def summary(demonstrations: Demonstrations) -> Summary:
     """The dataset in figures, with the limits of its robot where that is known."""
     return summarise(demonstrations, known_robot(demonstrations))
