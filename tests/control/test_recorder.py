@@ -7,16 +7,23 @@ import subprocess
 import sys
 import textwrap
 import time
+from contextlib import suppress
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
-from latentarm.control.export import demonstrations_of, export_journal
+from latentarm.control.export import ImplausibleWarning, demonstrations_of, export_journal
 from latentarm.control.journal import list_journal, read_journal
+from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalLostError, JournalWatch
 from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.control.samples import packed, unpacked
 from latentarm.errors import UserError
 from latentarm.types import Command, Goal, Pose, StepRecord, Stop
 
+HOME = np.array([0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785])
 NAMES = tuple(f"joint{i}" for i in range(7))
 
 
@@ -40,7 +47,7 @@ def record(tick, *, goals=2, stop=None, limited_by=()):
     rng = np.random.default_rng(tick)
     return StepRecord(
         time_s=100.0 + 0.01 * tick,
-        state=rng.normal(size=7),
+        state=HOME + rng.uniform(-0.005, 0.005, 7),
         input=rng.uniform(-1, 1, 2),
         latent=rng.normal(size=2),
         action_human=rng.normal(size=7),
@@ -118,18 +125,18 @@ def test_the_table_of_contents_says_what_can_be_read_one_by_one(tmp_path):
 
 
 def rewritten(path, scalars_of):
-    """Give every sample of a journal other times and scalars."""
+    """Make a journal of version 1, with other times and scalars in every sample."""
     database = sqlite3.connect(path, isolation_level=None)
     samples = database.execute("SELECT episode, number, figures FROM samples").fetchall()
     for episode, number, figures in samples:
-        values = np.frombuffer(figures)
-        widths, scalars, rest = values[:8].copy(), values[8:13], values[13:]
-        scalars = scalars_of(scalars)
-        widths[0] = len(scalars)
-        changed = np.concatenate([widths, scalars, rest]).tobytes()
+        scalars, *rest = unpacked(figures, 8)
+        parts = [scalars_of(scalars), *rest]
+        widths = np.array([len(part) for part in parts], dtype=np.float64)
+        changed = np.concatenate([widths, *parts]).tobytes()
         database.execute(
             "UPDATE samples SET figures = ? WHERE episode = ? AND number = ?", (changed, episode, number)
         )
+    database.execute("PRAGMA user_version = 1")
     database.close()
 
 
@@ -152,6 +159,156 @@ def test_a_sample_of_unknown_make_is_damage(tmp_path, count):
     rewritten(path, lambda scalars: np.resize(scalars, count))
     with pytest.raises(UserError, match="damaged"):
         read_journal(path)
+
+
+ANY = st.floats(width=64) | st.sampled_from([0.0, -0.0, np.nan, np.inf, 5e-324])
+
+
+@given(st.lists(arrays(np.float64, st.integers(0, 9), elements=ANY), max_size=8), st.booleans())
+def test_a_sample_is_written_and_read_exactly(parts, twice):
+    if twice:
+        parts = [part for part in parts for _ in range(2)]
+    found = unpacked(packed(parts), len(parts))
+    # Bit for bit, so that -0.0 and NaN count too.
+    assert [part.tobytes() for part in found] == [part.tobytes() for part in parts]
+
+
+@given(st.binary(max_size=120) | st.binary(max_size=120).map(lambda rest: b"\x02" + rest))
+def test_bytes_that_are_no_sample_are_refused(sample):
+    with suppress(ValueError):
+        assert len(unpacked(sample, 8)) == 8
+
+
+def test_nothing_is_written_twice(tmp_path):
+    zeros, u = np.zeros(7), np.array([0.1, 0.2])
+    assert len(packed([zeros, u, u])) == 1 + 3 * 2 + 2 * 8
+
+
+def test_the_log_is_folded_while_an_episode_is_recorded(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder._database.execute("PRAGMA wal_autocheckpoint = 20")
+    recorder.begin_episode(header())
+    for tick in range(300):
+        recorder.record(record(tick))
+        assert (tmp_path / "drive.sqlite-wal").stat().st_size < 60 * 2100
+    recorder.close()
+    (episode,) = read_journal(path)
+    assert len(episode.records) == 300
+
+
+@pytest.mark.parametrize("limits", [{"most_bytes": 60_000}, {"least_free_bytes": 10**18}])
+def test_a_journal_without_room_ends_its_episode_whole(tmp_path, limits):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header())
+    recorder.record(record(0))
+    recorder._watch = JournalWatch(path, JournalLimits(**limits))
+
+    def fill():
+        for tick in range(1, 2000):
+            recorder.record(record(tick))
+
+    with pytest.raises(JournalFullError, match=r"drive\.sqlite.*recording was ended"):
+        fill()
+    if "least_free_bytes" in limits:
+        with pytest.raises(JournalFullError):
+            recorder.begin_episode(header())
+    recorder.close()
+    (episode,) = read_journal(path)
+    assert episode.complete
+    assert len(episode.records) > 50
+
+
+def test_a_limit_that_is_none_is_refused():
+    for bad in (-1, 1.5, None, True):
+        with pytest.raises(UserError, match="most_bytes"):
+            JournalLimits(most_bytes=bad)
+    for bad in (-1.0, math.nan, math.inf):
+        with pytest.raises(UserError, match="most-gb"):
+            JournalLimits.of_gigabytes(bad, 0.5)
+
+
+def deleted(path):
+    path.unlink()
+
+
+def replaced(path):
+    other = path.with_name("other")
+    other.write_bytes(path.read_bytes())
+    other.replace(path)
+
+
+def without_log(path):
+    path.with_name(path.name + "-wal").unlink()
+
+
+def without_folder(path):
+    path.parent.rename(path.parent.with_name("elsewhere"))
+
+
+@pytest.mark.parametrize("harm", [deleted, replaced, without_log, without_folder])
+def test_a_journal_that_is_lost_while_it_is_written_is_noticed_within_a_second(tmp_path, harm):
+    path = tmp_path / "teleop" / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header())
+    for tick in range(150):
+        recorder.record(record(tick))
+    harm(path)
+
+    def go_on():
+        for tick in range(150, 250):
+            recorder.record(record(tick))
+
+    with pytest.raises(JournalLostError, match=r"drive\.sqlite was deleted, moved or replaced"):
+        go_on()
+    with pytest.raises(JournalLostError):
+        recorder.check()
+    recorder.close()
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda one: {"state": np.full(7, np.nan)}, "could not be read"),
+        (lambda one: {"state": np.zeros(7)}, "'joint1' moves at 7[0-9.]* rad/s|outside its limits"),
+        (lambda one: {"state": one.state + np.eye(7)[2] * 9.0}, "'joint2' reads 9"),
+        (lambda one: {"time_s": one.time_s - 1.0}, "clock"),
+        (lambda one: {"time_s": math.nan}, "clock"),
+    ],
+)
+@pytest.mark.parametrize("old", [False, True])
+def test_an_episode_is_exported_as_far_as_it_can_be_true(tmp_path, arm, change, said, old):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    # Journals from before limits were kept name a robot that is known.
+    recorder.begin_episode(header(joint_limits=None if old else arm.limits))
+    for tick in range(20):
+        one = record(tick)
+        recorder.record(dataclasses.replace(one, **change(one)) if tick == 12 else one)
+    recorder.end_episode()
+    recorder.close()
+    with pytest.warns(ImplausibleWarning, match=said):
+        (episode,) = demonstrations_of(read_journal(path), source="drive").episodes
+    assert len(episode.state) == 12
+    assert np.isfinite(episode.state).all()
+    with pytest.warns(ImplausibleWarning, match="left out"):
+        assert export_journal(path, tmp_path / "dataset") == 0
+
+
+def test_what_cannot_be_true_from_its_beginning_is_no_episode(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header())
+    for tick in range(20):
+        recorder.record(dataclasses.replace(record(tick), state=np.zeros(7)))
+    recorder.end_episode()
+    recorder.close()
+    with (
+        pytest.warns(ImplausibleWarning, match="the episode is left out"),
+        pytest.raises(UserError, match="no complete episode"),
+    ):
+        export_journal(path, tmp_path / "dataset")
 
 
 def test_a_journal_goes_on_where_it_was_left(tmp_path):

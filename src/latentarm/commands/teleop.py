@@ -29,12 +29,19 @@ def teleop(
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
     seed: Seed = 0,
     out: Annotated[Path, arg(metavar="DIR", help="Folder for what is recorded.")] = Path("teleop"),
+    most_gb: Annotated[
+        float, arg(metavar="GB", help="A journal that has grown so large ends its recording.")
+    ] = 4.0,
+    keep_free_gb: Annotated[
+        float, arg(metavar="GB", help="A recording ends where less is free on the disk.")
+    ] = 0.5,
     json: Json = False,
 ) -> int:
     """Drive a simulated arm from a web page: stick, buttons, keyboard, gamepad or switches.
 
     Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
     """
+    from latentarm.control.journal_limits import JournalLimits
     from latentarm.control.recordings import JOURNAL_SUFFIX
     from latentarm.web.addresses import TeleopConfig
     from latentarm.web.server import serve
@@ -49,7 +56,8 @@ def teleop(
         if json:
             print(json_format.dumps({"address": address}), flush=True)
 
-    config = TeleopConfig(Spec(run, profile, seed, out), host, port, certfile, keyfile)
+    room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
+    config = TeleopConfig(Spec(run, profile, seed, out, room), host, port, certfile, keyfile)
     before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     serve(config, announce, ready)
     for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):

@@ -1,13 +1,18 @@
 """From a journal to the native dataset."""
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import final
 
 import numpy as np
 
 from latentarm.control.journal import JournalEpisode, read_journal
+from latentarm.control.recorded_states import first_implausible
+from latentarm.control.recorder import EpisodeHeader
 from latentarm.errors import UserError
+from latentarm.robots.limits import JointLimits
 from latentarm.types import Demonstrations, Episode, FloatArray
 
 NO_BOUND = -1.0
@@ -15,6 +20,11 @@ NO_BOUND = -1.0
 
 _SHORTEST = 2
 """An episode with fewer samples has no motion in it."""
+
+
+@final
+class ImplausibleWarning(UserWarning):
+    """Samples of an episode cannot be true, and are not exported."""
 
 
 def demonstrations_of(
@@ -27,20 +37,21 @@ def demonstrations_of(
     (rad; -1 where nothing helps) and ``observation.environment_state`` (position and rotation matrix of
     every goal, row by row).
     Time starts at each episode's first sample. What was cut short stays in the journal, unless asked for.
+    An episode is cut before its first sample that cannot be true (see `first_implausible`).
 
     Args:
         episodes: what `read_journal` returned.
         source: what errors name, such as the journal's path.
         incomplete: take episodes that were cut short too.
 
+    Warns:
+        ImplausibleWarning: an episode was cut, or left out because too little was left of it.
+
     Raises:
         UserError: no episode is complete and long enough, or the episodes are of different robots or goals.
     """
-    kept = [
-        episode
-        for episode in episodes
-        if (incomplete or episode.complete) and len(episode.records) >= _SHORTEST
-    ]
+    usable = [_until_implausible(episode) for episode in episodes if incomplete or episode.complete]
+    kept = [episode for episode in usable if len(episode.records) >= _SHORTEST]
     if not kept:
         raise UserError(f"{source} holds no complete episode: end an episode while recording it.")
     first = kept[0].header
@@ -82,6 +93,36 @@ def export_journal(journal: Path, dataset: Path) -> int:
     demonstrations = demonstrations_of(episodes, source=str(journal))
     write_dataset(demonstrations, dataset)
     return len(episodes) - len(demonstrations.episodes)
+
+
+def _until_implausible(recorded: JournalEpisode) -> JournalEpisode:
+    """The episode up to its first sample that cannot be true."""
+    header, records = recorded.header, recorded.records
+    found = first_implausible(records, header.joint_names, _limits(header))
+    if found is None:
+        return recorded
+    index, reason = found
+    left_out = "it and what comes after it are" if index >= _SHORTEST else "the episode is"
+    warnings.warn(
+        f"Sample {index + 1} of {len(records)} in the episode {header.task!r} cannot be true ({reason}):"
+        f" {left_out} left out.",
+        ImplausibleWarning,
+        stacklevel=3,
+    )
+    return replace(recorded, records=records[:index])
+
+
+def _limits(header: EpisodeHeader) -> JointLimits | None:
+    """Limits of the joints; journals from before they were kept name a robot at least."""
+    if header.joint_limits is not None:
+        return header.joint_limits
+    # MuJoCo is slow to load, and journals of today do not need it here.
+    from latentarm.robots.catalogue import ROBOTS
+
+    if header.robot not in ROBOTS:
+        return None
+    limits = ROBOTS[header.robot]().limits
+    return limits if limits.dof == len(header.joint_names) else None
 
 
 def _episode(recorded: JournalEpisode) -> Episode:

@@ -2,7 +2,7 @@
 
 import math
 import sqlite3
-from collections.abc import Collection, Generator
+from collections.abc import Collection, Generator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +10,13 @@ from typing import Any, final
 
 import numpy as np
 
-from latentarm.control.recorder import EpisodeHeader, check_is_journal
+from latentarm.control.recorder import LIMITS, EpisodeHeader, check_is_journal
+from latentarm.control.samples import COMPACT, unpacked
 from latentarm.demonstrations.provenance import parse_provenance
 from latentarm.errors import UserError
+from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import parse_limits
-from latentarm.types import Command, Goal, Pose, StepRecord, Stop
+from latentarm.types import Command, FloatArray, Goal, Pose, StepRecord, Stop
 from latentarm.untrusted.documents import parse_object
 from latentarm.untrusted.memory import bounded_memory
 from latentarm.untrusted.opening import check_file, is_missing
@@ -200,7 +202,19 @@ def _header(about: dict[str, Any]) -> EpisodeHeader:
         goals=tuple(_goal(goal) for goal in about["goals"]),
         # Journals from before this was recorded have none.
         provenance=parse_provenance(about.get("provenance", {})),
+        joint_limits=_joint_limits(about.get("joint_limits")),
     )
+
+
+def _joint_limits(limits: dict[str, Any] | None) -> JointLimits | None:
+    """Limits of the joints; None in journals from before they were kept."""
+    if limits is None:
+        return None
+    lower, upper, velocity, acceleration, jerk = (np.array(limits[name]) for name in LIMITS)
+    try:
+        return JointLimits(lower, upper, velocity, acceleration, jerk)
+    except UserError as error:
+        raise ValueError(str(error)) from error
 
 
 def _goal(goal: dict[str, Any]) -> Goal:
@@ -209,6 +223,8 @@ def _goal(goal: dict[str, Any]) -> Goal:
 
 
 def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:
+    if figures[: len(COMPACT)] == COMPACT:
+        return _step_record(unpacked(figures, _PARTS), stop, limited_by)
     values = np.frombuffer(figures, dtype=np.float64)
     widths = values[:_PARTS]
     if len(widths) < _PARTS or not (widths >= 0).all() or widths.sum() != len(values) - _PARTS:
@@ -216,6 +232,10 @@ def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:
     if len(values) > _MOST_FIGURES:
         raise ValueError("a sample is too long")
     parts = np.split(values[_PARTS:], np.cumsum(widths.astype(np.int64))[:-1])
+    return _step_record(parts, stop, limited_by)
+
+
+def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str) -> StepRecord:
     scalars, state, given, latent, human, assist, belief, velocity = parts
     # Journals from before the bound was recorded have one less.
     known = scalars.tolist() if len(scalars) == _SCALARS else [*scalars.tolist(), math.nan]

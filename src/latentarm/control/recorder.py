@@ -3,21 +3,33 @@
 import json
 import sqlite3
 import sys
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import final
 
-import numpy as np
-
+from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalWatch
+from latentarm.control.samples import figures_of, packed
 from latentarm.demonstrations.provenance import provenance_json
 from latentarm.errors import UserError
+from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import limits_document
-from latentarm.types import FloatArray, Goal, Provenance, StatedLimits, StepRecord
+from latentarm.types import Goal, Provenance, StatedLimits, StepRecord
 from latentarm.untrusted.opening import check_file, is_missing
 
-SCHEMA_VERSION = 1
+LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
+"""What a header says of the joints' limits."""
+
+SCHEMA_VERSION = 2
+"""Since version 2 samples are compact; version 1 can be read, and gone on with."""
+
+_READABLE = (1, 2)
+
+_PAGE_BYTES = 2048
+"""Each sample is a transaction, and each transaction writes one or two whole pages to the log."""
+
+_LOG_PAGES = 2000
+"""When the log has grown so long (4 MB), a commit folds it into the file and it begins anew."""
 
 _SCHEMA = """
 CREATE TABLE episodes (
@@ -56,6 +68,7 @@ class EpisodeHeader:
         provenance: who and what records it.
         end_effector: site, body or link of the robot's model file, or None.
         limits: what was stated of the robot's limits, or None.
+        joint_limits: of the joints: samples outside them cannot be true. None where they are not known.
     """
 
     robot: str
@@ -67,6 +80,7 @@ class EpisodeHeader:
     provenance: Provenance = field(default_factory=Provenance)
     end_effector: str | None = None
     limits: StatedLimits | None = None
+    joint_limits: JointLimits | None = None
 
 
 @final
@@ -78,19 +92,24 @@ class Recorder:
     readable and whole episodes are safe: `end_episode` flushes everything to the disk before it marks the
     episode complete. Samples of the episode under way may then be lost from its end.
 
-    Nothing waits for the disk between `begin_episode` and `end_episode` (the log is not folded into
-    the file meanwhile), so a commit costs tens of microseconds and the loop can record in its own
-    thread.
+    A commit costs tens of microseconds. Every thousand samples or so, one folds the log into the file and
+    waits for the disk, which takes tens of milliseconds: a loop in real time records in another thread, as
+    the page's does.
+
+    About once a second the recorder looks whether the journal is still there and has room.
 
     Args:
         path: the journal, a new file or one that `Recorder` wrote.
+        limits: how much room the journal may take.
 
     Raises:
         UserError: the file cannot be written, or is no journal.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, limits: JournalLimits | None = None) -> None:
         self._path = path
+        self._watch = JournalWatch(path, limits or JournalLimits())
+        self._samples_per_check = 100
         self._episode: int | None = None
         self._number = 0
         self._widths: tuple[int, ...] = ()
@@ -112,21 +131,33 @@ class Recorder:
 
     def _open(self) -> None:
         check_is_journal(self._database, self._path, may_be_empty=True)
+        self._database.execute(f"PRAGMA page_size = {_PAGE_BYTES}")
         self._database.execute("PRAGMA journal_mode = WAL")
         self._database.execute("PRAGMA synchronous = FULL")
-        self._database.execute("PRAGMA wal_autocheckpoint = 0")
+        self._database.execute(f"PRAGMA wal_autocheckpoint = {_LOG_PAGES}")
         (version,) = self._database.execute("PRAGMA user_version").fetchone()
         if version == 0:
             self._database.executescript(
                 f"BEGIN IMMEDIATE; {_SCHEMA} PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;"
             )
+        elif version != SCHEMA_VERSION:
+            # What follows is beyond programs that know the old version alone.
+            self._database.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
+
+    @property
+    def recording(self) -> bool:
+        """Whether an episode is under way."""
+        return self._episode is not None
 
     def begin_episode(self, header: EpisodeHeader) -> None:
         """Begin an episode; one that is still under way stays incomplete.
 
         Raises:
-            UserError: the journal cannot be written.
+            JournalFullError: there is no room for another one.
+            UserError: the journal cannot be written, or has gone.
         """
+        self._episode = None
+        self._watch.check()
         about = {
             "robot": header.robot,
             "joint_names": list(header.joint_names),
@@ -135,6 +166,7 @@ class Recorder:
             "modes": list(header.modes),
             "end_effector": header.end_effector,
             "limits": None if header.limits is None else limits_document(header.limits),
+            "joint_limits": None if header.joint_limits is None else _limits_as_json(header.joint_limits),
             "goals": [
                 {
                     "name": goal.name,
@@ -154,16 +186,21 @@ class Recorder:
         self._episode = cursor.lastrowid
         self._number = 0
         self._widths = ()
+        self._samples_per_check = max(round(header.rate_hz), 1)
 
     def record(self, record: StepRecord) -> None:
         """Write one step; it is acknowledged when this returns.
 
         Raises:
+            JournalFullError: there is no room for more; the episode was ended before this step, complete.
+            JournalLostError: the journal has gone, and the episode with it.
             UserError: the journal cannot be written (the disk is full; the episode then stays incomplete), or
                 no episode is under way, or the record's shapes differ from those before.
         """
         if self._episode is None:
             raise UserError(f"{self._path} has no episode under way: begin one before recording.")
+        if self._number % self._samples_per_check == self._samples_per_check - 1:
+            self.check()
         parts = figures_of(record)
         widths = tuple(len(part) for part in parts)
         if self._number and widths != self._widths:
@@ -172,7 +209,7 @@ class Recorder:
         row = (
             self._episode,
             self._number,
-            np.concatenate([np.array(widths, dtype=np.float64), *parts]).tobytes(),
+            packed(parts),
             None if stop is None else stop.reason,
             ",".join(record.command.limited_by),
         )
@@ -184,6 +221,26 @@ class Recorder:
             raise _unwritable(self._path, error) from error
         self._widths = widths
         self._number += 1
+
+    def check(self) -> None:
+        """See that the journal is still there and has room; for when no samples come.
+
+        Raises:
+            JournalFullError: there is no room for more; an episode under way was ended and is complete.
+            JournalLostError: the journal has gone, and an episode under way with it.
+            UserError: the journal cannot be written.
+        """
+        try:
+            self._watch.check()
+        except JournalFullError as error:
+            if self._episode is not None and self._number:
+                self.end_episode()
+                error.ended_episode = True
+            self._episode = None
+            raise
+        except UserError:
+            self._episode = None
+            raise
 
     def end_episode(self, device: str = "") -> None:
         """Flush everything to the disk and mark the episode complete.
@@ -220,19 +277,8 @@ class Recorder:
             self._database.close()
 
 
-def figures_of(record: StepRecord) -> Sequence[FloatArray]:
-    """The numbers of a record, in the journal's order: times and scalars first, then arrays."""
-    command = record.command
-    return (
-        np.array([record.time_s, record.alpha, float(record.mode), command.duration_s, record.bound_rad]),
-        record.state,
-        record.input,
-        record.latent,
-        record.action_human,
-        record.action_assist,
-        record.belief,
-        command.velocity,
-    )
+def _limits_as_json(limits: JointLimits) -> dict[str, list[float]]:
+    return {name: getattr(limits, name).tolist() for name in LIMITS}
 
 
 def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: bool) -> None:
@@ -251,7 +297,7 @@ def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: 
     ).fetchone()
     # Other programs count their versions too: the tables tell whose file it is.
     if (
-        version == SCHEMA_VERSION
+        version in _READABLE
         and plain == tables == len(_COLUMNS)
         and all(
             [column for _, column, *_ in database.execute(f"PRAGMA table_info({table})")] == list(columns)

@@ -288,6 +288,7 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
                 EpisodeHeader(
                     robot=task.robot.name,
                     joint_names=task.robot.joint_names,
+                    joint_limits=task.robot.limits,
                     rate_hz=RATE_HZ,
                     task=f"{manner} {task.goals[goal].name}",
                     goals=task.goals,

@@ -249,6 +249,7 @@ class Cockpit(InputSource):
             EpisodeHeader(
                 robot=robot.name,
                 joint_names=robot.joint_names,
+                joint_limits=robot.limits,
                 rate_hz=1.0 / PERIOD_S,
                 task=task,
                 goals=self._setting.task.goals,

@@ -50,7 +50,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
     with threadpool_limits(1):
         setting = load_setting(spec)
         clock = MonotonicClock()
-        writer = EpisodeWriter(spec.out)
+        writer = EpisodeWriter(spec.out, spec.journal)
         cockpit = Cockpit(setting, channel, clock, writer, orphaned=lambda: os.getppid() != server)
         arm: Arm = LiveArm(setting.task.robot, setting.start, clock)
         # Nothing that is there by now is ever garbage: the collector need not look through it.

@@ -1,5 +1,6 @@
 """Recording a drive without keeping the control loop waiting for the disk."""
 
+import math
 import threading
 from dataclasses import dataclass
 from datetime import datetime
@@ -7,13 +8,17 @@ from pathlib import Path
 from queue import Empty, Full, Queue
 from typing import Final, final
 
+from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalLostError
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.errors import UserError
-from latentarm.types import StepRecord
+from latentarm.types import StepRecord, Stop
 from latentarm.web.channel import Recording
 
 _MOST_WAITING: Final = 6000
 """Samples that may wait for the disk: a minute of them."""
+
+_CHECK_S: Final = 1.0
+"""How often the journal is looked after while nothing is recorded, s."""
 
 _CLOSE: Final = "close"
 
@@ -30,21 +35,28 @@ class _End:
 class EpisodeWriter:
     """Writes episodes to a journal in a thread of its own; its callers never wait.
 
-    The journal is made when the first episode begins. An episode that the disk cannot keep up with is
-    left incomplete and so never becomes part of a dataset.
+    The journal is made when the first episode begins, and another one where it was lost. An episode that the
+    disk cannot keep up with is left incomplete and so never becomes part of a dataset. One whose arm can
+    no longer be trusted to say where it is ends before that, and one that fills the journal ends there; both
+    are complete.
 
     Args:
         folder: where journals go.
+        limits: how much room a journal may take.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._path = folder / f"journal-{datetime.now():%Y%m%d-%H%M%S}.sqlite"
+    def __init__(self, folder: Path, limits: JournalLimits | None = None) -> None:
+        self._folder = folder
+        self._limits = limits
+        self._path = self._new_path()
+        self._untrusted: Stop | None = None
         self._waiting: Queue[StepRecord | EpisodeHeader | _End | str] = Queue(_MOST_WAITING)
         self._thread: threading.Thread | None = None
         self._on = False
         self._samples = 0
         self._episodes = 0
         self._problem: str | None = None
+        self._lost = False
 
     @property
     def on(self) -> bool:
@@ -70,6 +82,8 @@ class EpisodeWriter:
             return
         # Before the thread begins: it may find at once that nothing can be written.
         self._problem = None
+        if self._lost:
+            self._lost, self._path, self._episodes = False, self._new_path(), 0
         self._on, self._samples = True, 0
         self._put(header)
         if self._thread is None or not self._thread.is_alive():
@@ -77,8 +91,18 @@ class EpisodeWriter:
             self._thread.start()
 
     def add(self, record: StepRecord) -> None:
-        """Keep a step, where an episode is under way."""
-        if self._on:
+        """Keep a step, where an episode is under way; one that is not to be trusted ends it."""
+        stop = record.command.stop
+        untrusted = stop if stop is not None and stop.untrusted else None
+        # The reason stays until the arm is enabled again: only where it is new does it end an episode.
+        news, self._untrusted = untrusted is not self._untrusted, untrusted
+        if not self._on:
+            return
+        if (untrusted is not None and news) or math.isnan(record.state[0]):
+            why = "The joints could not be read." if stop is None else stop.reason
+            self.end()
+            self._problem = f"The recording was ended before this: {why}"
+        else:
             self._samples += 1
             self._put(record)
 
@@ -110,13 +134,17 @@ class EpisodeWriter:
 
     def _write(self) -> None:
         try:
-            recorder = Recorder(self._path)
+            recorder = Recorder(self._path, self._limits)
             try:
-                while (item := self._waiting.get()) != _CLOSE:
-                    self._handle(recorder, item)
+                while (item := self._next()) != _CLOSE:
+                    try:
+                        self._handle(recorder, item)
+                    except JournalFullError as error:
+                        self._full(recorder, error)
             finally:
                 recorder.close()
         except UserError as error:
+            self._lost = isinstance(error, JournalLostError)
             self._break_off(str(error))
             while True:
                 try:
@@ -124,11 +152,37 @@ class EpisodeWriter:
                 except Empty:
                     return
 
-    def _handle(self, recorder: Recorder, item: StepRecord | EpisodeHeader | _End | str) -> None:
-        if isinstance(item, StepRecord):
-            recorder.record(item)
+    def _next(self) -> StepRecord | EpisodeHeader | _End | str | None:
+        """What comes next; None where nothing comes for a while, to look after the journal meanwhile."""
+        try:
+            return self._waiting.get(timeout=_CHECK_S)
+        except Empty:
+            return None
+
+    def _handle(self, recorder: Recorder, item: StepRecord | EpisodeHeader | _End | str | None) -> None:
+        if item is None:
+            recorder.check()
         elif isinstance(item, EpisodeHeader):
             recorder.begin_episode(item)
-        elif isinstance(item, _End) and self._problem is None:
+        elif isinstance(item, StepRecord) and recorder.recording:
+            recorder.record(item)
+        elif isinstance(item, _End) and recorder.recording:
             recorder.end_episode(item.device)
             self._episodes += 1
+
+    def _full(self, recorder: Recorder, error: JournalFullError) -> None:
+        """The journal has no room for more: what was recorded of the episode is kept."""
+        if error.ended_episode:
+            self._episodes += 1
+        if self._on:
+            self._break_off(str(error))
+
+    def _new_path(self) -> Path:
+        """A journal that is not there yet, named after the time."""
+        named = f"journal-{datetime.now():%Y%m%d-%H%M%S}"
+        path = self._folder / f"{named}.sqlite"
+        number = 1
+        while path.exists():
+            number += 1
+            path = self._folder / f"{named}-{number}.sqlite"
+        return path

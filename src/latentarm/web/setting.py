@@ -1,6 +1,6 @@
 """What a page drives: the task, its modes, and what steers in each. Read by both processes."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final, Literal, final
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from latentarm.assistance.blending import Arbitration, FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
@@ -55,6 +56,7 @@ class Spec:
         profile: the person whose alignment is used; z = u where None.
         seed: of where the arm starts.
         out: folder for recordings.
+        journal: how much room a recording may take.
 
     Raises:
         UserError: the seed is none, or a profile is named without a run.
@@ -64,6 +66,7 @@ class Spec:
     profile: str | None = None
     seed: int = 0
     out: Path = Path("teleop")
+    journal: JournalLimits = field(default_factory=JournalLimits)
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < 2**31:

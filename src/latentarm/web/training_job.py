@@ -12,7 +12,7 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter
 
-from latentarm.control.export import demonstrations_of
+from latentarm.control.export import ImplausibleWarning, demonstrations_of
 from latentarm.control.journal import read_journal
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations
@@ -171,7 +171,9 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
     """
     from latentarm.demonstrations.pauses import without_pauses
 
-    recorded = demonstrations_of(read_journal(plan.journal, plan.episodes), source="The recording")
+    with warnings.catch_warnings(record=True) as cut:
+        warnings.simplefilter("always", ImplausibleWarning)
+        recorded = demonstrations_of(read_journal(plan.journal, plan.episodes), source="The recording")
     demonstrations = without_pauses(recorded, RATE_HZ)
     long_enough = [one for one in demonstrations.episodes if one.timestamp[-1] >= SHORTEST_S]
     if len(long_enough) < max(FEWEST, len(set(plan.episodes))):
@@ -185,7 +187,7 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
         shutil.rmtree(plan.run, ignore_errors=True)
         shutil.rmtree(plan.dataset, ignore_errors=True)
         raise
-    wire.say(_Finished(warned=" ".join(warned) or None))
+    wire.say(_Finished(warned=" ".join([*(str(one.message) for one in cut), *warned]) or None))
 
 
 def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[str]:

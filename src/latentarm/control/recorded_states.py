@@ -1,0 +1,77 @@
+"""Which recorded samples can be true: those of a dataset must be, whatever a journal holds."""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from latentarm.robots.limits import JointLimits
+from latentarm.types import StepRecord
+
+_OUTSIDE: Final = 0.01
+"""Readings this far past a limit are noise, rad."""
+
+_JUMP: Final = 0.03
+"""So much farther than the joint can move between two samples a reading may lie: sensors that are slower than
+the loop move in steps, and have noise, rad."""
+
+
+def first_implausible(
+    records: Sequence[StepRecord], joint_names: Sequence[str], limits: JointLimits | None
+) -> tuple[int, str] | None:
+    """The first sample of an episode that cannot be true.
+
+    Args:
+        records: the episode, in order.
+        joint_names: n names.
+        limits: of the joints; None checks only that the readings are numbers and that time goes on.
+
+    Returns:
+        Its index, and why in a few words; None where all can be true.
+    """
+    if not records:
+        return None
+    state = np.stack([record.state for record in records])
+    time_s = np.array([record.time_s for record in records])
+    found: list[tuple[int, str]] = []
+    unread = ~np.isfinite(state).all(axis=1)
+    if unread.any():
+        found.append((int(unread.argmax()), "the joints could not be read"))
+    elapsed_s = np.diff(time_s)
+    # Written so that a time that is not a number counts as well.
+    back = ~(elapsed_s > 0.0)
+    if back.any():
+        found.append((int(back.argmax()) + 1, "the clock stood still or went back"))
+    if limits is not None:
+        found.extend(_beyond(state, elapsed_s, joint_names, limits))
+    return min(found, key=lambda one: one[0], default=None)
+
+
+def _beyond(
+    state: np.ndarray, elapsed_s: np.ndarray, joint_names: Sequence[str], limits: JointLimits
+) -> list[tuple[int, str]]:
+    found: list[tuple[int, str]] = []
+    # Samples that are not numbers are found before these; nothing here must fail on them.
+    outside = np.nan_to_num(limits.violation(state)) > _OUTSIDE
+    if outside.any():
+        index, joint = np.argwhere(outside)[0]
+        found.append(
+            (
+                int(index),
+                f"joint {joint_names[joint]!r} reads {state[index, joint]:.3g}, outside its limits"
+                f" {limits.lower[joint]:.3g} and {limits.upper[joint]:.3g}",
+            )
+        )
+    moved = np.nan_to_num(np.abs(np.diff(state, axis=0)))
+    fast = moved > limits.velocity * np.maximum(elapsed_s, 0.0)[:, None] + _JUMP
+    if fast.any():
+        index, joint = np.argwhere(fast)[0]
+        speed = moved[index, joint] / max(float(elapsed_s[index]), 1e-9)
+        found.append(
+            (
+                int(index) + 1,
+                f"joint {joint_names[joint]!r} moves at {speed:.3g} rad/s and can do"
+                f" {limits.velocity[joint]:.3g}",
+            )
+        )
+    return found
