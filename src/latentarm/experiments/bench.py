@@ -126,8 +126,10 @@ class _TimedStep:
         """One step, timed; then the arm moves. Returns the state that the step saw."""
         state, given = self._arm.state(), Input(u)
         began = time.perf_counter()
-        record = self._step(given, 0.0, state, tick * self._step.dt_s)
+        record = self._step(given, 0.0, state, (tick + 1) * self._step.dt_s)
         self._took_s.append(time.perf_counter() - began)
+        if record.command.stop is not None:
+            raise RuntimeError(f"the timed arm was stopped: {record.command.stop.reason}")
         self._arm.send(record.command)
         self._arm.advance()
         return state
