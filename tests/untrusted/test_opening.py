@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from latentarm.errors import UserError
-from latentarm.untrusted.opening import check_file, opened, read_bytes
+from latentarm.untrusted.opening import check_file, is_missing, opened, read_bytes
 
 
 def test_reads_a_file(tmp_path: Path) -> None:
@@ -69,3 +69,12 @@ def test_errors_within_name_the_file(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(UserError, match="file cannot be read"), opened(tmp_path / "file", 5) as stream:
         stream.seek(-1)
+
+
+def test_what_is_missing_is_told_from_what_cannot_be_read(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "file").write_bytes(b"")
+    assert is_missing(tmp_path / "nowhere")
+    assert is_missing(tmp_path / "file" / "below")
+    for name in ("pipe", "file", "x" * 5000, "nul\0"):
+        assert not is_missing(tmp_path / name)

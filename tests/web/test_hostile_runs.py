@@ -78,7 +78,9 @@ def test_a_hostile_run_is_refused_and_driving_goes_on(tmp_path, serve, trained, 
             why = page.state["why"]
             assert why.count("\n") == 0
             assert "\x1b" not in why
-            assert any(word in why for word in ("config.json", "model.safetensors", "dataset")), (name, why)
+            assert any(
+                word in why for word in ("config.json", "model.safetensors", "dataset", "info.json")
+            ), (name, why)
         assert site.control.alive
         assert page.welcome["run"] == "run"
         before = np.array(page.state["tool"])

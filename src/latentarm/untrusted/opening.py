@@ -90,7 +90,7 @@ def is_missing(path: Path) -> bool:
         path.lstat()
     except (FileNotFoundError, NotADirectoryError):
         return True
-    except OSError:
+    except (OSError, ValueError):  # reading it says what is wrong, such as a null byte in the path
         return False
     return False
 
