@@ -4,8 +4,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from latentarm.robots.catalogue import load_robot
 from latentarm.robots.limits import JointLimits
+from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, Episode, Goal, Pose
+
+SO101 = """
+<mujoco model="so101_new_calib"><compiler angle="radian"/><worldbody>
+<body name="shoulder" pos="0 0 .06"><joint name="shoulder_pan" axis="0 0 1" range="-1.91986 1.91986"/>
+<geom type="capsule" size=".02" fromto="0 0 0 0 0 .05"/>
+<body name="upper_arm" pos="0 0 .05"><joint name="shoulder_lift" axis="0 1 0" range="-1.74533 1.74533"/>
+<geom type="capsule" size=".02" fromto="0 0 0 0 0 .11"/>
+<body name="lower_arm" pos="0 0 .11"><joint name="elbow_flex" axis="0 1 0" range="-1.69 1.69"/>
+<geom type="capsule" size=".02" fromto="0 0 0 .13 0 0"/>
+<body name="wrist" pos=".13 0 0"><joint name="wrist_flex" axis="0 1 0" range="-1.65806 1.65806"/>
+<geom type="capsule" size=".02" fromto="0 0 0 .06 0 0"/>
+<body name="gripper" pos=".06 0 0"><joint name="wrist_roll" axis="1 0 0" range="-2.74385 2.84121"/>
+<geom type="capsule" size=".02" fromto="0 0 0 .05 0 0"/><site name="gripperframe" pos=".1 0 0"/>
+<body name="jaw" pos=".05 0 0"><joint name="gripper" axis="0 0 1" range="-.174533 1.74533"/>
+<geom type="capsule" size=".01" fromto="0 0 0 .05 0 0"/>
+</body></body></body></body></body></body></worldbody></mujoco>
+"""
+"""Joints and limits of the SO-101 (TheRobotStudio's URDF of the new calibration), with plain shapes."""
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "demonstrations"
 
@@ -90,6 +110,13 @@ def real() -> Path:
     if not SHARED.is_dir():
         pytest.skip("the real recordings are not beside the project")
     return SHARED
+
+
+@pytest.fixture(scope="session")
+def so101(tmp_path_factory: pytest.TempPathFactory) -> Robot:
+    path = tmp_path_factory.mktemp("robot") / "so101.xml"
+    path.write_text(SO101)
+    return load_robot(str(path))
 
 
 @pytest.fixture

@@ -191,9 +191,12 @@ def test_a_foreign_dataset_is_imported_without_its_actions(
     np.testing.assert_allclose(vouched.episodes[2].action, demonstrations.episodes[2].action, rtol=1e-6)
 
 
-def test_joints_in_another_order_are_refused(tmp_path: Path) -> None:
+def test_joints_in_another_order_are_put_into_the_robots(tmp_path: Path) -> None:
     robot = planar(3)
     names = tuple(reversed(robot.joint_names))
-    write_dataset(Demonstrations((Episode(np.zeros((2, 3)), np.arange(2.0)),), 1.0, names), tmp_path / "data")
-    with pytest.raises(UserError, match="reorder them"):
-        import_demonstrations(tmp_path / "data", robot)
+    states = np.tile([0.3, 0.2, 0.1], (2, 1))
+    write_dataset(Demonstrations((Episode(states, np.arange(2.0)),), 1.0, names), tmp_path / "data")
+    imported = import_demonstrations(tmp_path / "data", robot)
+    assert imported.joint_names == robot.joint_names
+    np.testing.assert_allclose(imported.episodes[0].state[0], [0.1, 0.2, 0.3], rtol=1e-6)
+    assert "by name" in imported.import_record["joints"]

@@ -16,6 +16,8 @@ import pytest
 
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
 from latentarm.demonstrations.importing import import_demonstrations, import_to
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, Episode
 
 pytestmark = pytest.mark.slow
@@ -67,7 +69,7 @@ features = {
     "observation.images.top": {"dtype": "image", "shape": (8, 8, 3), "names": ["h", "w", "c"]},
 }
 dataset = LeRobotDataset.create(
-    "local/data", fps=20, features=features, root=sys.argv[1], robot_type="so100", use_videos=False
+    "local/data", fps=20, features=features, root=sys.argv[1], robot_type="toy", use_videos=False
 )
 for episode in range(4):
     for frame in range(5 + episode):
@@ -212,7 +214,7 @@ def test_we_read_what_lerobot_writes(tmp_path: Path, lerobot: Callable[..., str]
     lerobot(WRITE, tmp_path / "theirs")
     import_to(tmp_path / "theirs", tmp_path / "ours")
     demonstrations = read_dataset(tmp_path / "ours")
-    assert (demonstrations.rate_hz, demonstrations.robot) == (20.0, "so100")
+    assert (demonstrations.rate_hz, demonstrations.robot) == (20.0, "toy")
     assert demonstrations.joint_names == ("j1", "j2", "j3")
     assert [episode.task for episode in demonstrations.episodes] == ["place", "pick", "place", "pick"]
     for index, episode in enumerate(demonstrations.episodes):
@@ -223,6 +225,39 @@ def test_we_read_what_lerobot_writes(tmp_path: Path, lerobot: Callable[..., str]
         assert episode.action is None
     vouched = import_demonstrations(tmp_path / "theirs", actions="joint_velocity")
     np.testing.assert_array_equal(vouched.episodes[1].action, np.tile(np.arange(6)[:, None], 3))
+
+
+WRITE_SO101 = """
+import sys
+import numpy as np
+from lerobot.datasets.lerobot_dataset import LeRobotDataset
+
+joints = ("shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll", "gripper")
+vector = {"dtype": "float32", "shape": (6,), "names": [f"{joint}.pos" for joint in joints]}
+features = {"observation.state": vector, "action": vector}
+dataset = LeRobotDataset.create(
+    "local/data", fps=30, features=features, root=sys.argv[1], robot_type="so101_follower", use_videos=False
+)
+for episode in range(2):
+    for frame in range(10):
+        state = np.array([10, -20, 30, -40, 50, 5 * frame], dtype=np.float32) + episode
+        dataset.add_frame({"observation.state": state, "action": state + 1, "task": "pick"})
+    dataset.save_episode()
+dataset.finalize()
+"""
+
+
+def test_an_so101_dataset_of_lerobot_is_imported(
+    tmp_path: Path, lerobot: Callable[..., str], so101: Robot
+) -> None:
+    lerobot(WRITE_SO101, tmp_path / "theirs")
+    with pytest.raises(UserError, match="--units deg"):
+        import_demonstrations(tmp_path / "theirs", so101)
+    first = import_demonstrations(tmp_path / "theirs", so101, units=["deg"]).episodes[0]
+    np.testing.assert_allclose(first.state[0], np.deg2rad([10, -20, 30, -40, 50]), rtol=1e-5)
+    opening = first.extras["observation.gripper_opening"][:, 0]
+    np.testing.assert_allclose(opening, 0.05 * np.arange(10), atol=1e-6)
+    np.testing.assert_allclose(first.extras["action.target_position"][0, 0], np.deg2rad(11), rtol=1e-5)
 
 
 def test_lerobot_does_not_see_an_episode_that_was_cut_off(

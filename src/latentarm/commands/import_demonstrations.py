@@ -7,12 +7,12 @@ from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import EndEffector, Json, LimitsFile, RobotName
-from latentarm.commands.output import note, say, show
+from latentarm.commands.output import note, print_renderables, say, show
 
 
 def import_demonstrations(
     source: Annotated[
-        Positional[Path], arg(metavar="SRC", help=".npz, .csv, .hdf5, or a LeRobot v3.0 folder.")
+        Positional[Path], arg(metavar="SRC", help=".npz, .csv, .hdf5, or a LeRobot folder (v2.0 to v3.0).")
     ],
     destination: Annotated[Positional[Path], arg(metavar="DST", help="New folder for the dataset.")],
     robot: RobotName = "panda",
@@ -23,11 +23,33 @@ def import_demonstrations(
         str | None, arg(help="What was done, in words, for a file that does not say it.")
     ] = None,
     actions: Annotated[
-        Literal["known", "joint_velocity"],
-        arg(
-            help="Keep recorded actions only where they are known to be joint velocities, or take your word."
-        ),
+        Literal["known", "joint_velocity", "joint_position"],
+        arg(help="Use recorded actions only where the file says what they are, or take your word."),
     ] = "known",
+    units: Annotated[
+        tuple[str, ...],
+        arg(
+            metavar="UNIT|JOINT=UNIT",
+            help="Units of the positions: rad, deg or normalized (-100 to 100 over each joint's range).",
+        ),
+    ] = (),
+    joints: Annotated[
+        tuple[str, ...],
+        arg(
+            metavar="COLUMN|JOINT=COLUMN",
+            help="The column of each joint, by name or number from 0, in the robot's order; by name without.",
+        ),
+    ] = (),
+    gripper: Annotated[
+        str | None, arg(metavar="COLUMN", help="The gripper's column; by name without.")
+    ] = None,
+    recorded_on: Annotated[
+        str | None,
+        arg(metavar="NAME", help="What the file calls the robot, if that is another name for --robot."),
+    ] = None,
+    clip_rad: Annotated[
+        float, arg(help="Move positions up to this far outside a joint's limits to the limit, rad.")
+    ] = 0.0,
     json: Json = False,
 ) -> int:
     """Turn recorded demonstrations into a native dataset (LeRobotDataset v3.0).
@@ -35,7 +57,7 @@ def import_demonstrations(
     For example: latentarm import panda_pour_coffee.npz pour
     """
     from latentarm.demonstrations.importing import import_to
-    from latentarm.experiments.inspection import summary
+    from latentarm.experiments.inspection import import_table, summary
     from latentarm.robots.catalogue import load_robot
     from latentarm.robots.limits_file import read_limits
     from latentarm.robots.notices import notices
@@ -49,10 +71,19 @@ def import_demonstrations(
         rate_hz=rate_hz,
         task=instruction,
         actions=actions,
+        units=units,
+        joints=joints,
+        gripper=gripper,
+        recorded_on=recorded_on,
+        clip_rad=clip_rad,
     )
     write_options(destination, "import")
     if json:
         show(summary(demonstrations).rows(), json)
+        for subject, decision in demonstrations.import_record.items():
+            say(f"{subject}: {decision}", json)
+    else:
+        print_renderables(import_table(demonstrations.import_record))
     say(
         f"{len(demonstrations.episodes)} episodes of {demonstrations.dof} joints are in {destination}/.", json
     )

@@ -2,9 +2,9 @@
 
 The first line names the columns: ``episode`` (any label; its lines lie together), ``timestamp`` (s,
 growing within an episode, from any origin), one column per joint with its position in rad, and
-where wanted ``action.JOINT`` for every joint with its commanded velocity in rad/s, and ``task``.
-With a robot whose joint names are all among the columns, those are the joints, in the robot's
-order; otherwise every column that is not named above is a joint, in the order of the file.
+where wanted ``action.JOINT`` for every joint with its commanded velocity in rad/s, ``task``, and ``robot``,
+the name of the robot that was recorded. With a robot whose joint names are all among the columns,
+those are read, and a gripper's; otherwise every column that is not named above.
 """
 
 import csv
@@ -19,11 +19,13 @@ from typing import Final, TextIO, final
 import numpy as np
 
 from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_EPISODES, MAX_LINE, MAX_TEXT_BYTES
+from latentarm.demonstrations.columns import is_gripper
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
 from latentarm.untrusted.opening import opened
 
 ACTION_PREFIX: Final = "action."
+RESERVED_COLUMNS: Final = frozenset({"episode", "timestamp", "task", "robot"})
 
 MAX_RECORD_LINES: Final = 100
 """Lines that one record may have, where its texts hold line breaks."""
@@ -36,6 +38,7 @@ class _Run:
 
     label: str
     task: str
+    robot: str
     numbers: "array[float]" = field(default_factory=lambda: array("d"))
 
 
@@ -68,7 +71,10 @@ def read_csv(
     if not episodes:
         raise UserError(f"{source} has no line after its header.")
     rate = _mean_rate(episodes) if rate_hz is None else rate_hz
-    return Demonstrations(episodes=episodes, rate_hz=rate, joint_names=joints)
+    robots = sorted({run.robot for run in runs})
+    if len(robots) > 1:
+        raise UserError(f"{source} holds episodes of different robots ({', '.join(robots)}): split the file.")
+    return Demonstrations(episodes=episodes, rate_hz=rate, joint_names=joints, robot=robots[0])
 
 
 def _lines(source: Path) -> Iterator[tuple[int, list[str]]]:
@@ -133,13 +139,12 @@ def _joints(header: list[str], joint_names: Sequence[str], source: Path) -> tupl
     for name in ("episode", "timestamp"):
         if name not in header:
             raise UserError(f"{source} has no column {name!r}; its first line must name the columns.")
-    if joint_names and set(joint_names) <= set(header):
-        return tuple(joint_names)
     joints = tuple(
-        name
-        for name in header
-        if name not in {"episode", "timestamp", "task"} and not name.startswith(ACTION_PREFIX)
+        name for name in header if name not in RESERVED_COLUMNS and not name.startswith(ACTION_PREFIX)
     )
+    if joint_names and set(joint_names) <= set(header):
+        # The robot's own names: what else there is, text perhaps, is not looked at, but for a gripper.
+        return tuple(name for name in joints if name in joint_names or is_gripper(name))
     if not joints:
         raise UserError(f"{source} has no column of joint positions.")
     return joints
@@ -164,7 +169,8 @@ def _runs(
             if len(seen) == MAX_EPISODES:
                 raise UserError(f"{source} has more than {MAX_EPISODES:,} episodes; split the file.")
             seen.add(label)
-            runs.append(_Run(label, fields[place["task"]] if "task" in place else task))
+            told = {name: fields[place[name]] for name in ("task", "robot") if name in place}
+            runs.append(_Run(label, told.get("task", task), told.get("robot", "")))
         for name, index in zip(columns, wanted, strict=True):
             try:
                 runs[-1].numbers.append(float(fields[index]))

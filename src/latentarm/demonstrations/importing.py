@@ -1,9 +1,10 @@
 """Bringing demonstrations of any known kind into a dataset of our own."""
 
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final, TypedDict, Unpack
 
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES
 from latentarm.demonstrations.csv_file import read_csv
@@ -11,7 +12,11 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.lerobot import read_lerobot
 from latentarm.demonstrations.npz_file import read_npz
+from latentarm.demonstrations.plausibility import check_rate, speed_warning
 from latentarm.demonstrations.robomimic import read_robomimic
+from latentarm.demonstrations.robot_names import is_so_arm
+from latentarm.demonstrations.source import SourceData
+from latentarm.demonstrations.translation import ActionChoice, Translation, translate
 from latentarm.demonstrations.validation import validate
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
@@ -27,45 +32,80 @@ FOREIGN: Final = {
 }
 
 
+class ImportOptions(TypedDict, total=False):
+    """What the user says of a file; all of it may be left out.
+
+    Attributes:
+        rate_hz: sampling rate, for files that do not say it or say it wrongly.
+        task: what was done, in words, for files that do not say it.
+        actions: ``"known"`` keeps recorded actions only where the source says what they are;
+            ``"joint_velocity"`` and ``"joint_position"`` take the caller's word for it.
+        units: ``rad``, ``deg`` or ``normalized`` (-100 to 100), or ``JOINT=deg`` for single joints.
+        joints: the column of each joint, see `find_columns`.
+        gripper: the gripper's column.
+        recorded_on: the file's word for the robot, where that is another than the robot's name.
+        clip_rad: positions that lie up to this far outside a joint's limits are moved to the limit.
+    """
+
+    rate_hz: float | None
+    task: str | None
+    actions: ActionChoice
+    units: Sequence[str]
+    joints: Sequence[str]
+    gripper: str | None
+    recorded_on: str | None
+    clip_rad: float
+
+
 def import_demonstrations(
-    source: Path,
-    robot: Robot | None = None,
-    *,
-    rate_hz: float | None = None,
-    task: str | None = None,
-    actions: Literal["known", "joint_velocity"] = "known",
+    source: Path, robot: Robot | None = None, **options: Unpack[ImportOptions]
 ) -> Demonstrations:
     """Read demonstrations from a file or folder of any known kind, and check them.
 
-    What the source is follows from its content: a folder with a LeRobot v3.0 layout, a NumPy
-    archive, an HDF5 file in robomimic's layout, or a CSV file.
+    What the source is follows from its content: a folder with a LeRobot layout (v2.0, v2.1, v3.0), a NumPy
+    archive, an HDF5 file in robomimic's layout, or a CSV file. What was decided about its columns and
+    units is in the result's ``import_record``.
 
     Args:
         source: the file or folder.
-        robot: the arm that was recorded; with it the number of joints and their limits are checked.
-        rate_hz: sampling rate, for files that do not say it.
-        task: what was done, in words, for files that do not say it.
-        actions: ``"known"`` keeps recorded actions only where the source says that they are joint
-            velocities; ``"joint_velocity"`` takes the caller's word for it.
+        robot: the arm that was recorded: its joints are found among the columns, and its limits are checked.
+            Without one, every column is taken for a joint in rad.
+        options: see `ImportOptions`.
 
     Raises:
         UserError: one sentence naming the file and, where it applies, the episode and the sample.
     """
-    demonstrations = _read(source, robot, rate_hz, task, actions)
-    if robot is not None:
-        demonstrations = _as_recorded_on(robot, demonstrations, source)
-    validate(demonstrations, str(source), None if robot is None else robot.limits)
-    return demonstrations
+    where = str(source)
+    data = _read(source, robot, options)
+    actions = options.get("actions", "known")
+    if actions != "known" and any(one.action is None for one in data.demonstrations.episodes):
+        raise UserError(f"{source} has no 'action' for the columns of its states.")
+    if robot is None:
+        demonstrations = _without_robot(data, actions, source)
+        validate(demonstrations, where)
+        check_rate(demonstrations, where)
+        return demonstrations
+    told = Translation(
+        units=options.get("units", ()),
+        joints=options.get("joints", ()),
+        gripper=options.get("gripper"),
+        recorded_on=options.get("recorded_on"),
+        actions=actions,
+        clip_rad=options.get("clip_rad", 0.0),
+    )
+    demonstrations = translate(data, robot, told, where)
+    validate(demonstrations, where, robot.limits)
+    check_rate(demonstrations, where)
+    warning = speed_warning(demonstrations, robot, where)
+    if not warning:
+        return demonstrations
+    record = dict(demonstrations.import_record)
+    record["warning"] = "; ".join(filter(None, (record.get("warning"), warning)))
+    return replace(demonstrations, import_record=record)
 
 
 def import_to(
-    source: Path,
-    destination: Path,
-    robot: Robot | None = None,
-    *,
-    rate_hz: float | None = None,
-    task: str | None = None,
-    actions: Literal["known", "joint_velocity"] = "known",
+    source: Path, destination: Path, robot: Robot | None = None, **options: Unpack[ImportOptions]
 ) -> Demonstrations:
     """`import_demonstrations`, then `write_dataset`; on any error nothing is at ``destination``.
 
@@ -73,47 +113,57 @@ def import_to(
         UserError: see those two.
     """
     check_vacant(destination)
-    demonstrations = import_demonstrations(source, robot, rate_hz=rate_hz, task=task, actions=actions)
+    demonstrations = import_demonstrations(source, robot, **options)
     write_dataset(demonstrations, destination)
     return demonstrations
 
 
-def _read(
-    source: Path,
-    robot: Robot | None,
-    rate_hz: float | None,
-    task: str | None,
-    actions: Literal["known", "joint_velocity"],
-) -> Demonstrations:
+def _without_robot(data: SourceData, actions: ActionChoice, source: Path) -> Demonstrations:
+    """All columns as joints in rad, where that can be so."""
+    given = data.demonstrations
+    if not data.in_rad and is_so_arm(given.robot):
+        raise UserError(f"{source} was recorded on {given.robot!r}, not in rad: name the robot with --robot.")
+    kept = "velocity" in (actions.removeprefix("joint_"), data.actions)
+    if kept:
+        return given
+    return replace(given, episodes=tuple(replace(one, action=None) for one in given.episodes))
+
+
+def _read(source: Path, robot: Robot | None, options: ImportOptions) -> SourceData:
+    rate_hz = options.get("rate_hz")
     if rate_hz is not None and not 0 < rate_hz < float("inf"):
         raise UserError(f"The sampling rate is {rate_hz:g} Hz; it must be a finite number above zero.")
     start, size = _beginning(source)
     if start is None:
-        return read_lerobot(source, actions)
+        return _at_rate(read_lerobot(source), rate_hz)
     if not start:
         raise UserError(f"{source} is an empty file.")
     for magic, what in FOREIGN.items():
         if start.startswith(magic):
             raise UserError(f"{source} is {what}.")
     with bounded_memory(str(source), size):
-        return _read_file(source, start, robot, rate_hz, task, actions)
+        return _read_file(source, start, robot, options)
 
 
-def _read_file(
-    source: Path,
-    start: bytes,
-    robot: Robot | None,
-    rate_hz: float | None,
-    task: str | None,
-    actions: Literal["known", "joint_velocity"],
-) -> Demonstrations:
+def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportOptions) -> SourceData:
+    rate_hz, task = options.get("rate_hz"), options.get("task")
     if start.startswith(b"PK"):
-        return read_npz(source, rate_hz, task)
+        return SourceData(read_npz(source, rate_hz, task), "NumPy archive", in_rad=True)
     if start.startswith(b"\x89HDF\r\n\x1a\n"):
-        return read_robomimic(source, rate_hz, task, actions)
+        known = options.get("actions", "known") != "joint_velocity"
+        read = read_robomimic(source, rate_hz, task, "known" if known else "joint_velocity")
+        return SourceData(read, "robomimic HDF5", in_rad=True)
     if source.suffix.lower() in {".npz", ".hdf5", ".h5"}:
         raise UserError(f"{source} does not hold what its name says; it is truncated or damaged.")
-    return read_csv(source, () if robot is None else robot.joint_names, rate_hz, task)
+    names = () if robot is None or options.get("joints") else robot.joint_names
+    return SourceData(read_csv(source, names, rate_hz, task), "CSV", in_rad=True)
+
+
+def _at_rate(data: SourceData, rate_hz: float | None) -> SourceData:
+    """The same with a rate that the user states."""
+    if rate_hz is None:
+        return data
+    return replace(data, demonstrations=replace(data.demonstrations, rate_hz=rate_hz))
 
 
 def _beginning(source: Path) -> tuple[bytes | None, int]:
@@ -125,25 +175,3 @@ def _beginning(source: Path) -> tuple[bytes | None, int]:
         raise UserError(f"{source} cannot be read: {error.strerror or error}.") from error
     with opened(source, MAX_FILE_BYTES) as stream:
         return stream.read(16), os.fstat(stream.fileno()).st_size
-
-
-def _as_recorded_on(robot: Robot, demonstrations: Demonstrations, source: Path) -> Demonstrations:
-    """The demonstrations under the robot's name and the names of its joints."""
-    names = demonstrations.joint_names
-    if len(names) != robot.dof:
-        raise UserError(
-            f"{source}: the states have {len(names)} joints, but the robot {robot.name} has {robot.dof}; "
-            "choose the robot that was recorded."
-        )
-    if set(names) == set(robot.joint_names) and names != robot.joint_names:
-        raise UserError(
-            f"{source}: the joints are in the order {', '.join(names)}, "
-            f"but the robot {robot.name} has them in the order {', '.join(robot.joint_names)}; reorder them."
-        )
-    return replace(
-        demonstrations,
-        robot=robot.name,
-        joint_names=robot.joint_names,
-        end_effector=robot.end_effector,
-        limits=robot.stated_limits,
-    )

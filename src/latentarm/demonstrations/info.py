@@ -21,6 +21,9 @@ from latentarm.untrusted.documents import read_object
 from latentarm.untrusted.opening import is_missing
 
 CODEBASE_VERSION: Final = "v3.0"
+OLDER_VERSIONS: Final = ("v2.0", "v2.1")
+"""Layouts that can be imported, see `layout_v2`."""
+
 STATE: Final = "observation.state"
 ACTION: Final = "action"
 MAX_RATE_HZ: Final = 1e9
@@ -72,6 +75,7 @@ class Info:
         goals: the discrete goals.
         end_effector: site, body or link of the robot's model file, or None.
         limits: what was stated of the robot's limits, or None.
+        version: of the layout, such as ``v3.0``.
         native: whether this package laid the dataset out (its actions are joint velocities then).
         chunk_files: files in one chunk folder.
         data_file_mb: size at which a data file is followed by the next.
@@ -88,6 +92,7 @@ class Info:
     goals: tuple[Goal, ...] = ()
     end_effector: str | None = None
     limits: StatedLimits | None = None
+    version: str = CODEBASE_VERSION
     native: bool = True
     chunk_files: int = CHUNK_FILES
     data_file_mb: int = DATA_FILE_MB
@@ -181,10 +186,11 @@ def read_info(root: Path) -> Info:
         raise UserError(f"{root} is not a dataset: it has no {INFO_PATH}.")
     mapping = read_object(path)
     version = _field(mapping, "codebase_version", str, path)
-    if not version.startswith("v3."):
+    version = f"v{version.removeprefix('v')}"
+    if not version.startswith(("v3.", *OLDER_VERSIONS)):
         raise UserError(
-            f"{path}: the dataset is of LeRobot layout {version}, not {CODEBASE_VERSION}; "
-            "convert it with LeRobot first."
+            f"{path}: the dataset is of LeRobot layout {version}; {CODEBASE_VERSION} and"
+            f" {' and '.join(OLDER_VERSIONS)} can be read: convert it with LeRobot first."
         )
     ours = mapping.get("latentarm")
     robot = mapping.get("robot_type")
@@ -207,9 +213,10 @@ def read_info(root: Path) -> Info:
         goals=_read_goals(ours, path),
         end_effector=_read_end_effector(ours, path),
         limits=_read_limits(ours, path),
-        native=isinstance(ours, dict),
+        version=version,
+        native=isinstance(ours, dict) and version not in OLDER_VERSIONS,
         chunk_files=max(_count(mapping, "chunks_size", path), 1),
-        data_file_mb=_count(mapping, "data_files_size_in_mb", path),
+        data_file_mb=0 if version in OLDER_VERSIONS else _count(mapping, "data_files_size_in_mb", path),
         import_record=_read_import_record(ours, path),
         provenance=_read_provenance(ours, path),
     )

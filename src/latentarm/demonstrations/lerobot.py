@@ -1,44 +1,58 @@
-"""Importing datasets that LeRobot (layout v3.0) or `write_dataset` wrote."""
+"""Importing datasets that LeRobot (layouts v2.0, v2.1 and v3.0) or `write_dataset` wrote."""
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
 
-from latentarm.demonstrations.info import read_info
+from latentarm.demonstrations.info import ACTION, OLDER_VERSIONS, STATE, Info, read_info
+from latentarm.demonstrations.layout_v2 import read_episodes_v2
 from latentarm.demonstrations.reader import read_episodes
-from latentarm.errors import UserError
+from latentarm.demonstrations.source import ActionKind, SourceData
 from latentarm.types import Demonstrations
 
 
-def read_lerobot(source: Path, actions: Literal["known", "joint_velocity"] = "known") -> Demonstrations:
-    """Read a dataset of the LeRobotDataset v3.0 layout.
+def read_lerobot(source: Path) -> SourceData:
+    """Read a dataset of a LeRobotDataset layout.
 
-    ``observation.state`` must hold joint positions in rad. Every other vector of floats is kept;
-    pictures, video, text and whole numbers are left out. The layout does not say what an action
-    is, and in most datasets it is a joint position: the actions of a dataset that another program
-    wrote are left out unless the caller vouches for them.
+    Every vector of floats is kept; pictures, video, text and whole numbers are left out. The layout does
+    not say in which unit positions are nor what an action is; columns called ``*.pos``, as LeRobot's own
+    robots have them, are target positions.
 
     Args:
         source: the dataset's folder.
-        actions: ``"known"`` keeps actions only of datasets that say they are joint velocities,
-            ``"joint_velocity"`` keeps them all.
 
     Raises:
-        UserError: the folder is no such dataset, or a damaged one, or the actions that the caller
-            vouches for are missing.
+        UserError: the folder is no such dataset, or a damaged one.
     """
     info = read_info(source)
-    episodes = read_episodes(source, info)
-    if actions == "joint_velocity" and any(episode.action is None for episode in episodes):
-        raise UserError(f"{source} has no feature 'action' of floats to take joint velocities from.")
-    if actions == "known" and not info.native:
+    episodes = (read_episodes_v2 if info.version in OLDER_VERSIONS else read_episodes)(source, info)
+    kind = _actions(info)
+    if kind is None:
         episodes = tuple(replace(episode, action=None) for episode in episodes)
-    return Demonstrations(
-        episodes=episodes,
-        rate_hz=info.rate_hz,
-        joint_names=info.joint_names,
-        robot=info.robot,
-        goals=info.goals,
-        end_effector=info.end_effector,
-        limits=info.limits,
+    return SourceData(
+        Demonstrations(
+            episodes=episodes,
+            rate_hz=info.rate_hz,
+            joint_names=info.joint_names,
+            robot=info.robot,
+            goals=info.goals,
+            end_effector=info.end_effector,
+            limits=info.limits,
+            import_record=info.import_record,
+        ),
+        layout="dataset of this package" if info.native else f"LeRobot {info.version}",
+        in_rad=info.native,
+        actions=kind or "unknown",
     )
+
+
+def _actions(info: Info) -> ActionKind | None:
+    """What the actions are; None where they are not about the columns of the states."""
+    if info.native:
+        return "velocity"
+    names = {feature.name: feature.names for feature in info.features}
+    widths = {feature.name: feature.width for feature in info.features}
+    if widths.get(ACTION) != widths[STATE]:
+        return None
+    commanded = names[ACTION] or ()
+    positions = commanded == names[STATE] and all(name.endswith(".pos") for name in commanded)
+    return "position" if commanded and positions else "unknown"

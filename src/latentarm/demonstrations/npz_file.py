@@ -2,9 +2,9 @@
 
 Keys: ``q`` (N, n) joint positions, rad; ``episode_ends`` (E,) exclusive end of each episode;
 ``rate_hz`` (). Optional: ``timestamp`` (N,) s, ``action`` (N, n) joint velocities meant as actions,
-rad/s, ``dq`` (N, n) measured velocities, ``tau`` (N, n) measured torques, and ``gripper_toggles``
-(G,) samples after which the gripper opened or closed. Measured velocities are noisy and are never
-taken for actions.
+rad/s, ``joint_names`` (n,) and ``robot`` () as text, ``dq`` (N, n) measured velocities, ``tau`` (N, n)
+measured torques, and ``gripper_toggles`` (G,) samples after which the gripper opened or closed. Measured
+velocities are noisy and are never taken for actions.
 """
 
 import lzma
@@ -30,6 +30,7 @@ FEATURES: Final = {"dq": "observation.velocity", "tau": "observation.effort"}
 MAX_ARRAYS: Final = 100
 """In one archive."""
 
+TEXTS: Final = ("joint_names", "robot")
 GRIPPER_FEATURE: Final = "observation.gripper_toggled"
 
 
@@ -79,7 +80,21 @@ def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None
         )
         for start, end in zip([0, *ends[:-1]], ends, strict=True)
     )
-    return Demonstrations(episodes=episodes, rate_hz=rate, joint_names=default_joint_names(q.shape[1]))
+    return Demonstrations(
+        episodes=episodes,
+        rate_hz=rate,
+        joint_names=_joint_names(arrays, q.shape[1], source),
+        robot="" if "robot" not in arrays else str(arrays["robot"].reshape(-1)[0]),
+    )
+
+
+def _joint_names(arrays: dict[str, NDArray[np.generic]], dof: int, source: Path) -> tuple[str, ...]:
+    if "joint_names" not in arrays:
+        return default_joint_names(dof)
+    names = tuple(str(name) for name in arrays["joint_names"].reshape(-1))
+    if len(names) != dof:
+        raise UserError(f"{source}: 'joint_names' has {len(names)} names, but 'q' has {dof} columns.")
+    return names
 
 
 def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
@@ -127,7 +142,7 @@ def _declared_count(archive: zipfile.ZipFile, member: zipfile.ZipInfo, source: P
         header_bytes = stream.tell()
     if dtype.hasobject:
         raise UserError(f"{source}: the array '{key}' holds pickled objects, which are never opened.")
-    if dtype.kind not in "fiu":
+    if dtype.kind not in ("U" if key in TEXTS else "fiu") or (key in TEXTS and 0 in shape):
         raise UserError(f"{source}: the array '{key}' holds {dtype}, not plain numbers.")
     count = math.prod(shape)
     if min(shape, default=0) < 0 or header_bytes + count * dtype.itemsize != member.file_size:

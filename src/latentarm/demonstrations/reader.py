@@ -87,7 +87,7 @@ def _read_committed(root: Path, info: Info) -> tuple[Episode, ...]:
         same = (chunk[first:] == chunk[first]) & (file[first:] == file[first])
         stop = info.episodes if same.all() else first + int(np.argmin(same))
         path = root / DATA_PATTERN.format(chunk_index=int(chunk[first]), file_index=int(file[first]))
-        episodes += _read_file(path, info, first, length[first:stop].tolist(), tasks[first:stop])
+        episodes += read_file(path, info, first, length[first:stop].tolist(), tasks[first:stop])
     return tuple(episodes)
 
 
@@ -100,10 +100,21 @@ def _texts(column: Any, path: Path) -> list[list[str]]:
     return [list(map(str, entry)) if isinstance(entry, list) else [str(entry)] for entry in entries]
 
 
-def _read_file(
+def read_file(
     path: Path, info: Info, first: int, lengths: Sequence[int], tasks: Sequence[str]
 ) -> list[Episode]:
-    """The episodes from ``first`` on that lie in one data file."""
+    """The episodes from ``first`` on that lie in one data file.
+
+    Args:
+        path: the file.
+        info: what the dataset's ``meta/info.json`` says.
+        first: number of its first episode.
+        lengths: samples in each of its episodes.
+        tasks: what was done in each.
+
+    Raises:
+        UserError: the file is missing, damaged or too large, or an episode is not all there.
+    """
     widths = {feature.name: feature.width for feature in info.features} | {"timestamp": 1}
     table = read_table(path, [*widths, "episode_index", "frame_index"])
     index, frame = (integer_column(table, name, path) for name in ("episode_index", "frame_index"))

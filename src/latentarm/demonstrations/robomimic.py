@@ -71,7 +71,16 @@ def read_robomimic(
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, OverflowError) as error:
         raise UserError(f"{source} is not a whole HDF5 file; it is truncated or damaged.") from error
     width = episodes[0].state.shape[1]
-    return Demonstrations(episodes=episodes, rate_hz=rate, joint_names=default_joint_names(width))
+    return Demonstrations(
+        episodes=episodes, rate_hz=rate, joint_names=default_joint_names(width), robot=_robot(arguments)
+    )
+
+
+def _robot(arguments: Mapping[str, Any]) -> str:
+    """What the environment calls its robot; "" where it does not say."""
+    robots = _nested(arguments, "env_kwargs", "robots")
+    listed = cast(list[object], robots) if isinstance(robots, list) else [robots]
+    return " and ".join(dict.fromkeys(name for name in listed if isinstance(name, str)))
 
 
 def _group(parent: h5py.Group, name: str, source: Path) -> h5py.Group:

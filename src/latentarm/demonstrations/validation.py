@@ -17,6 +17,9 @@ from latentarm.types import Demonstrations, Episode, FloatArray, Goal
 LIMIT_TOLERANCE_RAD: Final = 0.01
 """How far past a joint limit a state may lie: encoder offsets and compliance, 0.6 degrees."""
 
+CLIP_HINT_RAD: Final = 0.2
+"""Calibrations of one kind of arm differ by less; what is further outside has another reason."""
+
 RESERVED_FEATURES: Final = frozenset(
     {
         "action",
@@ -193,6 +196,10 @@ def _check_limits(state: FloatArray, joint_names: tuple[str, ...], limits: Joint
     above = state - limits.upper
     below = limits.lower - state
     excess = np.maximum(above, below)
+    hint = ""
+    if excess.max() < CLIP_HINT_RAD:
+        most = np.ceil(100.0 * excess.max()) / 100.0
+        hint = f", or pass --clip-rad {most:g} to move such samples to the limit"
     for sample, joint in np.argwhere(excess > LIMIT_TOLERANCE_RAD)[:1]:
         side, bound = (
             ("above its upper", limits.upper[joint])
@@ -201,7 +208,7 @@ def _check_limits(state: FloatArray, joint_names: tuple[str, ...], limits: Joint
         )
         raise UserError(
             f"{where}, sample {sample}: joint {joint_names[joint]} is at {state[sample, joint]:.4f} rad, "
-            f"{side} limit of {bound:.4f} rad; check the robot, the units (rad) and the order of the joints."
+            f"{side} limit of {bound:.4f} rad; check the robot, the units and the order of the joints{hint}."
         )
 
 

@@ -1,0 +1,60 @@
+"""Whether the robot that a file names is the one that somebody means."""
+
+import re
+from pathlib import Path
+from typing import Final
+
+from latentarm.robots.robot import Robot
+
+SO_ARMS: Final = ("so100", "so101", "soarm100", "soarm101")
+"""What files call the arms whose positions LeRobot records in degrees or in -100 to 100."""
+
+_ALIASES: Final = {
+    "franka": "panda",
+    "frankaemika": "panda",
+    "frankaemikapanda": "panda",
+    "frankapanda": "panda",
+    "mountedpanda": "panda",
+    "onthegroundpanda": "panda",
+    "kinova3": "gen3",
+    "soarm100": "so100",
+    "soarm101": "so101",
+}
+_ROLES: Final = re.compile(r"follower|leader|robot|arm$")
+
+
+def key_of(name: str) -> str:
+    """A robot's name without case, separators and its role: ``so101_follower`` is ``so101``."""
+    plain = re.sub(r"[^a-z0-9]", "", name.lower())
+    key = _ROLES.sub("", plain) or plain
+    return _ALIASES.get(key, key)
+
+
+def is_so_arm(name: str) -> bool:
+    """Whether a file says that it was recorded on an SO-100 or SO-101."""
+    return key_of(name) in {key_of(arm) for arm in SO_ARMS}
+
+
+def may_be(named: str, robot: Robot) -> bool:
+    """Whether what a file calls its robot can be this one.
+
+    Args:
+        named: the file's word, such as ``UR5e`` or ``so101_follower``, or the path of a model.
+        robot: compared by its name in the catalogue, or by its file's, folder's and model's name.
+    """
+    if named == robot.name:
+        return True
+    path = Path(robot.name)
+    model = re.search(r'<mujoco model="([^"]*)"', robot.mjcf)
+    known = {run for one in (path.stem, path.parent.name, model[1] if model else "") for run in _runs(one)}
+    return key_of(Path(named).stem if "/" in named else named) in known
+
+
+def _runs(name: str) -> set[str]:
+    """The keys of all words of a name that stand together: of ``so101_new_calib`` also ``so101``."""
+    words = re.findall(r"[a-z0-9]+", name.lower())
+    return {
+        key_of("".join(words[start:end]))
+        for start in range(len(words))
+        for end in range(start + 1, len(words) + 1)
+    }

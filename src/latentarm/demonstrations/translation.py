@@ -1,0 +1,272 @@
+"""From a file's columns and units to a robot's joints in rad, with a record of what was decided."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final, Literal, final
+
+import numpy as np
+
+from latentarm.demonstrations.columns import Columns, find_columns
+from latentarm.demonstrations.robot_names import is_so_arm, may_be
+from latentarm.demonstrations.source import SourceData
+from latentarm.demonstrations.units import Conversion, Unit, conversion, parse_units
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
+from latentarm.types import Demonstrations, Episode, FloatArray
+
+GRIPPER_OPENING: Final = "observation.gripper_opening"
+"""Share of the gripper's opening, from 0 (closed) to 1 (open)."""
+
+GRIPPER: Final = "observation.gripper"
+"""The gripper as it was recorded, where its unit is unknown."""
+
+ACTION_GRIPPER: Final = "action.gripper"
+TARGET_POSITION: Final = "action.target_position"
+"""Joint positions that were commanded, rad."""
+
+PER_JOINT: Final = ("observation.velocity", "observation.effort", "action.human", "action.assist")
+LEROBOT_SUFFIX: Final = ".pos"
+"""Ends the names of positions of LeRobot's own arms: degrees or -100 to 100, the gripper 0 to 100."""
+
+_OLD_PREFIX: Final = "main_"
+_MOST_RAD: Final = 2.0 * np.pi
+_READABLE: Final = 1e6
+
+ActionChoice = Literal["known", "joint_velocity", "joint_position"]
+
+
+@final
+@dataclass(frozen=True)
+class Translation:
+    """What the user says of a file.
+
+    Attributes:
+        units: see `parse_units`.
+        joints: see `find_columns`.
+        gripper: the gripper's column.
+        recorded_on: the file's word for the robot, to take its robot for the one that is meant.
+        actions: what the file's actions are.
+        clip_rad: positions that lie up to this far outside a joint's limits are moved to the limit, rad.
+    """
+
+    units: Sequence[str] = ()
+    joints: Sequence[str] = ()
+    gripper: str | None = None
+    recorded_on: str | None = None
+    actions: ActionChoice = "known"
+    clip_rad: float = 0.0
+
+
+def translate(data: SourceData, robot: Robot, told: Translation, source: str) -> Demonstrations:
+    """A file's demonstrations as the robot's own.
+
+    Args:
+        data: what the file holds.
+        robot: that was recorded.
+        told: what the user says of the file.
+        source: the file, for messages and the record.
+
+    Returns:
+        States and actions of the robot's joints in its order, rad and rad/s; the gripper, and positions
+        that were commanded, as features of their own; and what was decided in ``import_record``.
+
+    Raises:
+        UserError: the file names another robot, or its columns or units cannot be known.
+    """
+    given = data.demonstrations
+    _check_robot(given.robot, robot, told.recorded_on, source)
+    if not 0.0 <= told.clip_rad < np.pi:
+        raise UserError(f"--clip-rad is {told.clip_rad:g}: give a distance from 0 to pi.")
+    names = given.joint_names
+    columns = find_columns(names, robot.joint_names, told.joints, told.gripper, source)
+    motors = is_so_arm(given.robot) or any(names[index].endswith(LEROBOT_SUFFIX) for index in columns.joints)
+    if motors and not told.joints and all(names[index].startswith(_OLD_PREFIX) for index in columns.joints):
+        raise UserError(
+            f"{source}: LeRobot named columns {_OLD_PREFIX}* before June 2025, when zero was the arm"
+            f" stretched out"
+            " and not the middle of each range: convert the positions first, then name the columns"
+            " with --joints."
+        )
+    units, how = _units(data, robot, told, columns, motors, source)
+    turned = conversion(
+        units, robot.joint_names, robot.limits, robot.chain.slide, full_turn=is_so_arm(given.robot)
+    )
+    kind = data.actions if told.actions == "known" else told.actions.removeprefix("joint_")
+    episodes = tuple(_episode(one, columns, turned, kind, motors) for one in given.episodes)
+    episodes, clipped = _clipped(episodes, robot, told.clip_rad)
+    record = {
+        "source": f"{source}, {data.layout}",
+        "recorded on": given.robot or "not said",
+        "joints": f"{_pairs(robot, names, columns)} ({columns.how})",
+        "units": how,
+        "gripper": "none" if columns.gripper is None else _gripper_text(names[columns.gripper], motors),
+        "columns left out": ", ".join(names[index] for index in columns.dropped) or "none",
+        "actions": _action_text(given.episodes[0], kind) if given.episodes else "none",
+    }
+    if clipped:
+        record["clipped"] = clipped
+    warning = _radians_after_all(given, columns, units, robot)
+    if warning:
+        record["warning"] = warning
+    return replace(
+        given,
+        episodes=episodes,
+        robot=robot.name,
+        joint_names=robot.joint_names,
+        end_effector=robot.end_effector,
+        limits=robot.stated_limits,
+        import_record=record,
+    )
+
+
+def _check_robot(named: str, robot: Robot, recorded_on: str | None, source: str) -> None:
+    if recorded_on is not None and recorded_on != named:
+        raise UserError(f"{source} says that it was recorded on {named!r}, not on {recorded_on!r}.")
+    if named and recorded_on is None and not may_be(named, robot):
+        raise UserError(
+            f"{source} says that it was recorded on {named!r}, and the robot is {robot.name}: name"
+            f" the robot that was"
+            f" recorded with --robot, or pass --recorded-on {named} if these are the same."
+        )
+
+
+def _units(
+    data: SourceData, robot: Robot, told: Translation, columns: Columns, motors: bool, source: str
+) -> tuple[list[Unit], str]:
+    """A unit for each joint, and how they are known."""
+    general, single = parse_units(told.units, robot.joint_names)
+    missing = any(joint not in single for joint in robot.joint_names)
+    if missing and general is None and motors and not data.in_rad:
+        raise UserError(
+            f"{source} does not say its units, and LeRobot records these joints in degrees or from"
+            f" -100 to 100 alike:"
+            " say which with --units deg (recorded with use_degrees=true) or --units normalized."
+        )
+    units: list[Unit] = [single.get(joint, general or "rad") for joint in robot.joint_names]
+    if told.units:
+        how = "as told"
+    else:
+        how = "said by the file or its layout" if data.in_rad else "assumed: the file does not say"
+    _check_degrees(data.demonstrations, columns, units, robot, source)
+    named = (
+        units[0]
+        if len(set(units)) == 1
+        else ", ".join(map("=".join, zip(robot.joint_names, units, strict=True)))
+    )
+    text = f"{named} ({how}), stored in rad"
+    if "normalized" in units:
+        text += "; -100 to 100 is assumed to be each joint's range in the robot's model"
+        if is_so_arm(data.demonstrations.robot):
+            text += ", and a full turn for wrist_roll, as LeRobot calibrates it"
+    return units, text
+
+
+def _positions(demonstrations: Demonstrations, columns: Columns) -> FloatArray | None:
+    """(N, n), as recorded; None where they are not readable as numbers, which validation refuses later."""
+    states = [one.state for one in demonstrations.episodes if one.state.ndim == 2]
+    if not states:
+        return None
+    values = np.concatenate(states)[:, columns.joints]
+    readable = values.size > 0 and bool(np.all(np.abs(values) < _READABLE))
+    return values if readable else None
+
+
+def _check_degrees(
+    demonstrations: Demonstrations, columns: Columns, units: Sequence[Unit], robot: Robot, source: str
+) -> None:
+    """Refuse degrees that are taken for radians."""
+    values = _positions(demonstrations, columns)
+    hinges = np.array([unit == "rad" for unit in units]) & ~robot.chain.slide
+    if values is None or not hinges.any():
+        return
+    outside = robot.limits.violation(values)[:, hinges].max()
+    in_degrees = robot.limits.violation(np.where(hinges, np.deg2rad(values), values))[:, hinges].max()
+    if outside > 1.0 and in_degrees < 0.2:
+        raise UserError(
+            f"{source}: positions go up to {np.abs(values[:, hinges]).max():.4g}, far outside the"
+            f" joint limits in rad and"
+            " within them in degrees: pass --units deg."
+        )
+
+
+def _radians_after_all(
+    demonstrations: Demonstrations, columns: Columns, units: Sequence[Unit], robot: Robot
+) -> str:
+    """A warning where positions that are said to be in degrees look like radians; "" elsewhere."""
+    values = _positions(demonstrations, columns)
+    if values is None or any(unit == "rad" for unit in units):
+        return ""
+    largest = float(np.abs(values).max())
+    if (
+        largest < _MOST_RAD
+        and robot.limits.violation(values).max() < 0.2
+        and np.ptp(values, axis=0).max() > 0.1
+    ):
+        return f"no position is beyond {largest:.3g}: they look like rad, not {units[0]}"
+    return ""
+
+
+def _episode(episode: Episode, columns: Columns, turned: Conversion, kind: str, motors: bool) -> Episode:
+    if episode.state.ndim != 2:
+        return episode  # validation says what is wrong
+    joints, width = list(columns.joints), episode.state.shape[1]
+    extras = dict(episode.extras)
+    for name in PER_JOINT:
+        if name in extras and extras[name].ndim == 2 and extras[name].shape[1] == width:
+            picked = extras[name][:, joints]
+            extras[name] = picked if name == "observation.effort" else turned.rates(picked)
+    opening = 0.01 if motors else 1.0
+    if columns.gripper is not None:
+        extras[GRIPPER_OPENING if motors else GRIPPER] = opening * episode.state[:, [columns.gripper]]
+    action = episode.action
+    if action is not None and kind != "unknown" and action.ndim == 2 and action.shape[1] == width:
+        if columns.gripper is not None and np.isfinite(action[:, columns.gripper]).all():
+            extras[ACTION_GRIPPER] = opening * action[:, [columns.gripper]]
+        if kind == "position":
+            extras[TARGET_POSITION] = turned.positions(action[:, joints])
+        action = turned.rates(action[:, joints]) if kind == "velocity" else None
+    elif kind != "velocity":
+        action = None
+    return replace(episode, state=turned.positions(episode.state[:, joints]), action=action, extras=extras)
+
+
+def _clipped(episodes: tuple[Episode, ...], robot: Robot, clip_rad: float) -> tuple[tuple[Episode, ...], str]:
+    """Positions a little outside the limits moved to them, and how many these were."""
+    if clip_rad == 0.0:
+        return episodes, ""
+    limits = robot.limits
+    moved, largest, kept = 0, 0.0, list[Episode]()
+    for episode in episodes:
+        excess = limits.violation(episode.state)
+        near = (excess > 0.0) & (excess <= clip_rad)
+        moved += int(near.any(axis=1).sum())
+        largest = max(largest, float(excess[near].max(initial=0.0)))
+        state = np.where(near, np.clip(episode.state, limits.lower, limits.upper), episode.state)
+        kept.append(replace(episode, state=state))
+    text = f"{moved} samples were up to {largest:.3f} rad outside the joint limits and were moved to them"
+    return tuple(kept), text if moved else "no sample was outside the joint limits"
+
+
+def _pairs(robot: Robot, names: Sequence[str], columns: Columns) -> str:
+    return ", ".join(
+        joint if joint == names[index] else f"{joint} = {names[index]}"
+        for joint, index in zip(robot.joint_names, columns.joints, strict=True)
+    )
+
+
+def _gripper_text(column: str, motors: bool) -> str:
+    if motors:
+        return f"{column}, 0 to 100, stored as {GRIPPER_OPENING} from 0 (closed) to 1 (open)"
+    return f"{column}, stored as {GRIPPER} as recorded: its unit is not known"
+
+
+def _action_text(first: Episode, kind: str) -> str:
+    if first.action is None:
+        return "none in the file that could be joint velocities; taken from the states' displacements"
+    if kind == "velocity":
+        return "joint velocities, rad/s"
+    if kind == "position":
+        return (
+            f"target positions, stored as {TARGET_POSITION}; velocities come from the states' displacements"
+        )
+    return "left out: the file does not say what they are (--actions takes your word); taken from the states"
