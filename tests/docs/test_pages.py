@@ -2,15 +2,14 @@
 
 import re
 import shlex
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from latentarm.cli import main
-from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.tasks.table_top import TableTop
-from latentarm.types import Command, StepRecord
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -68,23 +67,9 @@ def test_every_command_of_the_pages_is_one_of_ours() -> None:
             assert line.startswith(("make ", "latentarm ", "python scripts/")), f"{page.name}: {line}"
 
 
-def record_on_the_page(journal: Path) -> None:
-    """A journal with one short episode, as `latentarm teleop` leaves it."""
-    robot = TableTop().robot
-    recorder = Recorder(journal)
-    recorder.begin_episode(EpisodeHeader(robot.name, robot.joint_names, 100.0, "stab"))
-    for tick in range(5):
-        still, stick = np.zeros(robot.dof), np.zeros(2)
-        recorder.record(
-            StepRecord(
-                0.01 * tick, robot.home, stick, stick, still, still, 0.0, np.zeros(0), 0, Command(still, 0.05)
-            )
-        )
-    recorder.end_episode()
-    recorder.close()
-
-
-def test_readme_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_readme_commands_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, record_on_the_page: Callable[[Path], None]
+) -> None:
     monkeypatch.chdir(tmp_path)
     demonstrations = TableTop().demonstrate(6, np.random.default_rng(0))
     states = [episode.state[::4] for episode in demonstrations.episodes]

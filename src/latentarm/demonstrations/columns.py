@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
+from latentarm.demonstrations.info import default_joint_names
 from latentarm.errors import UserError
 
 _GRIPPERS: Final = frozenset({"gripper", "finger", "fingers", "jaw", "hand"})
@@ -121,6 +122,8 @@ def _column(column: str, names: Sequence[str], source: str) -> int:
 def _by_name(
     names: Sequence[str], candidates: Sequence[int], joints: Sequence[str], source: str
 ) -> tuple[list[int], str]:
+    if len(candidates) == len(joints) and tuple(names) == default_joint_names(len(names)):
+        return list(candidates), "the file names no columns: its order is taken for base to tool"
     place = {names[index]: index for index in candidates}
     if all(joint in place for joint in joints):
         return [place[joint] for joint in joints], "by name"

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Final, Literal, final
 
 import numpy as np
@@ -29,6 +30,9 @@ LEROBOT_SUFFIX: Final = ".pos"
 """Ends the names of positions of LeRobot's own arms: degrees or -100 to 100, the gripper 0 to 100."""
 
 _OLD_PREFIX: Final = "main_"
+_EARLIER: Final = "before: "
+"""Marks what an earlier import decided, in a dataset of ours that is imported again."""
+
 _MOST_RAD: Final = 2.0 * np.pi
 _READABLE: Final = 1e6
 
@@ -95,7 +99,7 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
     episodes = tuple(_episode(one, columns, turned, kind, motors) for one in given.episodes)
     episodes, clipped = _clipped(episodes, robot, told.clip_rad)
     record = {
-        "source": f"{source}, {data.layout}",
+        "source": f"{Path(source).name}, {data.layout}",
         "recorded on": given.robot or "not said",
         "joints": f"{_pairs(robot, names, columns)} ({columns.how})",
         "units": how,
@@ -105,6 +109,10 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
     }
     if clipped:
         record["clipped"] = clipped
+    record |= {
+        subject if subject.startswith(_EARLIER) else f"{_EARLIER}{subject}": decision
+        for subject, decision in given.import_record.items()
+    }
     warning = _radians_after_all(given, columns, units, robot)
     if warning:
         record["warning"] = warning
