@@ -8,6 +8,7 @@ from latentarm.demonstrations.reader import read_file
 from latentarm.errors import UserError
 from latentarm.types import Episode
 from latentarm.untrusted.documents import MOST_BYTES, parse_object
+from latentarm.untrusted.memory import bounded_memory
 from latentarm.untrusted.opening import read_bytes
 
 EPISODES_PATH: Final = Path("meta/episodes.jsonl")
@@ -28,9 +29,18 @@ def read_episodes_v2(root: Path, info: Info) -> tuple[Episode, ...]:
     lines = read_bytes(path, MOST_BYTES).splitlines()
     if len(lines) != info.episodes:
         raise UserError(f"{path} is damaged: it lists {len(lines)} episodes and not {info.episodes}.")
+    size = sum(file.lstat().st_size for file in root.glob("data/*/*.parquet"))
+    with bounded_memory(str(root), size):
+        return _read(root, info, lines)
+
+
+def _read(root: Path, info: Info, lines: list[bytes]) -> tuple[Episode, ...]:
+    path = root / EPISODES_PATH
     episodes: list[Episode] = []
     for number, line in enumerate(lines):
         length, task = _entry(parse_object(line, f"{path}, line {number + 1},"), number, path)
+        if not 0 < length <= info.frames:
+            raise UserError(f"{path} is damaged: episode {number} cannot have {length} samples.")
         name = DATA_PATTERN.format(chunk=number // info.chunk_files, episode=number)
         episodes += read_file(root / name, info, number, [length], [task])
     if sum(len(episode.timestamp) for episode in episodes) != info.frames:
