@@ -4,6 +4,7 @@ import re
 import shlex
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ def test_every_sample_imports(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     record_on_the_page(Path("teleop/journal.sqlite"))
-    names: dict[str, object] = {}
+    names: dict[str, Any] = {}
     for language, block in re.findall(r"```(python|sh)\n(.*?)```", PAGE.read_text(), flags=re.DOTALL):
         if language == "python":
             exec(block, names)  # noqa: S102 - the page is ours
