@@ -89,13 +89,13 @@ def test_a_run_knows_its_dataset(run: Run, workplace: Path, recording: Path) -> 
     run("import", recording, "eat")
     run("train", "--demonstrations", "eat", "--model", "pca", "--out", "mine")
     Path("eat").rename("moved")
-    code, _, err = run("evaluate", "mine")
+    code, _, err = run("evaluate", "mine", "--folds", 0)
     assert code == 2
     assert "--demonstrations" in err
-    assert run("evaluate", "mine", "--demonstrations", "moved")[0] == 0
+    assert run("evaluate", "mine", "--demonstrations", "moved", "--folds", 0)[0] == 0
 
     run("drive", "--jobs", 1, "--drives", 1, "--time-limit-s", 2, "--record", "other")
-    code, _, err = run("evaluate", "mine", "--demonstrations", "other")
+    code, _, err = run("evaluate", "mine", "--demonstrations", "other", "--folds", 0)
     assert code == 2
     assert "not the dataset" in err
 

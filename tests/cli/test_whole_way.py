@@ -34,7 +34,7 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
     assert figures(out)["held_out_loss"] is not None
     assert "latentarm evaluate runs/eat-cae" in err
 
-    code, out, _ = run("evaluate", "runs/eat-cae", "--json")
+    code, out, _ = run("evaluate", "runs/eat-cae", "--json", "--folds", 0)
     assert code == 0
     printed = figures(out)
     expected = {
@@ -101,7 +101,7 @@ def test_the_same_seed_gives_the_same_figures(run: Run, workplace: Path, recordi
         run(
             "train", "--demonstrations", "eat", "--model", "scl", "--epochs", 1, "--seed", seed, "--out", name
         )
-        outs.append(run("evaluate", name, "--json")[1])
+        outs.append(run("evaluate", name, "--json", "--folds", 0)[1])
     assert figures(outs[0]) == figures(outs[1])
 
 
@@ -152,7 +152,7 @@ def test_a_decoder_that_sees_the_belief_is_trained_and_driven(run: Run, workplac
     write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), Path("table"))
     command = ("train", "--demonstrations", "table", "--model", "scl", "--epochs", 1, "--seeds", 1)
     assert run(*command, "--context", "state_belief")[0] == 0
-    assert run("evaluate", "runs/table-scl")[0] == 0
+    assert run("evaluate", "runs/table-scl", "--folds", 0)[0] == 0
     code, out, _ = run("drive", "runs/table-scl", "--jobs", 1, "--drives", 1, "--time-limit-s", 3, "--json")
     assert code in (0, 1)
     # The controller worked: an input was given and the tool moved.

@@ -60,6 +60,7 @@ def train(
     For example: latentarm train --demonstrations pour --model cae --latent-dim 2 --seeds 5
     """
     from latentarm.models.training import epoch_bar
+    from latentarm.runs.advice import model_advice
     from latentarm.runs.training import TrainConfig, train_run
 
     config = TrainConfig(
@@ -83,9 +84,10 @@ def train(
         resume=resume,
     )
     with epoch_bar(not json and sys.stderr.isatty()) as report:
-        rows = train_run(config, report)
+        training = train_run(config, report)
 
     write_options(config.out, "train")
-    show(rows, json)
+    show(training.rows, json)
+    say(model_advice(model, training.episodes), json)
     say(f"The run is {config.out}/; next: latentarm evaluate {config.out}", json)
     return 0

@@ -134,7 +134,7 @@ def _train(config: DemoConfig, model: str) -> list[Row]:
     )
     with epoch_bar(config.bars) as report:
         train_run(chosen, report)
-    return evaluate_run(run, run, config.seed)
+    return evaluate_run(run, run, config.seed, folds=0).rows
 
 
 def _conditions(task: TableTop, config: DemoConfig) -> list[tuple[Subject, list[Setup]]]:

@@ -7,59 +7,13 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
 from rich.table import Table
 
+from latentarm.metrics.measures import label_of
 from latentarm.style import LOOKS
 from latentarm.types import Row
 
 BORDER = 3  # characters between two columns
 ABSENT = "–"
 ROUNDING = 1e-12  # what is smaller is the rounding of a zero
-
-NAMES: dict[str, str] = {
-    "error": "error",
-    "noise_free_error": "noise-free error",
-    "error_percent_of_pca": "error, of PCA's",
-    "noise_free_error_percent_of_pca": "noise-free error, of PCA's",
-    "controllability_m": "reaches goals to",
-    "controllability_percent_of_pca": "reaches goals to, of PCA's",
-    "controllability_state_error": "joint error then",
-    "planned_reach_m": "reaches goals to, planning",
-    "start_distance_m": "distance at the start",
-    "r2": "R², mean of axes",
-    "r2_local": "local R², mean of axes",
-    "disentanglement_deg": "angle between axes",
-    "drift": "drift, of motion",
-    "reversal": "left after z then -z",
-    "motion_turn": "joints' turn per stick's",
-    "motion_turn_p95": "joints' turn per stick's, 95 %",
-    "tool_turn": "tool's turn per stick's",
-    "tool_turn_p95": "tool's turn per stick's, 95 %",
-    "success_rate": "success rate",
-    "time_s": "time",
-    "input_magnitude": "input magnitude",
-    "mode_switches": "mode switches",
-    "path_length": "path length",
-    "path_length_percent_of_vae": "path length, of the VAE's",
-    "path_over_straight": "path, over the straight way",
-    "undone_share": "share of the path undone",
-    "demonstrated_undone_share": "the same of the demonstration",
-    "progress": "share of the waypoints reached",
-    "final_distance": "final distance",
-    "relative_alignment_error": "relative alignment error",
-    "answers": "answers until asking stops",
-    "final_distance_percent_of_vae": "final distance, of the VAE's",
-    "final_state_error": "final state error",
-    "final_tool_error": "final tool error",
-    "arrival_rate": "share that arrives",
-    "extra_time_percent": "time of LA beyond LA+SA's",
-    "final_belief": "belief in the true goal at the end",
-    "goal_entropy": "entropy over goals",
-    "goal_open_share": "steps with the true goal open",
-    "certified_share_eq_14": "steps certified by equation 14",
-    "certified_share_eq_13": "steps certified by equation 13",
-    "certified_share_known_help": "steps certified, help known",
-}
-
-AXIS_NAMES: dict[str, str] = {"r2": "R²", "r2_local": "local R²"}
 
 
 def format_figure(mean: float | None, sd: float | None) -> str:
@@ -94,10 +48,7 @@ def series_name(row: Row) -> str:
 
 def measure_name(row: Row) -> str:
     """A measure's name and unit as people read them."""
-    measure, _, axis = row.measure.rpartition("_axis_")
-    name = NAMES.get(row.measure, row.measure)
-    if measure in AXIS_NAMES and axis.isdigit():
-        name = f"{AXIS_NAMES[measure]}, axis {int(axis) + 1}"
+    name = label_of(row.measure)
     return name if row.unit in ("", "1") else f"{name} ({row.unit})"
 
 

@@ -14,8 +14,8 @@ from latentarm.alignment.profile import Profile, model_fingerprint, save_profile
 from latentarm.alignment.training import FitConfig
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
+from latentarm.metrics.measures import unit_of
 from latentarm.metrics.results import as_document
-from latentarm.metrics.summary import unit_of
 from latentarm.models.catalogue import load_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind

@@ -80,15 +80,25 @@ class TrainConfig:
         check_seed(self.seed)
 
 
-def train_run(config: TrainConfig, report: Report | None = None) -> list[Row]:
+@dataclass(frozen=True)
+class Training:
+    """What came of a training.
+
+    Attributes:
+        rows: the normalised loss on the episodes that stopped the training: mean and SD over seeds.
+        episodes: of the dataset.
+    """
+
+    rows: list[Row]
+    episodes: int
+
+
+def train_run(config: TrainConfig, report: Report | None = None) -> Training:
     """Train a model on a dataset and write its run folder.
 
     Args:
         config: what was asked for.
         report: is told after each epoch.
-
-    Returns:
-        The normalised loss on the episodes that stopped the training: mean and SD over seeds.
 
     Raises:
         UserError: the dataset cannot be read or lacks what is asked for, the folder holds a run
@@ -135,7 +145,8 @@ def train_run(config: TrainConfig, report: Report | None = None) -> list[Row]:
         warnings.warn(warning.message, stacklevel=2)
     loss = model.held_out_loss_
     spread = float(loss.std(ddof=1)) if len(loss) > 1 else None
-    return [Row("train", "held_out_loss", "1", float(loss.mean()), spread, len(loss), model=config.model)]
+    row = Row("train", "held_out_loss", "1", float(loss.mean()), spread, len(loss), model=config.model)
+    return Training([row], len(demonstrations.episodes))
 
 
 def _model(config: TrainConfig) -> LatentActionModel:

@@ -13,9 +13,8 @@ from latentarm.experiments.alignment.preset import PRESETS, Curves, Drives, Pres
 from latentarm.experiments.alignment.run import MADE, MODELS, TASKS, AlignmentConfig, run_alignment
 from latentarm.experiments.alignment.summary import summary_tables
 from latentarm.experiments.studies.folder import CONFIG
+from latentarm.metrics.measures import MEASURES
 from latentarm.metrics.results import read_results
-from latentarm.metrics.summary import UNITS
-from latentarm.metrics.table import NAMES
 
 TINY = Preset(
     "tiny",
@@ -55,7 +54,7 @@ def test_every_model_condition_and_noise_has_its_row(done):
     assert read_results(out / "results.json") == rows
     assert {row.study for row in rows} == {"alignment"}
     assert {row.task for row in rows} == {"plane"}
-    assert {row.measure for row in rows} <= set(UNITS) & set(NAMES)
+    assert {row.measure for row in rows} <= set(MEASURES)
     of = {(row.model, row.condition, row.measure): row for row in rows}
     for model in MODELS:
         assert of[model, "the encoder's own choice", "relative_alignment_error"].n == 1

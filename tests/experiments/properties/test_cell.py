@@ -9,7 +9,7 @@ import pytest
 
 from latentarm.experiments.properties.cell import Cell, measure_cell
 from latentarm.experiments.properties.preset import Preset
-from latentarm.metrics.summary import UNITS
+from latentarm.metrics.measures import MEASURES
 from latentarm.models.catalogue import MODELS
 from latentarm.tasks.planar.catalogue import MOTIONS
 
@@ -50,7 +50,7 @@ def assert_same(first, second):
 def test_every_task_has_its_measures_one_figure_a_seed(task):
     figures = measure_cell(cell(task)).figures
     assert set(figures) == ALWAYS | OF_TASK[task]
-    assert set(figures) <= set(UNITS)
+    assert set(figures) <= set(MEASURES)
     for name, values in figures.items():
         assert values.shape == ((1,) if name == "start_distance_m" else (TINY.seeds,))
         if (task, name) != ("circle", "controllability_percent_of_pca"):

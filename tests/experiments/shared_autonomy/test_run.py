@@ -17,9 +17,8 @@ from latentarm.experiments.shared_autonomy.run import (
     run_shared_autonomy,
 )
 from latentarm.experiments.studies.folder import CONFIG
+from latentarm.metrics.measures import MEASURES
 from latentarm.metrics.results import read_results
-from latentarm.metrics.summary import UNITS
-from latentarm.metrics.table import NAMES
 
 TINY = Preset(
     "tiny",
@@ -58,8 +57,7 @@ def test_every_method_and_person_has_every_measure(done):
     of = {(row.model, row.condition, row.measure): row for row in rows}
     measures = {row.measure for row in rows if row.condition == "LA, beta 75"}
     assert {"final_state_error", "final_tool_error", "time_s", "arrival_rate", "success_rate"} <= measures
-    assert measures <= set(UNITS)
-    assert measures <= set(NAMES)
+    assert measures <= set(MEASURES)
     for model in MODELS:
         for method in METHODS:
             for person in TINY.people:

@@ -20,8 +20,8 @@ from latentarm.experiments.alignment.drives_comparison import (
 from latentarm.experiments.alignment.drives_learning import TURN_RAD
 from latentarm.experiments.studies.pages import listed, markdown_table
 from latentarm.experiments.studies.statistics import LEVEL, format_p
-from latentarm.metrics.summary import unit_of
-from latentarm.metrics.table import ABSENT, NAMES, format_figure
+from latentarm.metrics.measures import label_of, unit_of
+from latentarm.metrics.table import ABSENT, format_figure
 from latentarm.style import look_of
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.tolerance import REACHED_ANGLE, REACHED_DISTANCE
@@ -99,7 +99,7 @@ def _table(result: DrivesResult) -> str:
 def _name(measure: str) -> str:
     own = {REACHED: "reaches the goal", DONE: "stabs or scoops, too", TIME: "time to the goal"}
     unit = unit_of(measure)
-    return own.get(measure, NAMES[measure]) + ("" if unit == "1" else f" ({unit})")
+    return own.get(measure, label_of(measure)) + ("" if unit == "1" else f" ({unit})")
 
 
 def _line(result: DrivesResult, condition: str) -> list[str]:

@@ -9,9 +9,9 @@ from typing import Any, Final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from latentarm.demonstrations.folds import Fold
 from latentarm.demonstrations.split import select_episodes
 from latentarm.experiments.compare.datasets import Dataset
-from latentarm.experiments.compare.folds import Fold
 from latentarm.experiments.compare.measures import measure_model
 from latentarm.experiments.compare.preset import Preset
 from latentarm.experiments.compare.streams import Stream

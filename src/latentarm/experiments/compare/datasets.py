@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from latentarm.demonstrations.dataset import read_dataset
+from latentarm.demonstrations.folds import Fold, make_folds
 from latentarm.errors import UserError
-from latentarm.experiments.compare.folds import Fold, make_folds
 from latentarm.experiments.compare.streams import Stream
 from latentarm.experiments.studies.streams import sequence
 from latentarm.robots.catalogue import load_recorded_robot

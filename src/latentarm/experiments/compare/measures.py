@@ -1,4 +1,4 @@
-"""What is measured of one model on one fold, and what each figure means."""
+"""What is measured of one model on one fold."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,6 +10,7 @@ import numpy as np
 from latentarm.experiments.compare.preset import Preset
 from latentarm.metrics.controllability import ReachConfig
 from latentarm.metrics.evaluation import EvaluationConfig, measure
+from latentarm.metrics.measures import MEASURES
 from latentarm.metrics.samples import moving_episodes, spread_contexts, start_goal_pairs
 from latentarm.metrics.shooting import ShootingConfig, planned_reach
 from latentarm.metrics.turning import turning
@@ -20,34 +21,31 @@ from latentarm.types import Demonstrations, FloatArray
 JUMPY: Final = 95.0
 """The percentile of turning that is reported beside the mean."""
 
-MEASURES: Final[dict[str, str]] = {
-    "error_percent_of_pca": "mean squared error of encode-decode on held-out pairs, in % of the plane (PCA,"
-    " two components) through all other episodes' actions. Actions are taken before noise is added to the"
-    " states.",
-    "noise_free_error_percent_of_pca": "the same on clean states.",
-    "drift": "how fast the arm is told to move with the stick at rest, ‖φ(0, s)‖, in how fast the person"
-    " moved it, ‖φ(z, s)‖; both means over held-out pairs.",
-    "reversal": "z for one sample, then −z for one: what is left, ‖s₂ − s₀‖ over ‖s₁ − s₀‖; both means over"
-    " held-out pairs. 0 is a motion undone, 1 leaves as much to go back as the motion was long.",
-    "r2_local_axis_0": "R² of one line, over 25 held-out states and 21 values in [−1, 1] of this axis alone,"
-    " of the tool's signed way in a sample against z; each state has its own forward, where its +z leads.",
-    "r2_local_axis_1": "as for axis 1.",
-    "r2_axis_0": "the same with one forward for all states, as the paper has it.",
-    "r2_axis_1": "as for axis 1.",
-    "disentanglement_deg": "angle between the lines along which the two axes move the tool, mean over states;"
-    " 90° is best.",
-    "controllability_m": "a greedy solver with z in [−1, 1], looking one sample ahead, has 6 s to bring the"
-    " tool where it was in the same held-out episode 3 s later; least distance.",
-    "controllability_state_error": "‖s − s_goal‖ over all joints at that moment.",
-    "planned_reach_m": "the same asked of a solver that plans all 6 s at once, in pieces of half a second,"
-    " for some of the pairs and seeds; never worse than greedy on the same pairs.",
-    "motion_turn": "the stick, pushed all the way, is led around in 36 turns of 10°: by what angle the"
-    " arm's joint velocity turns, in that of the stick. A linear isometry has 1.",
-    "motion_turn_p95": "95th percentile over held-out states and turns: how jumpy the decoder is.",
-    "tool_turn": "the same of the tool's velocity.",
-    "tool_turn_p95": "95th percentile of these.",
-}
-"""Every measure in the order of the tables, and what it says."""
+MEASURED: Final = (
+    "error_percent_of_pca",
+    "noise_free_error_percent_of_pca",
+    "drift",
+    "reversal",
+    "r2_local_axis_0",
+    "r2_local_axis_1",
+    "r2_axis_0",
+    "r2_axis_1",
+    "disentanglement_deg",
+    "controllability_m",
+    "controllability_state_error",
+    "planned_reach_m",
+    "motion_turn",
+    "motion_turn_p95",
+    "tool_turn",
+    "tool_turn_p95",
+)
+"""Every measure in the order of the tables."""
+
+
+def meaning_of(name: str) -> str:
+    """What a measure says; of a second axis, that it is as for the first."""
+    base, _, axis = name.rpartition("_axis_")
+    return f"as for axis {axis}" if axis not in ("", "0") and base else MEASURES[base or name].definition
 
 
 @dataclass(frozen=True)
@@ -55,7 +53,7 @@ class Measured:
     """What was measured.
 
     Attributes:
-        figures: measure -> (S,), in the order of `MEASURES`; the planned one for its first seeds alone.
+        figures: measure -> (S,), in the order of `MEASURED`; the planned one for its first seeds alone.
         measure_s: how long it took without planning, s.
         plan_s: how long planning took for one decoder, s.
     """
@@ -109,7 +107,7 @@ def measure_model(
         )
         figures["planned_reach_m"] = planned.mean(axis=1)
     plan_s = (perf_counter() - began) / max(seeds, 1)
-    return Measured({name: figures[name] for name in MEASURES if name in figures}, measure_s, plan_s)
+    return Measured({name: figures[name] for name in MEASURED if name in figures}, measure_s, plan_s)
 
 
 def _turning(model: LatentActionModel, contexts: FloatArray, robot: Robot) -> dict[str, FloatArray]:

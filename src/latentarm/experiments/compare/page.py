@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from latentarm.experiments.compare.folds import FEW, MANY
-from latentarm.experiments.compare.measures import MEASURES
+from latentarm.demonstrations.folds import FEW, MANY
+from latentarm.experiments.compare.measures import MEASURED, meaning_of
 from latentarm.experiments.compare.preset import REFERENCE, Preset
 from latentarm.experiments.compare.rows import condition
 from latentarm.experiments.compare.tables import CORNER, drive_table, page_table, target_table
 from latentarm.experiments.compare.targets import Verdict
 from latentarm.experiments.studies.pages import listed
 from latentarm.files import write_text
-from latentarm.metrics.table import NAMES
+from latentarm.metrics.measures import label_of
 from latentarm.metrics.undone import NEAR_M
 from latentarm.style import look_of
 from latentarm.types import Row
@@ -111,14 +111,8 @@ Means of {ours}, on each dataset under each noise: {met} of {len(content.verdict
 
 
 def _definitions() -> str:
-    lines = [f"- *{_name(measure)}*: {meaning}" for measure, meaning in MEASURES.items()]
+    lines = [f"- *{label_of(name)}*: {meaning_of(name)}." for name in MEASURED]
     return "What is measured, on the held-out episodes of each fold:\n\n" + "\n".join(lines) + "\n"
-
-
-def _name(measure: str) -> str:
-    named, _, axis = measure.rpartition("_axis_")
-    local = "local R²" if named == "r2_local" else "R²"
-    return f"{local}, axis {int(axis) + 1}" if axis.isdigit() else NAMES[measure]
 
 
 def _fewer(content: Content) -> str:

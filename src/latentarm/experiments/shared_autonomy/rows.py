@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 from latentarm.experiments.shared_autonomy.cell import WITH_HELP, WITHOUT_HELP, CellResult, Outcome
 from latentarm.experiments.shared_autonomy.intervals import Interval, interval
 from latentarm.experiments.shared_autonomy.paper import EXTRA_TIME, with_paper
-from latentarm.metrics.summary import unit_of
+from latentarm.metrics.measures import unit_of
 from latentarm.types import FloatArray, Row
 
 STUDY: Final = "shared_autonomy"

@@ -10,8 +10,8 @@ from latentarm.experiments.shared_autonomy.preset import Preset
 from latentarm.experiments.shared_autonomy.rows import RECONSTRUCTION, Figure
 from latentarm.experiments.studies.pages import markdown_table
 from latentarm.experiments.studies.statistics import format_p
-from latentarm.metrics.summary import unit_of
-from latentarm.metrics.table import ABSENT, NAMES, format_figure
+from latentarm.metrics.measures import label_of, unit_of
+from latentarm.metrics.table import ABSENT, format_figure
 from latentarm.style import look_of
 
 Found = dict[tuple[str, str, str, str], Figure]
@@ -26,7 +26,7 @@ def by_place(found: Iterable[Figure]) -> Found:
 def measure_of(name: str) -> str:
     """A measure and its unit as people read them."""
     unit = unit_of(name)
-    return NAMES[name] if unit == "1" else f"{NAMES[name]} ({unit})"
+    return label_of(name) if unit == "1" else f"{label_of(name)} ({unit})"
 
 
 def people_table(found: Found, task: str, model: str, people: Sequence[str], measure: str) -> str:

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.demonstrations.folds import make_folds
 from latentarm.errors import UserError
-from latentarm.experiments.compare.folds import make_folds
 
 
 @given(st.integers(2, 40), st.integers(2, 8), st.integers(0, 99))
