@@ -155,7 +155,15 @@ def test_no_reading_of_the_joints_gets_an_unsafe_command_out(arm, scripted, read
 
 
 @pytest.mark.parametrize(
-    "u", [np.array([np.nan, 0.0]), np.array([1e308, 0.0]), np.array([0.0, np.inf]), np.zeros(3), "up"]
+    "u",
+    [
+        np.array([np.nan, 0.0]),
+        np.array([1e308, 0.0]),
+        np.array([0.0, np.inf]),
+        np.array([0.0, -2.1]),
+        np.zeros(3),
+        "up",
+    ],
 )
 def test_an_unusable_input_stops_with_a_reason(arm, scripted, u):
     step = Step(arm, scripted(np.full((2, 7), 0.4)), SafetyConfig())

@@ -67,3 +67,15 @@ def test_speeds_bound_the_whole_surface(body):
             moved = chain.points(after, link, local) - chain.points(before, link, local)
             fastest = np.linalg.norm(moved / 2e-6, axis=1).max()
             assert fastest <= max(bound[index], bound[index + body.count]) + 1e-7
+            lever = np.maximum(body.surface_lever[index], body.surface_lever[index + body.count])
+            assert fastest <= lever @ np.abs(velocity) + 1e-7
+
+
+def test_levers_of_the_surface_hold_for_each_joint_alone(body):
+    """The point farthest from the axis moves fastest, by the radius faster than the segment at most."""
+    for q in random_states(body, 50, 8):
+        jacobian = Placement(body, q).jacobian
+        fastest = np.linalg.norm(jacobian[:, :3], axis=1) + body.radius * np.linalg.norm(
+            jacobian[:, 3:], axis=1
+        )
+        assert (body.surface_lever + 1e-9 >= fastest.T).all()
