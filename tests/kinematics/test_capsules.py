@@ -86,7 +86,7 @@ def test_distance_is_symmetric(p1, q1, p2, q2):
         (([0, 0, 0], [1, 0, 0], [0.5, 0, 0], [3, 0, 0]), 0.0),  # on one line, overlapping
         (([0, 0, 0], [1, 0, 0], [0, 2, 0], [1, 2, 0]), 2.0),  # parallel
         (([0, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0]), 0.0),  # the same
-        (([0, 0, 0], [5e-4, 0, 0], [3e-4, 1e-3, 0], [3e-4, 1e-3, 0]), 1e-3),  # half a millimetre is no point yet
+        (([0, 0, 0], [5e-4, 0, 0], [3e-4, 1e-3, 0], [3e-4, 1e-3, 0]), 1e-3),  # half a millimetre long
     ],
 )
 def test_known_distances(segments, expected):
