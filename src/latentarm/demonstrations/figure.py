@@ -62,7 +62,7 @@ def draw_trajectories(demonstrations: Demonstrations, path: Path, limits: JointL
 
 def _title(demonstrations: Demonstrations) -> str:
     samples = sum(len(episode.timestamp) for episode in demonstrations.episodes)
-    robot = f"{demonstrations.robot}: " if demonstrations.robot else ""
+    robot = f"{Path(demonstrations.robot).stem}: " if demonstrations.robot else ""
     episodes = len(demonstrations.episodes)
     counted = "1 episode" if episodes == 1 else f"{episodes} episodes"
     return f"{robot}{counted}, {samples:,} samples at {demonstrations.rate_hz:g} Hz"
