@@ -165,7 +165,7 @@ def wrong_values(path: Path, rng: Rng) -> None:
                 "held_out_loss",
             ):
                 places.append((section, key))
-            if isinstance(value, dict):
+            if isinstance(value, dict) and key != "parameters":  # which no reader uses whole
                 waiting.append(value)
     section, key = places[rng.integers(len(places))]
     bad = [
@@ -203,7 +203,7 @@ def changed(name: str, command: list[str], *ways: Callable[[Path, Rng], None]) -
 
 def parquet_bomb(path: Path, rng: Rng) -> None:
     table = pq.read_table(path)
-    text = pa.array([["x" * 1_000_000] * int(rng.integers(400, 4000))] * len(table))
+    text = pa.array([["x" * 1_000_000] * int(rng.integers(100, 250))] * len(table))
     names = [name for name in table.column_names if name != "tasks"]
     bomb = (
         pa.table({**{name: table.column(name) for name in names}, "tasks": text.slice(0, len(table))})
@@ -526,7 +526,7 @@ READERS: dict[str, tuple[int, Make]] = {
 def run_one(reader: str, make: Make, seed: int, start: Path, place: Path) -> Outcome:
     """Make one hostile file in a copy of the base, and run the command on it in a child."""
     shutil.copytree(start, place)
-    words = make(np.random.default_rng(seed), place)
+    words = _made(make, seed, place)
     kind = words[words.index("#") + 1]
     command = words[: words.index("#")]
     before = _listing(place)
@@ -551,6 +551,20 @@ def run_one(reader: str, make: Make, seed: int, start: Path, place: Path) -> Out
         )
     shutil.rmtree(place)
     return outcome
+
+
+def _made(make: Make, seed: int, place: Path) -> list[str]:
+    """Make the file in a child of its own: what that takes must not count as the reader's."""
+    reading, writing = os.pipe()
+    child = os.fork()
+    if not child:
+        os.write(writing, json.dumps(make(np.random.default_rng(seed), place)).encode())
+        os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading) as stream:
+        words = json.load(stream)
+    assert os.waitpid(child, 0)[1] == 0
+    return words
 
 
 def _be_the_command(command: list[str], place: Path, said: int, ran: int) -> None:

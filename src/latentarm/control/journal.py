@@ -126,10 +126,13 @@ def _opened(path: Path) -> Generator[sqlite3.Connection]:
     for file in beside:
         if not is_missing(file):
             check_file(file, _MOST_BYTES)
+    # A journal that is being written has a log beside it. Without one SQLite is told that nobody writes, or
+    # it would leave a log of its own beside a damaged file.
+    mode = "mode=ro&immutable=1" if is_missing(beside[0]) else "mode=ro"
     try:
         with (
             bounded_memory(f"The journal {path}", path.stat().st_size + _size(beside[0])),
-            closing(sqlite3.connect(f"file:{_quoted(path)}?mode=ro", uri=True)) as database,
+            closing(sqlite3.connect(f"file:{_quoted(path)}?{mode}", uri=True)) as database,
         ):
             database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _MOST_CELL_BYTES)
             database.execute("PRAGMA trusted_schema = OFF")
