@@ -122,7 +122,7 @@ def evaluate_run(
     }
     if not is_missing(out / "metrics.json"):
         earlier = read_object(out / "metrics.json").get("about")
-        refuse_other_results(out / "metrics.json", earlier if isinstance(earlier, dict) else {}, about)
+        refuse_other_results(out / "metrics.json", out, earlier if isinstance(earlier, dict) else {}, about)
     config = EvaluationConfig()
     own = measure(model, demonstrations, run.held_out, robot, rng=np.random.default_rng(seed), config=config)
     subject = Subject("evaluate", task=run.demonstrations.name, model=run.model)

@@ -55,7 +55,7 @@ class Study:
             )
         if earlier is not None and any((out / name).exists() for name in self.made):
             wanted = cast(dict[str, object], json.loads(json.dumps(about)))
-            refuse_other_results(out, {key: earlier.get(key) for key in wanted}, wanted)
+            refuse_other_results(out, out, {key: earlier.get(key) for key in wanted}, wanted)
         if out.exists():
             for name in self.made:
                 (out / name).unlink(missing_ok=True)
@@ -74,11 +74,14 @@ class Study:
         return config if config.get("study") == self.name else None
 
 
-def refuse_other_results(out: Path, earlier: Mapping[str, object], wanted: Mapping[str, object]) -> None:
+def refuse_other_results(
+    results: Path, out: Path, earlier: Mapping[str, object], wanted: Mapping[str, object]
+) -> None:
     """Refuse to replace results by those of another run.
 
     Args:
-        out: what holds the results.
+        results: the file or folder that holds the results.
+        out: the folder that was asked for.
         earlier: what they depend on, as read from JSON.
         wanted: what the new ones would depend on, as it would be read from JSON.
 
@@ -92,8 +95,8 @@ def refuse_other_results(out: Path, earlier: Mapping[str, object], wanted: Mappi
         )
         more = f" and {len(names) - 2} more differences" if len(names) > 2 else ""
         raise UserError(
-            f"{out} holds the results of another run ({shown}{more}): choose another folder with --out,"
-            f" such as {vacant_name(out)}, or remove it."
+            f"{results} holds the results of another run ({shown}{more}): choose another folder with --out,"
+            f" such as {vacant_name(out)}, or remove {results}."
         )
 
 
