@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from latentarm.files import written_whole
 from latentarm.untrusted.terminal import visible
@@ -87,9 +87,16 @@ def tidy(axes: "Axes") -> None:
     axes.yaxis.label.set_fontsize(FONT_SIZE)
 
 
+MOST_CHARACTERS: Final = 40
+"""Of a name in a figure; of a longer one the beginning is shown."""
+
+
 def literal(text: str) -> str:
-    """Text that others wrote, for a figure: Matplotlib would read what is between dollars as a formula."""
-    return visible(text).replace("$", "\\$")
+    """Text that others wrote, for a figure: shortened, and without formulas between dollars."""
+    shown = visible(text)
+    if len(shown) > MOST_CHARACTERS:
+        shown = f"{shown[: MOST_CHARACTERS - 1]}…"
+    return shown.replace("$", "\\$")
 
 
 def look_of(name: str) -> Look:

@@ -43,7 +43,11 @@ def test_a_simulated_person_is_asked_and_drives(run: Run, trained: Path) -> None
     assert "latentarm drive mine --profile ada" in out
 
     folder = trained / "profiles" / "ada"
-    assert {path.name for path in folder.iterdir()} == {"config.json", "alignment.safetensors"}
+    assert {path.name for path in folder.iterdir()} == {
+        "config.json",
+        "alignment.safetensors",
+        "align-options.yaml",
+    }
     config = json.loads((folder / "config.json").read_text())
     assert (config["name"], config["person"]) == ("ada", "simulated person")
     assert np.array(config["answers"]["u"]).shape == (4, 2)

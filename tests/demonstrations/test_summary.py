@@ -1,4 +1,3 @@
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -62,7 +61,7 @@ def test_the_figure_is_a_picture(tmp_path: Path, panda_limits: JointLimits, dof:
     states = np.linspace(-0.5, 0.5, 20)[:, None] * np.ones(dof)
     one = Demonstrations((Episode(states, np.arange(20) / 10),), 10.0, tuple("abcdefg"[:dof]))
     part = {name: getattr(panda_limits, name)[:dof] for name in ("lower", "upper", "velocity")}
-    limits = replace(panda_limits, **part, acceleration=np.ones(dof), jerk=np.ones(dof))
+    limits = JointLimits(**part, acceleration=np.ones(dof), jerk=np.ones(dof))
     draw_trajectories(one, tmp_path / "with.png", limits)
     draw_trajectories(one, tmp_path / "without.png")
     for path in tmp_path.iterdir():

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from latentarm.experiments.drive_figures import draw_drives, draw_inputs, median_drive
 from latentarm.experiments.simulation import Trace
 from latentarm.metrics.drives import Drive
+from latentarm.metrics.ending import Ending
 from latentarm.tasks.table_top import TableTop
 
 
@@ -15,9 +16,10 @@ def trace(duration_s: float = 2.0, success: bool = True, modes: int = 1) -> Trac
     steps = len(time_s)
     position = np.stack([0.3 + 0.1 * time_s, -0.1 * time_s, 0.5 - 0.1 * time_s], axis=-1)
     return Trace(
-        figures=Drive(success, duration_s, 1.0, modes - 1, 0.5, 0.01),
+        figures=Drive(success, duration_s, 1.0, modes - 1, 0.5, 0.01, 5.0),
         goal=0,
         progress=1.0,
+        ending=Ending("reached", "reached the goal"),
         time_s=time_s,
         position=position,
         input=np.sin(time_s[:, None] + np.arange(2)),

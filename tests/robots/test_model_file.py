@@ -128,7 +128,7 @@ def test_the_end_effector_may_be_left_out_where_there_is_one(written):
         ("<mujoco><worldbody><nonsense/></worldbody></mujoco>", "unrecognized element"),
         (arm('type="nonsense"'), "invalid keyword"),
         (arm('range="57.3 0"'), "Joint 1 may move from 57.3 to 0: its lower limit must be below"),
-        (arm('type="ball"'), "Joint 'j' is a ball joint"),
+        (arm('type="ball"'), "no hinge or slide joint: j can turn or move freely"),
         (arm(more='<geom type="mesh" mesh="gone"/>'), "cannot be used as a robot: .*mesh"),
     ],
 )

@@ -55,14 +55,14 @@ def draw_trajectories(demonstrations: Demonstrations, path: Path, limits: JointL
         figure.legend(
             handles=_key(limits is not None), loc="outside lower center", ncols=3, frameon=False, fontsize=8
         )
-        figure.suptitle(literal(_title(demonstrations)), fontsize=10)
+        figure.suptitle(_title(demonstrations), fontsize=10)
         with written_whole(path) as part:
             figure.savefig(part, format="png")
 
 
 def _title(demonstrations: Demonstrations) -> str:
     samples = sum(len(episode.timestamp) for episode in demonstrations.episodes)
-    robot = f"{Path(demonstrations.robot).stem}: " if demonstrations.robot else ""
+    robot = f"{literal(Path(demonstrations.robot).stem)}: " if demonstrations.robot else ""
     episodes = len(demonstrations.episodes)
     counted = "1 episode" if episodes == 1 else f"{episodes} episodes"
     return f"{robot}{counted}, {samples:,} samples at {demonstrations.rate_hz:g} Hz"

@@ -69,7 +69,9 @@ def choose_end_effector(model: mujoco.MjModel) -> str:
     """
     arm = arm_joints(model)
     if not arm and not finger_joints(model):
-        raise UserError("the model has no hinge or slide joint, so nothing in it can be driven.")
+        others = [_joint_name(model, joint) for joint in range(model.njnt)]
+        only = f": {', '.join(others)} can turn or move freely" if others else ""
+        raise UserError(f"the model has no hinge or slide joint{only}, so nothing in it can be driven.")
     sites = [_moved(model, model.site(i).name, int(model.site_bodyid[i])) for i in range(model.nsite)]
     sites = [site for site in sites if site.joints or site.fingers]
     leaves = [
