@@ -213,7 +213,7 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
 
     page.get_by_role("button", name="Keep it").click()
     arm.wait(lambda: arm.state["profile"] == "ada")
-    assert arm.workshop["profiles"] == ["ada"]
+    arm.wait(lambda: arm.workshop["profiles"] == ["ada"])
     assert [folder.name for folder in (run / "profiles").iterdir()] == ["ada"]
     page.get_by_role("button", name="Settings").click()
     expect(page.get_by_label("Personal alignment")).to_have_value("ada")
