@@ -31,7 +31,7 @@ def test_a_site_that_leaves_joints_unused_is_not_chosen(written):
     assert load_model_file(path, "link5").dof == 6
 
 
-def test_whoever_names_it_gets_it_and_is_told_what_stays_still(written):
+def test_an_explicit_end_effector_is_used_and_idle_joints_are_named(written):
     robot = load_model_file(written(serial("a", "b", "c", site_on=0)), "mark")
     assert (robot.joint_names, robot.still_joints) == (("a",), ("b", "c"))
     assert "1 of 3 joints move mark; these stay still: b, c." in notices(robot)

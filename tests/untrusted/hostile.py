@@ -88,7 +88,7 @@ def base(folder: Path) -> None:
 
 
 def no_file(path: Path, rng: Rng) -> None:
-    """Replace a file by what is none."""
+    """Replace a file by something that is not a regular file."""
     shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
     kind = rng.integers(4)
     if kind == 0:

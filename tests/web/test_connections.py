@@ -1,4 +1,4 @@
-"""Whoever says nothing, or too much, keeps nobody else waiting: a small server with low limits."""
+"""Idle and oversized connections hold up nobody else: a small server with low limits."""
 
 import asyncio
 import ssl

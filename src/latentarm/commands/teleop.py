@@ -49,7 +49,7 @@ def teleop(
 
     def announce(sentence: str) -> None:
         say(sentence, json)
-        sys.stdout.flush()  # whoever reads us through a pipe waits for the address
+        sys.stdout.flush()  # a program that reads a pipe waits for the address
 
     def ready(address: str) -> None:
         write_options(out, "teleop")

@@ -33,7 +33,7 @@ def journals_in(path: Path) -> list[Path]:
     """A journal itself, or the journals of a folder by name: ``teleop`` names them after their time.
 
     Raises:
-        UserError: there is none.
+        UserError: no journal was found.
     """
     if not path.is_dir():
         return [path]

@@ -27,7 +27,7 @@ def choose(
         incomplete: take episodes that were cut short too.
 
     Raises:
-        UserError: a range is none, an episode does not exist, or was cut short and is not wanted so.
+        UserError: a range is invalid, an episode does not exist, or it was cut short and was not asked for.
     """
     numbers = [number for text in ranges for number in _numbers(text, len(recordings), source)]
     if not ranges:

@@ -132,7 +132,7 @@ def with_stated(
         slide: (n,), which of them slide.
 
     Raises:
-        UserError: a joint that is named is none of these, or has figures in rad where it slides.
+        UserError: a joint is unknown, or slides and its limits are given in rad.
     """
     known = list(names)
     figures = {name: np.array(getattr(limits, name)) for name in _FIGURES}

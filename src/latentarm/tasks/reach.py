@@ -44,7 +44,7 @@ class Reach(Task):
         self._robot = robot
         self._count = goals
         self._seed = seed
-        _ = self._goals  # says at once where there are none
+        _ = self._goals  # raises now, not in the first drive, if there are no goals
 
     @property
     def name(self) -> str:

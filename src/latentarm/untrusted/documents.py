@@ -1,7 +1,7 @@
 """JSON that this program may not have written: bounded before it is parsed, strict while it is.
 
 Python's parser builds whatever it is given: 16 MB of ``[],[],`` take 400 MB, ``1e999`` becomes infinite,
-of two equal keys the last one wins, and a deep document can exhaust the stack of whoever walks it later.
+the last of two equal keys wins, and walking a deep document later can exhaust the stack.
 """
 
 import json

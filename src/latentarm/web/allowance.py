@@ -25,7 +25,7 @@ class Allowance:
         self._at_s = now_s()
 
     def spend(self) -> bool:
-        """Take one token; False where there is none."""
+        """Take one token. Returns False if none is left."""
         now_s = self._now_s()
         self._left = min(self._left + (now_s - self._at_s) * RATE, BURST)
         self._at_s = now_s

@@ -151,7 +151,7 @@ def gated(
 
     Args:
         app: from `build_app`.
-        control: stops the arm for whoever posts to `STOP`.
+        control: stops the arm on a POST to `STOP`.
         config: says by which names the page is reached.
         port: that it listens on.
         keys: None on the loopback.

@@ -100,7 +100,7 @@ class Bench:
             self._cancelling = asyncio.create_task(self._cancel(self._job))
 
     def choose_run(self, name: str) -> None:
-        """Try another run, then have it driven; a name that is none of the list is not heard."""
+        """Try another run, then drive it. Names that are not in the list are ignored."""
         run = self._shelf.runs().get(name)
         report = self._states.report
         if run is None:
