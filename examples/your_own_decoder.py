@@ -27,7 +27,7 @@ class BaseAndElbow(la.Controller):
 
 
 robot = la.load_robot("panda")
-arm = la.SimulatedArm(robot, robot.home, dt_s=0.01)
+arm = la.KinematicArm(robot, robot.home, dt_s=0.01)
 step = la.Step(robot, BaseAndElbow(), la.SafetyConfig(), dt_s=0.01)
 step.reset(arm.state())
 for tick in range(150):

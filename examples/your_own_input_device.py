@@ -25,7 +25,7 @@ class Device(la.InputSource):
 
 
 robot = la.load_robot("panda")
-arm, clock = la.SimulatedArm(robot, robot.home, 0.01), la.SimulatedClock()
+arm, clock = la.KinematicArm(robot, robot.home, 0.01), la.SimulatedClock()
 step = la.Step(robot, la.EndEffectorController(robot), la.SafetyConfig())
 joystick = iter([(0.0, 0.0)] * 5 + [(1.0, 0.0)] * 100)  # your device here
 loop = la.ControlLoop(step, arm, Device(joystick), clock, observers=[lambda record: arm.advance()])

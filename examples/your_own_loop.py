@@ -7,7 +7,7 @@ import latentarm as la
 DT_S = 0.01
 
 robot = la.load_robot("panda")
-arm = la.SimulatedArm(robot, robot.home, DT_S)
+arm = la.KinematicArm(robot, robot.home, DT_S)
 step = la.Step(robot, la.EndEffectorController(robot), la.SafetyConfig(), dt_s=DT_S)
 
 # The arm starts disengaged. It takes a neutral input, then an explicit enable.

@@ -23,16 +23,16 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from latentarm.arms.contract import Arm
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
 from latentarm.control.input_port import InputSource
 from latentarm.control.loop import ControlLoop
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.robots.arm import Arm
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.robots.simulated import SimulatedArm
 from latentarm.types import Command, Context, FloatArray, Input, StepRecord
 
 PERIOD_S = 0.01
@@ -91,7 +91,7 @@ class FaultyArm(Arm):
     def __init__(
         self, robot: Robot, state: FloatArray, fault: str, at_s: float, rng: np.random.Generator
     ) -> None:
-        self.plant = SimulatedArm(robot, state, PERIOD_S)
+        self.plant = KinematicArm(robot, state, PERIOD_S)
         self._fault, self._at_s, self._rng = fault, at_s, rng
         self._joint = int(rng.integers(robot.dof))
         self._sign = float(rng.choice([-1.0, 1.0]))

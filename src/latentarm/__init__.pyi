@@ -1,3 +1,5 @@
+from .arms.contract import Arm as Arm
+from .arms.kinematic import KinematicArm as KinematicArm
 from .assistance.belief import Belief as Belief
 from .assistance.blending import ConfidenceAlpha as ConfidenceAlpha
 from .assistance.blending import FixedAlpha as FixedAlpha
@@ -24,9 +26,7 @@ from .models.catalogue import load_model as load_model
 from .models.decoder import load_decoder as load_decoder
 from .models.homogeneous import Homogeneous as Homogeneous
 from .models.linear import SCL as SCL
-from .robots.arm import Arm as Arm
 from .robots.catalogue import load_robot as load_robot
-from .robots.simulated import SimulatedArm as SimulatedArm
 from .runs.folder import read_run as read_run
 from .tasks.table_top import TableTop as TableTop
 from .tasks.task import Task as Task

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.input_port import InputPort, InputSource
 from latentarm.control.loop import ControlLoop
@@ -17,7 +18,6 @@ from latentarm.control.safety.ramp import Ramp
 from latentarm.control.step import Step
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Sphere
-from latentarm.robots.simulated import SimulatedArm
 from latentarm.types import Input, Stop
 
 now_s = itertools.count(step=0.01).__next__
@@ -141,7 +141,7 @@ def give_up(loop):
 
 
 def loop_of(arm, scripted, script, observers=()):
-    simulated = SimulatedArm(arm, arm.home, DT)
+    simulated = KinematicArm(arm, arm.home, DT)
     clock = SimulatedClock([simulated.advance])
     controller = scripted(np.full((1, 7), 0.3))
     step = Step(arm, controller, SafetyConfig(), dt_s=DT)

@@ -6,6 +6,8 @@ import time
 import numpy as np
 import pytest
 
+from latentarm.arms.contract import Arm
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import Clock, MonotonicClock, SimulatedClock
 from latentarm.control.deadlines import DeadlineLog
 from latentarm.control.input_port import InputSource
@@ -13,8 +15,6 @@ from latentarm.control.loop import ControlLoop
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.errors import UserError
-from latentarm.robots.arm import Arm
-from latentarm.robots.simulated import SimulatedArm
 from latentarm.types import Input
 
 MATRIX = np.full((1, 7), 0.2)
@@ -52,7 +52,7 @@ class Stuttering(Clock):
 @pytest.fixture
 def setup(arm, scripted):
     def make(late=None, observers=(), source=None):
-        simulated = SimulatedArm(arm, arm.home, 0.01)
+        simulated = KinematicArm(arm, arm.home, 0.01)
         clock = SimulatedClock([simulated.advance])
         step = Step(arm, scripted(MATRIX), SafetyConfig())
         records = []
@@ -178,7 +178,7 @@ def test_an_observer_that_fails_leaves_the_arm_ramped_to_rest(setup):
 
 
 def test_finish_from_another_thread_ends_a_real_loop(arm, scripted):
-    simulated = SimulatedArm(arm, arm.home, 0.01)
+    simulated = KinematicArm(arm, arm.home, 0.01)
     loop = ControlLoop(Step(arm, scripted(MATRIX), SafetyConfig()), simulated, Stick(), MonotonicClock())
     thread = threading.Thread(target=loop.run)
     thread.start()

@@ -9,8 +9,8 @@ LIGHT = [
     "latentarm.kinematics.rotations",
     "latentarm.robots.limits",
     "latentarm.robots.robot",
-    "latentarm.robots.arm",
-    "latentarm.robots.simulated",
+    "latentarm.arms.contract",
+    "latentarm.arms.kinematic",
 ]
 
 

@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 import pytest
 
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.model_xml import MOST_XML_BYTES
-from latentarm.robots.simulated import SimulatedArm
 from latentarm.types import Command
 
 ARM = """
@@ -29,7 +29,7 @@ def test_a_third_partys_arm_loads_and_can_be_driven(which, tool, dof, request):
     assert 5 <= len(robot.capsules) <= 16
     assert len(robot.self_pairs) <= 40
     # Resolved rates lift the tool straight up.
-    simulated = SimulatedArm(robot, robot.home, 0.02)
+    simulated = KinematicArm(robot, robot.home, 0.02)
     start = robot.chain.forward(robot.home).position
     for _ in range(50):
         rates = np.linalg.pinv(robot.chain.jacobian(simulated.state()))[:, 2] * 0.02

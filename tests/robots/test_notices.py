@@ -3,14 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from latentarm.arms.contract import Arm, check_limits
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.errors import UserError
-from latentarm.robots.arm import Arm, check_limits
 from latentarm.robots.limits import LimitSources
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.notices import assumed_limits, notices
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
-from latentarm.robots.simulated import SimulatedArm
 
 
 class RealArm(Arm):
@@ -54,7 +54,7 @@ def test_a_real_arm_refuses_limits_that_are_assumed(the_panda, ur5e_file):
         UserError, match=r"is a real arm, and its acceleration and jerk of all joints.*--limits"
     ):
         check_limits(RealArm(), ur5e)
-    check_limits(SimulatedArm(ur5e, ur5e.home, 0.01), ur5e)
+    check_limits(KinematicArm(ur5e, ur5e.home, 0.01), ur5e)
     # One figure of one joint is enough.
     sources = LimitSources.same("manufacturer", 7)
     one = replace(sources, jerk=("assumed", *sources.jerk[1:]))

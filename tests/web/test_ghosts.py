@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from latentarm.robots.simulated import SimulatedArm
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.types import Context, Input
 from latentarm.web.ghosts import GhostPaths
 from latentarm.web.setting import PERIOD_S
@@ -22,7 +22,7 @@ def looked(setting, q, mode):
 
 def driven(setting, q, u, mode):
     """Where the tool is after a second of a full deflection, through all safety filters."""
-    step, arm = setting.step(), SimulatedArm(setting.task.robot, q, PERIOD_S)
+    step, arm = setting.step(), KinematicArm(setting.task.robot, q, PERIOD_S)
     step.reset(q)
     step.choose_mode(mode)
     step(Input(np.zeros(2)), 0.0, q, 0.0)
@@ -57,7 +57,7 @@ def test_ghosts_do_not_go_through_the_table(setting):
     for _ in range(12):
         path = np.array(looked(setting, q, index).left)
         assert path[:, 2].min() > 0.0
-        step, arm = setting.step(), SimulatedArm(setting.task.robot, q, PERIOD_S)
+        step, arm = setting.step(), KinematicArm(setting.task.robot, q, PERIOD_S)
         step.reset(q)
         step.choose_mode(index)
         step(Input(np.zeros(2)), 0.0, q, 0.0)

@@ -6,11 +6,11 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import final
 
+from latentarm.arms.contract import Arm, check_limits
 from latentarm.control.clock import Clock
 from latentarm.control.deadlines import DeadlineLog, DeadlineStatistics
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
-from latentarm.robots.arm import Arm, check_limits
 from latentarm.types import StepRecord, Stop
 
 

@@ -13,6 +13,7 @@ from typing import final
 
 import numpy as np
 
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.safety.config import SafetyConfig
@@ -21,7 +22,6 @@ from latentarm.controllers.latent import LatentController
 from latentarm.kinematics.obstacles import Sphere
 from latentarm.models.autoencoders import CVAE
 from latentarm.models.training import epoch_bar
-from latentarm.robots.simulated import SimulatedArm
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Input, Row
@@ -116,7 +116,7 @@ class _TimedStep:
             arbitration=FixedAlpha(),
             dt_s=dt_s,
         )
-        self._arm = SimulatedArm(task.robot, task.robot.home, dt_s)
+        self._arm = KinematicArm(task.robot, task.robot.home, dt_s)
         self._took_s: list[float] = []
         self._step.reset(self._arm.state())
         self._step(Input(np.zeros(2)), 0.0, self._arm.state(), 0.0)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import Arbitration
 from latentarm.assistance.boltzmann import BoltzmannBelief
@@ -18,7 +19,6 @@ from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.operators.catalogue import make_operator
 from latentarm.operators.foresight import Foresight
 from latentarm.operators.planning import PlanningConfig
-from latentarm.robots.simulated import SimulatedArm
 from latentarm.tasks.task import Task, check_not_done
 from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
 
@@ -114,7 +114,7 @@ def simulate(
     task, controller = setup.task, setup.controller
     dt_s = 1.0 / RATE_HZ
     start = task.sample_start(goal, rng)
-    arm = SimulatedArm(task.robot, start, dt_s)
+    arm = KinematicArm(task.robot, start, dt_s)
     step = _step(setup, dt_s)
     operator = make_operator(task.robot, setup.operator, setup.planning, setup.foresight, dt_s)
     remaining = list(task.waypoints(goal, manner))

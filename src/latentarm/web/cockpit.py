@@ -6,13 +6,13 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputPort, InputSource
 from latentarm.control.loop import ControlLoop
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.step import Step
 from latentarm.demonstrations.provenance import provenance_now
-from latentarm.robots.arm import Arm
 from latentarm.types import Context, Input, StepRecord
 from latentarm.web.channel import (
     Channel,

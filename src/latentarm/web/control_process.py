@@ -13,10 +13,10 @@ from typing import Final
 
 from threadpoolctl import threadpool_limits
 
+from latentarm.arms.contract import Arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.loop import ControlLoop
 from latentarm.errors import UserError
-from latentarm.robots.arm import Arm
 from latentarm.untrusted.terminal import one_line
 from latentarm.web.channel import Channel, ChooseProfile, ChooseRun, Reset
 from latentarm.web.cockpit import Cockpit

@@ -2,10 +2,10 @@
 
 from typing import final
 
+from latentarm.arms.contract import Arm
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import Clock
-from latentarm.robots.arm import Arm
 from latentarm.robots.robot import Robot
-from latentarm.robots.simulated import SimulatedArm
 from latentarm.types import Command, FloatArray
 
 
@@ -21,11 +21,11 @@ class LiveArm(Arm):
         clock: the time that it lives in.
 
     Raises:
-        UserError: see `SimulatedArm`.
+        UserError: see `KinematicArm`.
     """
 
     def __init__(self, robot: Robot, state: FloatArray, clock: Clock) -> None:
-        self._arm = SimulatedArm(robot, state, dt_s=1.0)
+        self._arm = KinematicArm(robot, state, dt_s=1.0)
         self._clock = clock
         self._at_s = clock.now_s()
 
@@ -50,7 +50,7 @@ class LiveArm(Arm):
         """See the base class."""
         self._now().stop()
 
-    def _now(self) -> SimulatedArm:
+    def _now(self) -> KinematicArm:
         """The arm as it is by now."""
         now_s = self._clock.now_s()
         if now_s > self._at_s:

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.errors import UserError
-from latentarm.robots.simulated import SimulatedArm
 from latentarm.types import Command
 
 DT = 0.02
@@ -10,7 +10,7 @@ DT = 0.02
 
 @pytest.fixture
 def arm(the_panda):
-    return SimulatedArm(the_panda, the_panda.home, DT)
+    return KinematicArm(the_panda, the_panda.home, DT)
 
 
 def test_it_moves_by_velocity_times_time(arm, the_panda):
@@ -71,16 +71,16 @@ def test_it_does_not_start_outside_its_limits(the_panda):
     start = the_panda.home.copy()
     start[3] = 0.5
     with pytest.raises(UserError, match=r"joint4 at 0\.5"):
-        SimulatedArm(the_panda, start, DT)
+        KinematicArm(the_panda, start, DT)
 
 
 @pytest.mark.parametrize("start", [np.zeros(6), np.full(7, np.nan), np.zeros((1, 7))])
 def test_it_does_not_start_nowhere(the_panda, start):
     with pytest.raises(UserError, match="7 finite joint positions"):
-        SimulatedArm(the_panda, start, DT)
+        KinematicArm(the_panda, start, DT)
 
 
 @pytest.mark.parametrize("dt_s", [0.0, -1.0, np.nan, np.inf])
 def test_time_must_pass(the_panda, dt_s):
     with pytest.raises(UserError, match="time step"):
-        SimulatedArm(the_panda, the_panda.home, dt_s)
+        KinematicArm(the_panda, the_panda.home, dt_s)

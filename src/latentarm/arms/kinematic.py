@@ -4,14 +4,14 @@ from typing import final
 
 import numpy as np
 
+from latentarm.arms.contract import Arm
 from latentarm.errors import UserError
-from latentarm.robots.arm import Arm
 from latentarm.robots.robot import Robot
 from latentarm.types import Command, FloatArray
 
 
 @final
-class SimulatedArm(Arm):
+class KinematicArm(Arm):
     """Kinematic simulation of the paper's transition, ``s' = s + a dt``.
 
     Time passes only in `advance`. A joint that reaches a limit stays there, as at a hard stop.
