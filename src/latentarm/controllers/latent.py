@@ -1,13 +1,16 @@
 """Steering by learned latent actions."""
 
+from pathlib import Path
 from typing import final
 
 import numpy as np
 
 from latentarm.alignment.contract import Alignment, identity
+from latentarm.alignment.profile import load_profile
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
-from latentarm.models.decoder import Decoder
+from latentarm.models.decoder import Decoder, load_decoder
+from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray
 
 
@@ -60,3 +63,23 @@ class LatentController(Controller):
                 "use a model trained for this arm and these goals."
             )
         return vector
+
+
+def latent_controller(run: Path, profile: str | None, robot: Robot) -> LatentController:
+    """What steers by a run's latent actions.
+
+    Args:
+        run: the run's folder.
+        profile: name of the person whose alignment stands between input and latent action; z = u where None.
+        robot: the arm.
+
+    Raises:
+        UserError: the run has no such profile, its model is broken, or it is for another arm.
+    """
+    alignment = None if profile is None else load_profile(run, profile)
+    decoder = load_decoder(run, 0 if alignment is None else alignment.seed_index)
+    if decoder.action_dim != robot.dof:
+        raise UserError(
+            f"{run} was trained for {decoder.action_dim} joints and the robot {robot.name} has {robot.dof}."
+        )
+    return LatentController(decoder, identity if alignment is None else alignment)

@@ -13,6 +13,7 @@ from latentarm.control.controller import Controller
 from latentarm.control.export import export_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.latent import latent_controller
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.errors import UserError
@@ -30,7 +31,7 @@ from latentarm.robots.limits_file import read_limits
 from latentarm.robots.notices import notices
 from latentarm.runs.checks import check_count, check_positive, check_seed
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
-from latentarm.runs.setting import TaskName, latent_controller, task_of_run, task_without_run
+from latentarm.runs.tasks import TaskName, task_of_run, task_without_run
 from latentarm.tasks.task import Task
 from latentarm.types import Row
 

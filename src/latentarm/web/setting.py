@@ -13,9 +13,10 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.joined import JoinedController
+from latentarm.controllers.latent import latent_controller
 from latentarm.errors import UserError
 from latentarm.runs.folder import read_run, weights_fingerprint
-from latentarm.runs.setting import latent_controller, task_of_run, task_without_run
+from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray
 

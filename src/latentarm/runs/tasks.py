@@ -1,19 +1,13 @@
-"""Where and with what a run drives: the task that it was trained for, and its latent actions."""
+"""The task that a run is driven at: the one it was trained for, or another."""
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
-from latentarm.alignment.contract import identity
-from latentarm.alignment.profile import load_profile
-from latentarm.controllers.latent import LatentController
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
-from latentarm.models.decoder import load_decoder
 from latentarm.robots.catalogue import load_robot
-from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, robot_of
 from latentarm.tasks.reach import Reach
 from latentarm.tasks.replay import Replay
@@ -84,26 +78,6 @@ def task_without_run(
     if chosen == "reach":
         return Reach(load_robot(robot or "panda", end_effector, limits))
     raise UserError("Held-out episodes belong to a run: name one, as in `latentarm drive RUN`.")
-
-
-def latent_controller(run: Path, profile: str | None, robot: Robot) -> LatentController:
-    """What steers by a run's latent actions.
-
-    Args:
-        run: the run's folder.
-        profile: name of the person whose alignment stands between input and latent action; z = u where None.
-        robot: the arm.
-
-    Raises:
-        UserError: the run has no such profile, its model is broken, or it is for another arm.
-    """
-    alignment = None if profile is None else load_profile(run, profile)
-    decoder = load_decoder(run, 0 if alignment is None else alignment.seed_index)
-    if decoder.action_dim != robot.dof:
-        raise UserError(
-            f"{run} was trained for {decoder.action_dim} joints and the robot {robot.name} has {robot.dof}."
-        )
-    return LatentController(decoder, identity if alignment is None else alignment)
 
 
 def _table_top(robot: str | None, end_effector: str | None, limits: StatedLimits | None) -> TableTop:
