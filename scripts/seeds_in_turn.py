@@ -10,8 +10,8 @@ from time import perf_counter
 
 import numpy as np
 
-from latentarm.experiments.properties.preset import PRESETS
 from latentarm.models.catalogue import MODELS
+from latentarm.studies.properties.preset import PRESETS
 from latentarm.tasks.planar.catalogue import MOTIONS
 
 REPEATS = 3

@@ -9,12 +9,12 @@ import pytest
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.cli import main
-from latentarm.experiments.alignment import preset as alignment_preset
-from latentarm.experiments.alignment import run as alignment
-from latentarm.experiments.backends import BACKENDS
-from latentarm.experiments.properties.preset import PRESETS
-from latentarm.experiments.shared_autonomy import preset as shared_autonomy
-from latentarm.experiments.shared_autonomy.cell import TASKS
+from latentarm.parallel.backends import BACKENDS
+from latentarm.studies.alignment import preset as alignment_preset
+from latentarm.studies.alignment import run as alignment
+from latentarm.studies.properties.preset import PRESETS
+from latentarm.studies.shared_autonomy import preset as shared_autonomy
+from latentarm.studies.shared_autonomy.cell import TASKS
 from latentarm.tasks.planar.catalogue import MOTIONS
 
 COMMANDS = [

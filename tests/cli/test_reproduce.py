@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from latentarm.experiments.alignment import preset as alignment
-from latentarm.experiments.properties.preset import PRESETS, Preset
-from latentarm.experiments.shared_autonomy import preset as shared_autonomy
-from latentarm.experiments.shared_autonomy.cell import TASKS
-from latentarm.experiments.shared_autonomy.figures.draw import FIGURES
 from latentarm.metrics.results import read_results
 from latentarm.models.catalogue import MODELS
+from latentarm.studies.alignment import preset as alignment
+from latentarm.studies.properties.preset import PRESETS, Preset
+from latentarm.studies.shared_autonomy import preset as shared_autonomy
+from latentarm.studies.shared_autonomy.cell import TASKS
+from latentarm.studies.shared_autonomy.figures.draw import FIGURES
 
 Run = Callable[..., tuple[int, str, str]]
 

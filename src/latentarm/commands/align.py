@@ -29,7 +29,7 @@ def align(
     For example: latentarm align runs/pour-cae --name ada
     """
     from latentarm.alignment.profile import profile_folder
-    from latentarm.experiments.aligning import AlignConfig, align_run
+    from latentarm.commands.aligning_body import AlignConfig, align_run
 
     config = AlignConfig(
         run=run,

@@ -18,7 +18,7 @@ def bench(
 
     For example: latentarm bench --json
     """
-    from latentarm.experiments.bench import run_bench
+    from latentarm.commands.bench_body import run_bench
 
     rows = run_bench(repeats=repeats, seed=seed, progress=not json and sys.stderr.isatty())
     show(rows, json)

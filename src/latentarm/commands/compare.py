@@ -47,9 +47,9 @@ def compare(
     """
     from dataclasses import replace
 
-    from latentarm.experiments.compare.preset import OURS, PRESETS
-    from latentarm.experiments.compare.run import CompareConfig, run_compare
-    from latentarm.experiments.compare.tables import terminal_tables
+    from latentarm.studies.compare.preset import OURS, PRESETS
+    from latentarm.studies.compare.run import CompareConfig, run_compare
+    from latentarm.studies.compare.tables import terminal_tables
     from latentarm.untrusted.console import VisibleConsole
 
     usual = PRESETS[preset]

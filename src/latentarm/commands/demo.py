@@ -25,7 +25,7 @@ def demo(
 
     In a terminal it ends with the page of `latentarm teleop`. For example: latentarm demo --out demo
     """
-    from latentarm.experiments.demo import DemoConfig, run_demo
+    from latentarm.commands.demo_body import DemoConfig, run_demo
 
     bars = not json and sys.stderr.isatty()
     rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars))

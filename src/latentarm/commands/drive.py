@@ -74,8 +74,8 @@ def drive(
 
     Exits with 1 when no drive reached its goal. For example: latentarm drive runs/pour-cae
     """
-    from latentarm.experiments.drive_table import endings_in_words
-    from latentarm.experiments.driving import DriveConfig, drive_run
+    from latentarm.simulation.drive_table import endings_in_words
+    from latentarm.simulation.drives import DriveConfig, drive_run
 
     driven = drive_run(
         DriveConfig(

@@ -12,7 +12,7 @@ from latentarm.commands.options import Jobs, Json, MovedDataset, Seed
 from latentarm.commands.output import print_renderables, say
 
 if TYPE_CHECKING:
-    from latentarm.experiments.evaluating import Evaluation
+    from latentarm.runs.evaluating import Evaluation
 
 
 def evaluate(
@@ -37,7 +37,7 @@ def evaluate(
 
     For example: latentarm evaluate runs/pour-cae
     """
-    from latentarm.experiments.evaluating import evaluate_run
+    from latentarm.runs.evaluating import evaluate_run
 
     folder = out or run
     bars = not json and sys.stderr.isatty()
@@ -46,7 +46,7 @@ def evaluate(
     if json:
         _print_json(evaluation)
     else:
-        from latentarm.experiments.evaluation_tables import definitions, evaluation_table
+        from latentarm.commands.evaluation_tables_body import definitions, evaluation_table
 
         print_renderables(evaluation_table(evaluation))
         if explain:
@@ -61,8 +61,8 @@ def evaluate(
 
 def _print_json(evaluation: "Evaluation") -> None:
     """Rows with what their measures mean; the last one holds the verdict."""
-    from latentarm.experiments.evaluating import findings_row
     from latentarm.metrics.measures import label_of, measure_of
+    from latentarm.runs.evaluating import findings_row
 
     document: list[dict[str, object]] = []
     said = {one.measure: one.said for one in evaluation.found}

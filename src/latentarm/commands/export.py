@@ -31,8 +31,8 @@ def export(
 
     For example: latentarm export teleop --episodes 1 3-5 --out eaten
     """
+    from latentarm.commands.exporting_body import choose, describe, listing
     from latentarm.control.recordings import list_recordings, read_recordings
-    from latentarm.experiments.exporting import choose, describe, listing
 
     recordings = list_recordings(source)
     if out is None:

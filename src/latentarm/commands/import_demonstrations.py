@@ -56,8 +56,8 @@ def import_demonstrations(
 
     For example: latentarm import panda_pour_coffee.npz pour
     """
+    from latentarm.commands.inspection_body import import_table, summary
     from latentarm.demonstrations.importing import import_to
-    from latentarm.experiments.inspection import import_table, summary
     from latentarm.robots.catalogue import load_robot
     from latentarm.robots.limits_file import read_limits
     from latentarm.robots.notices import notices

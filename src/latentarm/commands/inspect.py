@@ -21,8 +21,8 @@ def inspect(
 
     For example: latentarm inspect pour
     """
+    from latentarm.commands.inspection_body import draw, summary, summary_tables, why_unknown
     from latentarm.demonstrations.dataset import read_dataset
-    from latentarm.experiments.inspection import draw, summary, summary_tables, why_unknown
 
     demonstrations = read_dataset(dataset)
     unknown = why_unknown(demonstrations, str(dataset))

@@ -29,9 +29,9 @@ def alignment(
 
     For example: latentarm reproduce alignment --preset smoke --task plane
     """
-    from latentarm.experiments.alignment.preset import PRESETS
-    from latentarm.experiments.alignment.run import TASKS, AlignmentConfig, run_alignment
-    from latentarm.experiments.alignment.summary import summary_tables
+    from latentarm.studies.alignment.preset import PRESETS
+    from latentarm.studies.alignment.run import TASKS, AlignmentConfig, run_alignment
+    from latentarm.studies.alignment.summary import summary_tables
 
     tasks = TASKS if task == "all" else (task,)
     bars = not json and sys.stderr.isatty()

@@ -28,8 +28,8 @@ def properties(
 
     For example: latentarm reproduce properties --preset smoke --task sine
     """
-    from latentarm.experiments.properties.preset import PRESETS
-    from latentarm.experiments.properties.run import PropertiesConfig, run_properties
+    from latentarm.studies.properties.preset import PRESETS
+    from latentarm.studies.properties.run import PropertiesConfig, run_properties
     from latentarm.tasks.planar.catalogue import MOTIONS
 
     tasks = tuple(MOTIONS) if task == "all" else (task,)

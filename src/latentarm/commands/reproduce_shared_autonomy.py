@@ -29,10 +29,10 @@ def shared_autonomy(
 
     For example: latentarm reproduce shared-autonomy --preset smoke
     """
-    from latentarm.experiments.shared_autonomy.cell import TASKS
-    from latentarm.experiments.shared_autonomy.preset import PRESETS
-    from latentarm.experiments.shared_autonomy.run import SharedAutonomyConfig, run_shared_autonomy
-    from latentarm.experiments.shared_autonomy.summary import summary_tables
+    from latentarm.studies.shared_autonomy.cell import TASKS
+    from latentarm.studies.shared_autonomy.preset import PRESETS
+    from latentarm.studies.shared_autonomy.run import SharedAutonomyConfig, run_shared_autonomy
+    from latentarm.studies.shared_autonomy.summary import summary_tables
 
     tasks = tuple(TASKS) if task == "all" else (task,)
     bars = not json and sys.stderr.isatty()

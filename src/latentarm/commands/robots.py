@@ -22,7 +22,7 @@ def robots(
 
     For example: latentarm robots panda
     """
-    from latentarm.experiments.robot_sheet import describe, sheets
+    from latentarm.commands.robot_sheet_body import describe, sheets
 
     if json:
         print(json_format.dumps(describe(robot, end_effector, limits), indent=2))

@@ -1,1 +1,0 @@
-"""What the commands do: one module each, configuration in, rows and figures out."""

@@ -1,0 +1,151 @@
+"""A grid of independent cells, measured side by side.
+
+A cell carries everything that it depends on, its seeds too, so that where it runs and what else runs
+there change nothing of its result.
+"""
+
+import traceback
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar, cast
+
+from joblib import Parallel, delayed
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from latentarm.errors import UserError
+from latentarm.parallel.backends import BACKENDS
+from latentarm.untrusted.console import VisibleConsole
+
+Cell = TypeVar("Cell")
+Result = TypeVar("Result")
+
+
+class CellError(Exception):
+    """A cell failed by a fault that is not the user's; names the cell and holds the traceback."""
+
+
+@dataclass(frozen=True)
+class _Measured(Generic[Result]):
+    """What comes back from wherever a cell was measured.
+
+    Attributes:
+        result: what the function returned.
+        warnings: category and text of what was warned of meanwhile.
+    """
+
+    result: Result
+    warnings: tuple[tuple[type[Warning], str], ...]
+
+
+def run_grid(
+    function: Callable[[Cell], Result],
+    cells: Sequence[Cell],
+    *,
+    jobs: int,
+    backend: str,
+    label: Callable[[Cell], str],
+    bars: bool,
+    unit: str = "cells",
+) -> list[Result]:
+    """Measure every cell, each on one process.
+
+    Warnings given while a cell is measured are given again here, after its name, in the order of the cells.
+
+    Args:
+        function: measures one cell; importable by name where it is to run in other processes.
+        cells: picklable.
+        jobs: processes side by side, as far as a cluster has them; -1 is one per core.
+        backend: a name in `BACKENDS`.
+        label: what a cell is called when it fails or warns.
+        bars: show on standard error how far the grid is.
+        unit: what a cell is called on the bar.
+
+    Returns:
+        The results in the order of the cells.
+
+    Raises:
+        UserError: jobs or backend are none, the backend is not to be had, one of joblib's own processes
+            was killed, or a cell raised one; then it says which.
+        CellError: a cell raised anything else.
+    """
+    check_processes(jobs, backend)
+    with BACKENDS[backend](jobs) as workers, counting_bar(bars) as bar:
+        # One cell at a time to each process: a cell takes seconds, and so the bar is told of each.
+        one_by_one: dict[str, Any] = {"batch_size": 1, "pre_dispatch": workers}
+        parallel = Parallel(n_jobs=workers, **one_by_one)
+        try:
+            measured = parallel(
+                delayed(_measure)(function, cell, label(cell)) for cell in _watched(cells, workers, bar, unit)
+            )
+        except BrokenProcessPool as error:
+            raise UserError(
+                "A process of the grid was killed, mostly for want of memory: try fewer with --jobs."
+            ) from error
+    results = cast(list[_Measured[Result]], measured)
+    for cell, entry in zip(cells, results, strict=True):
+        for category, text in entry.warnings:
+            warnings.warn(f"{label(cell)}: {text}", category, stacklevel=2)
+    return [entry.result for entry in results]
+
+
+def check_processes(jobs: int, backend: str) -> None:
+    """Refuse what no grid can run on, before any work is done for it.
+
+    Raises:
+        UserError: the number of jobs or the backend is none.
+    """
+    if jobs != -1 and jobs < 1:
+        raise UserError(f"The number of jobs is {jobs}: it must be at least 1, or -1 for one per core.")
+    if backend not in BACKENDS:
+        raise UserError(f"There is no backend {backend!r}: choose from {', '.join(BACKENDS)}.")
+
+
+def _measure(function: Callable[[Cell], Result], cell: Cell, name: str) -> _Measured[Result]:
+    """Measure one cell; runs in any process.
+
+    Errors become ones that hold text alone, because others may not survive the way between processes.
+
+    Raises:
+        UserError: the cell raised one.
+        CellError: the cell raised anything else.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UserWarning)
+        warnings.simplefilter("always", RuntimeWarning)
+        try:
+            result = function(cell)
+        except UserError as error:
+            raise UserError(f"{name}: {error}") from error
+        except Exception as error:
+            raise CellError(f"{name} failed.\n{traceback.format_exc()}") from error
+    return _Measured(result, tuple((warning.category, str(warning.message)) for warning in caught))
+
+
+def _watched(cells: Sequence[Cell], workers: int, bar: Progress, unit: str) -> Iterator[Cell]:
+    """The cells as they are begun.
+
+    Every backend asks for the next one when a process is free, but not all of them tell what is done.
+    """
+    task = bar.add_task(unit, total=len(cells))
+    for begun, cell in enumerate(cells, start=1):
+        bar.update(task, completed=max(0, begun - workers))
+        yield cell
+
+
+def counting_bar(shown: bool) -> Progress:
+    """A bar on standard error that counts and goes away when it is done.
+
+    Args:
+        shown: whether there is one at all.
+    """
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=VisibleConsole(stderr=True),
+        disable=not shown,
+        transient=True,
+    )

@@ -1,0 +1,176 @@
+"""One simulated drive: a simulated operator, a controller, Algorithm 1 with its safety filters, an arm."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from latentarm.arms.kinematic import KinematicArm
+from latentarm.assistance.belief import Rule
+from latentarm.assistance.blending import Arbitration
+from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.control.controller import Controller
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.step import Step
+from latentarm.errors import UserError
+from latentarm.metrics.drives import Drive, measure_drive
+from latentarm.metrics.ending import Ending, why_it_ended
+from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.operators.catalogue import make_operator
+from latentarm.operators.foresight import Foresight
+from latentarm.operators.planning import PlanningConfig
+from latentarm.tasks.task import Task, check_not_done
+from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
+
+RATE_HZ = 100.0
+"""Rate of the simulated loop, the most that a real arm is sent from Python."""
+
+STATE_NOISE_RAD = 0.05
+"""A driven arm leaves the demonstrated states: with this noise in training the decoder has been there."""
+
+BELIEF_PERIOD_S = 0.1
+"""How often the belief is updated: as often as the simulated operator decides."""
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """Everything that stays the same from drive to drive.
+
+    Attributes:
+        task: the robot, the goals and when they are reached.
+        controller: what the simulated operator steers with.
+        arbitration: how much the robot helps towards its belief over the task's goals; None never helps.
+        operator: how the simulated operator thinks.
+        time_limit_s: a drive that lasts longer has failed.
+        rule: how inputs change the belief; without help too, for a decoder may look at it.
+        foresight: where the simulated operator expects an input to lead; they know the arm where None.
+        planning: how far a simulated operator who knows the arm plans where one step leads no nearer; None
+            never plans (see `latentarm.operators.catalogue`).
+
+    Raises:
+        UserError: an operator who does not know the arm is asked to plan.
+    """
+
+    task: Task
+    controller: Controller
+    arbitration: Arbitration | None
+    operator: BoltzmannConfig
+    time_limit_s: float
+    rule: Rule = BoltzmannBelief
+    foresight: Foresight | None = None
+    planning: PlanningConfig | None = None
+
+    def __post_init__(self) -> None:
+        if self.foresight is not None and self.planning is not None:
+            raise UserError("Only a simulated person who knows the arm plans: give foresight or planning.")
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """What is kept of a drive for figures, sampled at the loop's rate.
+
+    Attributes:
+        figures: what is measured of it.
+        goal: index of the goal.
+        progress: share of the waypoints that were reached.
+        ending: why it ended.
+        time_s: (T,), s.
+        position: (T, 3), the tool, m.
+        input: (T, d).
+        mode: (T,), index of the controller's mode.
+        belief: (T, G).
+    """
+
+    figures: Drive
+    goal: int
+    progress: float
+    ending: Ending
+    time_s: FloatArray
+    position: FloatArray
+    input: FloatArray
+    mode: FloatArray
+    belief: FloatArray
+
+
+def simulate(
+    setup: Setup,
+    goal: int,
+    manner: str,
+    rng: np.random.Generator,
+    watch: Callable[[StepRecord], None] | None = None,
+) -> Trace:
+    """Drive once, until the task is done or the time is over.
+
+    Args:
+        setup: who drives what, and how.
+        goal: index into the task's goals.
+        manner: what is done at the goal.
+        rng: of the start and of the simulated operator.
+        watch: is told every step, such as a recorder.
+
+    Returns:
+        The drive.
+
+    Raises:
+        UserError: the task is done where the arm starts.
+    """
+    task, controller = setup.task, setup.controller
+    dt_s = 1.0 / RATE_HZ
+    start = task.sample_start(goal, rng)
+    arm = KinematicArm(task.robot, start, dt_s)
+    step = _step(setup, dt_s)
+    operator = make_operator(task.robot, setup.operator, setup.planning, setup.foresight, dt_s)
+    remaining = list(task.waypoints(goal, manner))
+    since_s = 0.0
+    check_not_done(task, start, remaining)
+    step.reset(start)
+    records = [step(Input(np.zeros(controller.input_dim)), 0.0, start, 0.0)]
+    step.enable()
+    for tick in range(1, int(setup.time_limit_s * RATE_HZ) + 1):
+        state = arm.state()
+        pose = task.robot.chain.forward(state)
+        while remaining and task.reached(pose, remaining[0]):
+            remaining.pop(0)
+            since_s = (tick - 1) * dt_s
+        if not remaining:
+            break
+        context = Context(state=state, belief=step.belief)
+        given = operator.act(context, controller, step.mode, remaining[0], rng)
+        records.append(step(given, 0.0, state, tick * dt_s))
+        if watch is not None:
+            watch(records[-1])
+        arm.send(records[-1].command)
+        arm.advance()
+    return _trace(records, setup, goal, manner, remaining, since_s)
+
+
+def _step(setup: Setup, dt_s: float) -> Step:
+    task = setup.task
+    goals = np.stack([goal.configuration for goal in task.goals])
+    return Step(
+        task.robot,
+        setup.controller,
+        SafetyConfig(obstacles=tuple(task.obstacles)),
+        goals=task.goals,
+        belief=setup.rule(goals, period_s=BELIEF_PERIOD_S),
+        arbitration=setup.arbitration,
+        dt_s=dt_s,
+    )
+
+
+def _trace(
+    records: list[StepRecord], setup: Setup, goal: int, manner: str, remaining: list[Pose], since_s: float
+) -> Trace:
+    chain = setup.task.robot.chain
+    waypoints: tuple[Pose, ...] = setup.task.waypoints(goal, manner)
+    return Trace(
+        figures=measure_drive(records, chain, waypoints[-1], success=not remaining),
+        goal=goal,
+        progress=1.0 - len(remaining) / len(waypoints),
+        ending=why_it_ended(records, chain, remaining[0] if remaining else None, since_s),
+        time_s=np.array([record.time_s for record in records]),
+        position=chain.forward(np.stack([record.state for record in records])).position,
+        input=np.stack([record.input for record in records]),
+        mode=np.array([record.mode for record in records], dtype=np.float64),
+        belief=np.stack([record.belief for record in records]),
+    )

@@ -1,0 +1,108 @@
+"""One row per simulated drive, for ``drives.json`` and ``drives.csv``, and what is said of all of them."""
+
+import csv
+import io
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from latentarm.files import write_text
+from latentarm.simulation.drive import Trace
+
+COLUMNS: Final[dict[str, str]] = {
+    "drive": "number of the drive, from 0",
+    "goal": "index of the goal, from 0",
+    "goal_name": "its name",
+    "manner": "what is done at the goal",
+    "repeat": "number of the drive to this goal, from 0",
+    "seed": "seed of the command; start and inputs depend on seed, goal and repeat alone",
+    "controller": "latent, latent_assist or end_effector",
+    "operator": "greedy or planning; both are simulated",
+    "success": "whether all waypoints were reached",
+    "ended_because": "reached, time_limit, operator_stuck, held_back or safety_stop",
+    "ended_in_words": "the same as a sentence",
+    "time_s": "duration, s",
+    "input_magnitude_s": "integral of the input's length over time, s of full deflection",
+    "mode_switches": "how often the controller's mode changed",
+    "path_length_m": "length of the tool's path, m",
+    "final_distance_m": "tool from the last waypoint at the end, m",
+    "final_angle_deg": "the same for orientation, degrees",
+    "waypoints_reached": "share of the waypoints that were reached, 0 to 1",
+}
+"""What each column of ``drives.csv`` holds; ``drives`` in ``drives.json`` has the same fields."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A drive before it is driven.
+
+    Attributes:
+        goal_name: of the goal.
+        manner: what is done at the goal.
+        repeat: number of the drive to this goal.
+    """
+
+    goal_name: str
+    manner: str
+    repeat: int
+
+
+def drive_entries(
+    planned: Sequence[Planned], traces: Sequence[Trace], *, seed: int, controller: str, operator: str
+) -> list[dict[str, object]]:
+    """One mapping per drive, with the keys of `COLUMNS` in that order.
+
+    Args:
+        planned: the drives, in order.
+        traces: what came of them.
+        seed: of the command.
+        controller: what drove.
+        operator: who gave inputs.
+    """
+    return [
+        {
+            "drive": number,
+            "goal": trace.goal,
+            "goal_name": plan.goal_name,
+            "manner": plan.manner,
+            "repeat": plan.repeat,
+            "seed": seed,
+            "controller": controller,
+            "operator": operator,
+            "success": trace.figures.success,
+            "ended_because": trace.ending.reason,
+            "ended_in_words": trace.ending.detail,
+            "time_s": trace.figures.time_s,
+            "input_magnitude_s": trace.figures.input_magnitude,
+            "mode_switches": trace.figures.mode_switches,
+            "path_length_m": trace.figures.path_length,
+            "final_distance_m": trace.figures.final_distance,
+            "final_angle_deg": trace.figures.final_angle_deg,
+            "waypoints_reached": trace.progress,
+        }
+        for number, (plan, trace) in enumerate(zip(planned, traces, strict=True))
+    ]
+
+
+def write_drives_csv(path: Path, entries: Sequence[Mapping[str, object]]) -> None:
+    """Write one line per drive under a line of column names, whole or not at all.
+
+    Raises:
+        UserError: the file cannot be written.
+    """
+    stream = io.StringIO()
+    table = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+    table.writeheader()
+    table.writerows(
+        {name: str(value).lower() if isinstance(value, bool) else value for name, value in entry.items()}
+        for entry in entries
+    )
+    write_text(path, stream.getvalue())
+
+
+def endings_in_words(entries: Sequence[Mapping[str, object]]) -> list[str]:
+    """How many drives ended for which reason, one sentence each; those that succeeded come first."""
+    found = Counter((not entry["success"], str(entry["ended_in_words"])) for entry in entries)
+    return [f"{count} of {len(entries)} drives: {words}." for (_, words), count in sorted(found.items())]

@@ -1,0 +1,96 @@
+"""One cell of the study: every way of finding an alignment, for one task, one decoder and one noise."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from time import perf_counter
+
+from threadpoolctl import threadpool_limits
+
+from latentarm.alignment.affine import fit_affine
+from latentarm.alignment.answers import Answers
+from latentarm.alignment.contract import identity
+from latentarm.alignment.priors import NO_PRIORS
+from latentarm.alignment.training import FitConfig
+from latentarm.studies.alignment.conditions import IDEAL, LEARNED, MANUAL, NO_ALIGN
+from latentarm.studies.alignment.decoder import LearnedDecoder
+from latentarm.studies.alignment.scene import Scene, scene_of
+from latentarm.studies.alignment.streams import Stream
+from latentarm.types import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """What is to be measured.
+
+    Attributes:
+        learned: task and decoder.
+        noise: coefficient of variation of the answers.
+    """
+
+    learned: LearnedDecoder
+    noise: float
+
+    @property
+    def task(self) -> str:
+        """Name of the task."""
+        return self.learned.cell.task
+
+    @property
+    def model(self) -> str:
+        """Name of the decoder's model."""
+        return self.learned.cell.model
+
+
+@dataclass(frozen=True, eq=False)
+class CellResult:
+    """What was measured.
+
+    Attributes:
+        cell: what was asked for.
+        errors: condition -> (R,), relative error of each run on the held-out motions; (1,) where nothing is
+            learned.
+        encoded: the error of the encoder's own choice, see `Scene.encoded`.
+        learn_s: condition -> how long all its runs took in one fit, s.
+    """
+
+    cell: Cell
+    errors: Mapping[str, FloatArray]
+    encoded: float
+    learn_s: Mapping[str, float]
+
+
+def measure_cell(cell: Cell) -> CellResult:
+    """Ask, learn all runs of a condition in one fit, judge.
+
+    The errors are the same to the last bit in whatever process this runs. Motions are drawn alike for all
+    models and noises, so that these differ in nothing else.
+
+    Raises:
+        UserError: the preset's sizes leave nothing to ask or to learn.
+    """
+    with threadpool_limits(limits=1):
+        return _measure(cell, scene_of(cell.learned))
+
+
+def _measure(cell: Cell, scene: Scene) -> CellResult:
+    preset = cell.learned.cell.preset
+    runs = range(preset.runs)
+
+    def ask(count: int) -> list[Answers]:
+        return [scene.ask(count, cell.noise, Stream.QUESTIONS, Stream.ANSWERS, run) for run in runs]
+
+    few = ask(preset.answers)
+    errors = {
+        NO_ALIGN: scene.errors([identity]),
+        MANUAL: scene.errors([fit_affine(scene.model, answers) for answers in few]),
+    }
+    configs = {name: FitConfig(priors, steps=preset.steps) for name, priors in LEARNED.items()}
+    configs[IDEAL] = FitConfig(NO_PRIORS, steps=preset.ideal_steps)
+    learn_s: dict[str, float] = {}
+    for name, config in configs.items():
+        answers = ask(preset.ideal_answers) if name == IDEAL else few
+        began = perf_counter()
+        fitted = scene.learn(answers, config, runs)
+        learn_s[name] = perf_counter() - began
+        errors[name] = scene.errors(fitted.alignments)
+    return CellResult(cell, errors, scene.encoded(), learn_s)

@@ -1,0 +1,163 @@
+"""Drives to the goals of the demo's table by a simulated person who expects other things of their stick.
+
+The person answers the questions of `latentarm align` by their expectation, and drives by it: at each decision
+they choose as equation 24 has it, with the motion that they expect in place of the decoder's. The same person
+drives in every condition but one: whoever `KNOWS` the arm foresees exactly what z = u does, like the
+simulated operator of the demo. That is what this decoder comes to with nothing left to learn.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.assistance.blending import FixedAlpha
+from latentarm.controllers.latent import LatentController
+from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.simulation.drive import RATE_HZ, Setup, simulate
+from latentarm.simulation.drives import drive_plan
+from latentarm.studies.alignment.conditions import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS
+from latentarm.studies.alignment.drives_learning import DriveCell, Learned, learn
+from latentarm.studies.alignment.preset import Preset
+from latentarm.tasks.table_top import TableTop
+from latentarm.tasks.task import Task
+from latentarm.types import FloatArray, StepRecord
+
+HELPED: Final = f"{ALL_PRIORS}, shared autonomy"
+KNOWS: Final = "knows the arm"
+DRIVEN: Final = (NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS, HELPED, IDEAL, KNOWS)
+"""All conditions, as tables and figures order them."""
+
+PATH_HZ: Final = 10.0
+"""Rate at which paths are kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """One drive.
+
+    Attributes:
+        goal: index of the goal.
+        model_seed: whose decoder.
+        reached_s: when the tool came to the goal, or None where it never did, s.
+        done: whether it went on to stab or scoop before the time was over.
+        path: (T, 3), the tool until it came to the goal, or all along, m.
+    """
+
+    goal: int
+    model_seed: int
+    reached_s: float | None
+    done: bool
+    path: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class DrivesResult:
+    """What was measured with one kind of model.
+
+    Attributes:
+        cell: what was asked for.
+        drives: condition -> all drives, from the same starts in the same order everywhere.
+        errors: condition -> (S,), see `Learned`.
+        directions: (2, 3), that the person expects of the stick, in the base frame.
+        speed_m_s: of the tool, that they expect of a full push along one axis, m/s.
+        fit_s: how long the fit of all models took, s.
+        align_s: how long asking and learning took, all models together, s.
+        drive_s: how long the drives took, s.
+    """
+
+    cell: DriveCell
+    drives: Mapping[str, tuple[Driven, ...]]
+    errors: Mapping[str, FloatArray]
+    directions: FloatArray
+    speed_m_s: float
+    fit_s: float
+    align_s: float
+    drive_s: float
+
+
+def drive_cells(preset: Preset, seed: int) -> list[DriveCell]:
+    """One cell per kind of model."""
+    return [DriveCell(model, preset, seed) for model in preset.drives.models]
+
+
+def measure_drives(cell: DriveCell) -> DrivesResult:
+    """Learn, and drive in every condition.
+
+    The figures are the same to the last bit in whatever process this runs.
+
+    Raises:
+        UserError: the preset's sizes make no sense.
+    """
+    with threadpool_limits(limits=1):
+        learned = learn(cell)
+        began = perf_counter()
+        drives = {condition: drive_all(cell, learned, condition) for condition in DRIVEN}
+        return DrivesResult(
+            cell=cell,
+            drives=drives,
+            errors=learned.errors,
+            directions=learned.person.directions,
+            speed_m_s=learned.person.speed_m_s,
+            fit_s=learned.fit_s,
+            align_s=learned.align_s,
+            drive_s=perf_counter() - began,
+        )
+
+
+def drive_all(cell: DriveCell, learned: Learned, condition: str) -> tuple[Driven, ...]:
+    """All drives of one condition of `DRIVEN`; models take turns.
+
+    Starts and the simulated person's chances hang on the seed of the study, the goal and the drive's number
+    alone.
+    """
+    sizes, task = cell.preset.drives, TableTop()
+    setups = [_setup(task, learned, seed, condition, sizes.limit_s) for seed in range(sizes.seeds)]
+    plan = drive_plan(task, sizes.to_each_goal, cell.seed)
+    return tuple(
+        drive(setups[number % sizes.seeds], number % sizes.seeds, *call) for number, call in enumerate(plan)
+    )
+
+
+def drive(setup: Setup, model_seed: int, goal: int, manner: str, rng: np.random.Generator) -> Driven:
+    """One drive: to the goal, and on to stab or scoop there.
+
+    Args:
+        setup: who drives, with what.
+        model_seed: whose decoder that is.
+        goal: index into the task's goals.
+        manner: what is done at the goal.
+        rng: of the start and of the simulated person.
+    """
+    task, records = setup.task, list[StepRecord]()
+    trace = simulate(setup, goal, manner, rng, records.append)
+    # A drive that ends at the goal has no record there.
+    at_the_end = trace.figures.time_s if trace.figures.success else None
+    reached_s = next((record.time_s for record in records if _there(task, goal, record)), at_the_end)
+    until = trace.time_s <= (np.inf if reached_s is None else reached_s)
+    return Driven(
+        goal=goal,
+        model_seed=model_seed,
+        reached_s=reached_s,
+        done=trace.figures.success,
+        path=trace.position[until][:: round(RATE_HZ / PATH_HZ)],
+    )
+
+
+def _there(task: Task, goal: int, record: StepRecord) -> bool:
+    return task.reached(task.robot.chain.forward(record.state), task.goals[goal].pose)
+
+
+def _setup(task: Task, learned: Learned, seed: int, condition: str, limit_s: float) -> Setup:
+    alignment = {KNOWS: NO_ALIGN, HELPED: ALL_PRIORS}.get(condition, condition)
+    return Setup(
+        task,
+        LatentController(learned.model.decoder(seed), learned.alignments[seed][alignment]),
+        FixedAlpha() if condition == HELPED else None,
+        BoltzmannConfig(),
+        limit_s,
+        foresight=None if condition == KNOWS else learned.person,
+    )

@@ -1,0 +1,188 @@
+"""What is driven with: the demo's models, and alignments of each with one simulated person.
+
+The person expects each axis of the stick to move the tool along a direction of its own. The two directions
+are those along which the demonstrated tool moves most (sideways, and forward and down), on a stick that is
+turned by `TURN_RAD` and mirrored.
+"""
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+from time import perf_counter
+from typing import Final
+
+import numpy as np
+
+from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.contract import Alignment, identity
+from latentarm.alignment.demonstrated import demonstrated_motions
+from latentarm.alignment.error import relative_alignment_error
+from latentarm.alignment.priors import NO_PRIORS
+from latentarm.alignment.queries import StoppingRule
+from latentarm.alignment.training import FitConfig
+from latentarm.demonstrations.split import select_episodes, split_episodes
+from latentarm.kinematics.chain import Chain
+from latentarm.models.catalogue import MODELS
+from latentarm.models.model import LatentActionModel
+from latentarm.models.scaling import CollapseWarning
+from latentarm.operators.expectation import Expectation, displacements, main_directions
+from latentarm.runs.questions import ENSEMBLE, Scene, ask, shown, unwatched
+from latentarm.simulation.asking import FASTEST, SimulatedPerson
+from latentarm.simulation.drive import STATE_NOISE_RAD
+from latentarm.studies.alignment.conditions import ALL_PRIORS, IDEAL, LEARNED, NO_ALIGN, WITHOUT_PRIORS
+from latentarm.studies.alignment.preset import Preset
+from latentarm.studies.alignment.streams import Stream, generator
+from latentarm.studies.streams import integer, sequence
+from latentarm.tasks.table_top import TableTop
+from latentarm.types import Demonstrations, FloatArray
+
+TASK: Final = "table_top"
+
+TURN_RAD: Final = pi / 3
+"""How far the stick is turned, before it is mirrored: far enough that no axis does what it is expected to."""
+
+HELD_OUT: Final = 0.2
+"""Share of the demonstrations that train no model, as in the demo."""
+
+EVERY: Final = 10**9
+"""More motions than there are."""
+
+
+@dataclass(frozen=True)
+class DriveCell:
+    """What is to be measured.
+
+    Attributes:
+        model: a name of `MODELS`.
+        preset: sizes of the study.
+        seed: of the study.
+    """
+
+    model: str
+    preset: Preset
+    seed: int
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """What is driven with.
+
+    Attributes:
+        model: the S models of a kind.
+        alignments: S times, condition -> alignment.
+        person: who was asked.
+        errors: condition -> (S,), relative alignment errors on motions that trained nothing.
+        fit_s: how long the fit of all models took, s.
+        align_s: how long asking and learning took, all models together, s.
+    """
+
+    model: LatentActionModel
+    alignments: tuple[Mapping[str, Alignment], ...]
+    person: Expectation
+    errors: Mapping[str, FloatArray]
+    fit_s: float
+    align_s: float
+
+
+def learn(cell: DriveCell) -> Learned:
+    """Demonstrate, fit all models in one fit, ask the person about each, and learn.
+
+    Raises:
+        UserError: the preset's sizes make no sense.
+    """
+    preset, task = cell.preset, TableTop()
+    chain = task.robot.chain
+    demonstrations = task.demonstrate(preset.drives.episodes, _generator(cell, Stream.TRAINING))
+    rows = split_episodes(demonstrations, HELD_OUT, _generator(cell, Stream.TEST))
+    training, held_out = (select_episodes(demonstrations, part) for part in rows)
+    motions = demonstrated_motions(training, EVERY, _generator(cell, Stream.SHOWN))
+    person = turned_person(motions, chain)
+    many = motions[np.arange(min(preset.ideal_answers, len(motions)))]
+    began = perf_counter()
+    model = _fit(cell, training, chain)
+    fitted = perf_counter()
+    ideal = Answers(many, person.inputs(many))
+    alignments = tuple(
+        _alignments(cell, model, seed, training, person, ideal) for seed in range(preset.drives.seeds)
+    )
+    align_s = perf_counter() - fitted
+    tested = demonstrated_motions(held_out, preset.test_motions, _generator(cell, Stream.TEST_MOTIONS))
+    errors = _errors(model, alignments, chain, Answers(tested, person.inputs(tested)))
+    return Learned(model, alignments, person, errors, fitted - began, align_s)
+
+
+def turned_person(motions: Motions, chain: Chain) -> Expectation:
+    """The simulated person: the two main directions of motions on a stick that is turned and mirrored.
+
+    A full push along one direction is as fast as nearly all of the motions, as for the simulated person of
+    `latentarm align`.
+    """
+    directions = main_directions(motions, chain, 2)
+    along = np.abs(displacements(motions, chain) @ directions.T).max(axis=1)
+    speed = float(np.quantile(along, FASTEST)) / motions.duration_s
+    return Expectation(chain, directions, speed).turned_and_mirrored(TURN_RAD)
+
+
+def _fit(cell: DriveCell, training: Demonstrations, chain: Chain) -> LatentActionModel:
+    """The models, as the demo trains them."""
+    with warnings.catch_warnings():
+        # A dead latent action shows in every figure.
+        warnings.simplefilter("ignore", CollapseWarning)
+        return MODELS[cell.model](
+            latent_dim=2,
+            state_noise_rad=STATE_NOISE_RAD,
+            seeds=cell.preset.drives.seeds,
+            epochs=cell.preset.drives.epochs,
+            seed=integer(sequence(cell.seed, TASK, Stream.NETWORKS)),
+            data_seed=integer(sequence(cell.seed, TASK, Stream.STATE_NOISE)),
+        ).fit(training, chain=chain)
+
+
+def _alignments(
+    cell: DriveCell,
+    model: LatentActionModel,
+    seed_index: int,
+    training: Demonstrations,
+    person: Expectation,
+    ideal: Answers,
+) -> dict[str, Alignment]:
+    """Every alignment of one model: with priors and without, from the same answers."""
+    drawing, asking = (_generator(cell, use, seed_index) for use in (Stream.CANDIDATES, Stream.ENSEMBLES))
+    motions, unlabelled = shown(training, "state", person.chain, drawing)
+    scene = Scene(model, seed_index, person.chain, motions, unlabelled, asking, unwatched)
+    count = cell.preset.drives.answers
+    # Never enough before all are asked, so that every model has as many answers.
+    stopping = StoppingRule(share=0.0, patience=count)
+    answers = ask(scene, SimulatedPerson(person, _unheard), count, _unheard, stopping)
+    few = {
+        name: scene.learn([answers] * ENSEMBLE, FitConfig(LEARNED[name], steps=cell.preset.steps)).best
+        for name in (WITHOUT_PRIORS, ALL_PRIORS)
+    }
+    best = scene.learn([ideal], FitConfig(NO_PRIORS, steps=cell.preset.ideal_steps)).best
+    return {NO_ALIGN: identity, **few, IDEAL: best}
+
+
+def _errors(
+    model: LatentActionModel, alignments: tuple[Mapping[str, Alignment], ...], chain: Chain, test: Answers
+) -> dict[str, FloatArray]:
+    """Relative alignment errors (S,) by condition."""
+    decoders = [model.decoder(seed) for seed in range(len(alignments))]
+    return {
+        name: np.array(
+            [
+                relative_alignment_error(of_seed[name], decoder, chain, test)
+                for of_seed, decoder in zip(alignments, decoders, strict=True)
+            ]
+        )
+        for name in alignments[0]
+    }
+
+
+def _generator(cell: DriveCell, *use: int) -> np.random.Generator:
+    """The same for every kind of model."""
+    return generator(cell.seed, TASK, *use)
+
+
+def _unheard(text: str) -> None:
+    """A simulated person's words, that nobody reads."""

@@ -1,0 +1,35 @@
+"""What randomness is for: each use has a stream of its own, so that none hangs on another's draws."""
+
+from enum import IntEnum
+
+import numpy as np
+
+from latentarm.studies.streams import sequence
+
+
+class Stream(IntEnum):
+    """The uses of randomness."""
+
+    TRAINING = 0
+    TEST = 1
+    NETWORKS = 2
+    STATE_NOISE = 3
+    SHOWN = 4
+    TEST_MOTIONS = 5
+    UNLABELLED = 6
+    QUESTIONS = 7
+    ANSWERS = 8
+    CANDIDATES = 9
+    CANDIDATE_ANSWERS = 10
+    ENSEMBLES = 11
+
+
+def generator(seed: int, task: str, *use: int) -> np.random.Generator:
+    """The same for every model, and for every noise.
+
+    Args:
+        seed: of the study.
+        task: name of the task.
+        use: a `Stream`, and the run where each has its own.
+    """
+    return np.random.default_rng(sequence(seed, task, *use))

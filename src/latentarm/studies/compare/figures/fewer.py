@@ -1,0 +1,94 @@
+"""Figure: what becomes of a model that is given fewer demonstrations."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+from latentarm.studies.compare.figures.scale import logarithmic_with_zero
+from latentarm.studies.compare.rows import condition, with_demonstrations
+from latentarm.studies.panels import title
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, look_of, new_figure, tidy
+from latentarm.types import Row
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LINE_MM: Final = 38.0
+MEASURES: Final = {
+    "error_percent_of_pca": ("error\n(% of PCA's)", 1.0),
+    "noise_free_error_percent_of_pca": ("noise-free error\n(% of PCA's)", 1.0),
+    "controllability_m": ("greedy reach\n(mm)", 1e3),
+    "reversal": ("left after z, −z\n(%)", 100.0),
+}
+"""Measure -> its axis' label, and what it is multiplied by."""
+
+
+def fewer_figure(
+    rows: Sequence[Row], datasets: Sequence[str], noises_rad: Sequence[float], counts: Sequence[int]
+) -> "Figure":
+    """Measures over the number of training demonstrations, a column per dataset.
+
+    Args:
+        rows: see `rows_of_fewer`.
+        datasets: names.
+        noises_rad: rad; the first has filled markers and a solid line, further ones open and dashed.
+        counts: numbers of demonstrations, rising.
+    """
+    figure = new_figure(LINE_MM * len(MEASURES) + 20.0, TWO_COLUMNS_MM)
+    levels = ", ".join(f"{noise_rad:g} rad" for noise_rad in noises_rad)
+    figure.suptitle(
+        f"Fewer training demonstrations, mean ± SD over seeds; noise on states {levels}"
+        f"{' (the latter open and dashed)' if len(noises_rad) > 1 else ''}",
+        fontsize=FONT_SIZE,
+    )
+    panels = figure.subplots(len(MEASURES), len(datasets), sharex=True, sharey="row", squeeze=False)
+    for line, (measure, (label, scale)) in zip(panels, MEASURES.items(), strict=True):
+        for axes, dataset in zip(line, datasets, strict=True):
+            _draw(axes, rows, dataset, noises_rad, counts, measure, scale)
+            tidy(axes)
+        line[0].set_ylabel(label, fontsize=FONT_SIZE)
+        logarithmic_with_zero(line[0])
+    for axes, dataset in zip(panels[0], datasets, strict=True):
+        title(axes, literal(dataset))
+    for axes in panels[-1]:
+        axes.set_xlabel("training demonstrations", fontsize=FONT_SIZE)
+        axes.set_xticks(range(len(counts)), [str(count) for count in counts])
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    legend_below(figure, handles, labels)
+    return figure
+
+
+def _draw(
+    axes: "Axes",
+    rows: Sequence[Row],
+    dataset: str,
+    noises_rad: Sequence[float],
+    counts: Sequence[int],
+    measure: str,
+    scale: float,
+) -> None:
+    """A line per model and noise; series stand a little apart, for their bars not to hide each other."""
+    models = list(dict.fromkeys(row.model or "" for row in rows))
+    for place, model in enumerate(models):
+        look = look_of(model)
+        for level, noise_rad in enumerate(noises_rad):
+            known = [
+                (at, row)
+                for at, count in enumerate(counts)
+                for row in rows
+                if (row.task, row.model, row.measure) == (dataset, model, measure)
+                and row.condition == condition(noise_rad, with_demonstrations(count))
+            ]
+            axes.errorbar(
+                [at + 0.06 * (place - (len(models) - 1) / 2) for at, _ in known],
+                [scale * (row.mean or 0.0) for _, row in known],
+                yerr=[scale * (row.sd or 0.0) for _, row in known],
+                color=look.colour,
+                marker=look.marker,
+                fillstyle="none" if level else "full",
+                linestyle="--" if level else "-",
+                markersize=4.5,
+                linewidth=1.0,
+                elinewidth=0.8,
+                label=None if level else look.label,
+            )

@@ -1,0 +1,44 @@
+"""What is varied about the entropy, one thing at a time."""
+
+import math
+from collections.abc import Iterator
+
+from latentarm.studies.shared_autonomy.cell import Entropy
+from latentarm.studies.shared_autonomy.preset import Ablation
+
+LETTER = "equation 15 to the letter"
+"""The variant without an outcome that no goal is conveyed."""
+
+JOINTS_ALONE = "progress of the joints alone"
+"""The variant that does not look at the tool."""
+
+
+def weight_label(weight: float) -> str:
+    """What a variant with this lambda_2 is called."""
+    return f"lambda_2 {weight:g}"
+
+
+def variants(ablation: Ablation, weight: float) -> dict[str, Entropy | None]:
+    """Every variant by what it is called, each once.
+
+    Args:
+        ablation: what is varied.
+        weight: lambda_2 of the study proper, at which everything else is varied.
+    """
+    proper = Entropy(weight)
+    found: dict[str, Entropy | None] = {
+        weight_label(one): Entropy(one) if one else None for one in ablation.weights
+    }
+    found |= {name: entropy for name, entropy in _others(ablation, weight) if entropy != proper}
+    return found
+
+
+def _others(ablation: Ablation, weight: float) -> Iterator[tuple[str, Entropy]]:
+    for sharpness in ablation.sharpness:
+        yield f"kappa {sharpness:g}", Entropy(weight, sharpness=sharpness)
+    if ablation.without_no_goal:
+        yield LETTER, Entropy(weight, least_progress=-math.inf)
+    if ablation.joints_alone:
+        yield JOINTS_ALONE, Entropy(weight, sees_tool=False)
+    for where in ablation.contexts:
+        yield f"contexts {where.replace('_', ' ')}", Entropy(weight, where=where)

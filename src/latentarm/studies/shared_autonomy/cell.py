@@ -1,0 +1,308 @@
+"""One cell of the study: one model for one arm, with entropy or without, all its seeds and their drives."""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from enum import IntEnum
+from time import perf_counter
+from typing import Any, Final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from latentarm.assistance.annotation import annotate
+from latentarm.assistance.blending import Arbitration
+from latentarm.assistance.entropy import GoalEntropy, Where
+from latentarm.demonstrations.pairs import make_pairs
+from latentarm.demonstrations.split import select_episodes
+from latentarm.metrics.accuracy import pca_error, percent_of, reconstruction_error
+from latentarm.models.catalogue import MODELS
+from latentarm.models.model import LatentActionModel
+from latentarm.models.scaling import CollapseWarning
+from latentarm.studies.shared_autonomy.drive import HELP, NO_HELP, RULE, STEP_S, Scene, drive, steps_of
+from latentarm.studies.shared_autonomy.measures import measure, state_error, true_belief
+from latentarm.studies.shared_autonomy.people import Person
+from latentarm.studies.shared_autonomy.preset import Preset
+from latentarm.studies.streams import integer, sequence
+from latentarm.tasks.two_cups import TWO_CUPS, TwoCups
+from latentarm.types import Demonstrations, FloatArray, Pairs
+
+VALIDATION_SHARE: Final = 0.2
+"""Of the training demonstrations: these say which epoch was best."""
+
+WITHOUT_HELP: Final = "LA"
+WITH_HELP: Final = "LA+SA"
+WITH_ENTROPY: Final = "LA+SA+Entropy"
+METHODS: Final[dict[str, Arbitration]] = {WITHOUT_HELP: NO_HELP, WITH_HELP: HELP, WITH_ENTROPY: HELP}
+"""The paper's conditions, and how much the robot helps in each."""
+
+ROWS: Final = 100
+"""Drives at a time: few enough for a processor's caches, many enough for NumPy's calls."""
+
+TASKS: Final = {make().name: make for make in TWO_CUPS.values()}
+"""Two cups before each arm, by the task's name."""
+
+
+class Stream(IntEnum):
+    """What randomness is for: each use has a stream of its own, so that none hangs on another's draws."""
+
+    TRAINING = 0
+    TEST = 1
+    NETWORKS = 2
+    STATE_NOISE = 3
+    STARTS = 4
+    CHANCES = 5
+
+
+@dataclass(frozen=True)
+class Entropy:
+    """How the entropy over goals is trained; see `GoalEntropy`.
+
+    Attributes:
+        weight: lambda_2.
+        sharpness: kappa.
+        least_progress: rho_0; -inf is equation 15 to the letter.
+        where: contexts that it is taken in.
+        sees_tool: whether progress is the tool's as well, or the joints' alone.
+    """
+
+    weight: float
+    sharpness: float = GoalEntropy.sharpness
+    least_progress: float = GoalEntropy.least_progress
+    where: Where = GoalEntropy.where
+    sees_tool: bool = True
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What is to be measured.
+
+    Attributes:
+        task: a name of `TASKS`.
+        model: a name of `MODELS`.
+        entropy: how it is trained beside its own loss, or None for its own loss alone.
+        variant: what an ablation calls it; None in the study proper.
+        methods: names of `METHODS` that it is driven by.
+        people: who drives.
+        seeds: models of the kind.
+        drives: drives with each of them and each person.
+        preset: sizes of the training.
+        seed: of the whole study; demonstrations, starts and chances come from it and are the same for every
+            model.
+    """
+
+    task: str
+    model: str
+    entropy: Entropy | None
+    variant: str | None
+    methods: tuple[str, ...]
+    people: tuple[Person, ...]
+    seeds: int
+    drives: int
+    preset: Preset
+    seed: int
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What one kind of person came to by one method.
+
+    Attributes:
+        method: a name of `METHODS`.
+        person: who drove.
+        figures: measure -> (S, P), of each seed's drives.
+        error: (S, T + 1), state error over time, mean over a seed's drives.
+        belief: (S, T + 1), in the goal that is wanted in the end.
+    """
+
+    method: str
+    person: Person
+    figures: Mapping[str, FloatArray]
+    error: FloatArray
+    belief: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class CellResult:
+    """What was measured.
+
+    Attributes:
+        cell: what was asked for.
+        outcomes: of every method and person.
+        reconstruction: (S,), error on test demonstrations, % of PCA's.
+        fit_s: how long the fit of all seeds took, s.
+        drive_s: how long all drives took, s.
+    """
+
+    cell: Cell
+    outcomes: tuple[Outcome, ...]
+    reconstruction: FloatArray
+    fit_s: float
+    drive_s: float
+
+
+def measure_cell(cell: Cell) -> CellResult:
+    """Demonstrate, fit all seeds in one fit, drive, measure.
+
+    The figures are the same to the last bit in whatever process this runs: one thread each for linear algebra
+    and for torch, since more of them add up in another order.
+
+    Raises:
+        UserError: the preset's sizes make no sense to the model or to the task.
+    """
+    with threadpool_limits(limits=1):
+        return _measure(cell)
+
+
+def _measure(cell: Cell) -> CellResult:
+    task, preset = TASKS[cell.task](), cell.preset
+    training = annotate(task.demonstrate(preset.demonstrations, _generator(cell, Stream.TRAINING)), RULE)
+    test = annotate(task.demonstrate(preset.test_demonstrations, _generator(cell, Stream.TEST)), RULE)
+    began = perf_counter()
+    model = _fit(cell, task, training)
+    fitted = perf_counter()
+    chosen = select_episodes(training, range(len(training.episodes) - _validation(training)))
+    scene = _scene(task, recorded_pairs(chosen))
+    outcomes = tuple(
+        outcome
+        for method in cell.methods
+        for people in _together(cell)
+        for outcome in _outcomes(cell, task, scene, model, method, people)
+    )
+    return CellResult(
+        cell=cell,
+        outcomes=outcomes,
+        reconstruction=_reconstruction(model, recorded_pairs(chosen), recorded_pairs(test)),
+        fit_s=fitted - began,
+        drive_s=perf_counter() - fitted,
+    )
+
+
+def recorded_pairs(demonstrations: Demonstrations) -> Pairs:
+    """Pairs of contexts ``(s, b)`` and actions as recorded, without noise."""
+    return make_pairs(demonstrations, 1, 0.0, "state_belief", np.random.default_rng(0), actions="recorded")
+
+
+def _scene(task: TwoCups, fitted: Pairs) -> Scene:
+    goals = np.stack([goal.configuration for goal in task.goals])
+    speed = float(np.sqrt(np.square(fitted.action).sum(axis=1).mean()))
+    return Scene(task.robot.chain, RULE(goals, period_s=STEP_S), speed)
+
+
+def _fit(cell: Cell, task: TwoCups, training: Demonstrations) -> LatentActionModel:
+    """The model fitted to all but the last demonstrations, which say when it was best."""
+    preset, model_class = cell.preset, MODELS[cell.model]
+    parameters: dict[str, Any] = {
+        "latent_dim": 1,
+        "context": "state_belief",
+        "actions": "recorded",
+        "state_noise_rad": preset.state_noise_rad,
+        "data_seed": integer(sequence(cell.seed, cell.task, Stream.STATE_NOISE)),
+        "seeds": cell.seeds,
+        "seed": integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        "hidden": preset.hidden,
+        "epochs": preset.epochs,
+        "batch_size": preset.batch_size,
+        "patience": preset.epochs,
+    }
+    if "kl_weight" in {entry.name for entry in fields(model_class)}:
+        parameters["kl_weight"] = preset.kl_weight
+    episodes = len(training.episodes)
+    with warnings.catch_warnings():
+        # A dead latent action shows in every figure.
+        warnings.simplefilter("ignore", CollapseWarning)
+        return model_class(**parameters).fit(
+            training,
+            held_out=range(episodes - _validation(training), episodes),
+            chain=task.robot.chain,
+            term=_term(cell.entropy, task),
+        )
+
+
+def _term(entropy: Entropy | None, task: TwoCups) -> GoalEntropy | None:
+    if entropy is None:
+        return None
+    goals = np.stack([goal.configuration for goal in task.goals])
+    return GoalEntropy(
+        goals,
+        weight=entropy.weight,
+        sharpness=entropy.sharpness,
+        least_progress=entropy.least_progress,
+        where=entropy.where,
+        chain=task.robot.chain if entropy.sees_tool else None,
+    )
+
+
+def _validation(training: Demonstrations) -> int:
+    """Number of episodes, at the end, that the weights are not fitted to."""
+    return max(1, round(VALIDATION_SHARE * len(training.episodes)))
+
+
+def _reconstruction(model: LatentActionModel, fitted: Pairs, pairs: Pairs) -> FloatArray:
+    """Error on other pairs, % of PCA's: (S,)."""
+    decoders = [model.decoder(seed) for seed in range(model.seeds)]
+    z = model.encode(pairs.context, pairs.action)
+    error = reconstruction_error(decoders, z, pairs.context, pairs.action)
+    return percent_of(pca_error(fitted.action, pairs.action, model.latent_dim), error)
+
+
+def _together(cell: Cell) -> list[list[Person]]:
+    """The cell's people in groups that drive in one go: for the same time, and about `ROWS` drives."""
+    groups: list[list[Person]] = []
+    for person in cell.people:
+        last = groups[-1] if groups else []
+        alike = bool(last) and last[0].drive_s == person.drive_s
+        if alike and (len(last) + 1) * cell.drives <= ROWS:
+            last.append(person)
+        else:
+            groups.append([person])
+    return groups
+
+
+def _outcomes(
+    cell: Cell, task: TwoCups, scene: Scene, model: LatentActionModel, method: str, people: Sequence[Person]
+) -> list[Outcome]:
+    """What people who drive in one go come to."""
+    target = np.arange(cell.drives) % len(scene.goals)
+    of_seeds: list[tuple[dict[str, FloatArray], FloatArray, FloatArray]] = []
+    for seed in range(cell.seeds):
+        starts = _generator(cell, Stream.STARTS, seed)
+        start = np.stack([task.sample_start(int(goal), starts) for goal in target])
+        chances = [_chances(cell, seed, person) for person in people]
+        drives = drive(
+            model.decoder(seed),
+            scene,
+            [person for person in people for _ in target],
+            METHODS[method],
+            np.tile(start, (len(people), 1)),
+            np.tile(target, len(people)),
+            np.concatenate(chances),
+        )
+        of_seeds.append((measure(drives, scene), state_error(drives, scene), true_belief(drives)))
+    outcomes: list[Outcome] = []
+    for index, person in enumerate(people):
+        own = slice(index * cell.drives, (index + 1) * cell.drives)
+        outcomes.append(
+            Outcome(
+                method,
+                person,
+                {
+                    name: np.stack([figures[name][own] for figures, _, _ in of_seeds])
+                    for name in of_seeds[0][0]
+                },
+                np.stack([error[own].mean(axis=0) for _, error, _ in of_seeds]),
+                np.stack([belief[own].mean(axis=0) for _, _, belief in of_seeds]),
+            )
+        )
+    return outcomes
+
+
+def _chances(cell: Cell, seed: int, person: Person) -> FloatArray:
+    """What one person's drives with one seed choose by, (P, T), whoever else drives."""
+    chances = _generator(cell, Stream.CHANCES, seed, int.from_bytes(person.label.encode()))
+    return chances.random((cell.drives, steps_of(person)))
+
+
+def _generator(cell: Cell, *use: int) -> np.random.Generator:
+    """The same for every model and method."""
+    return np.random.default_rng(sequence(cell.seed, cell.task, *use))

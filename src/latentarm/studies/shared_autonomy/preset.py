@@ -1,0 +1,127 @@
+"""How large the study is."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from latentarm.assistance.entropy import Where
+from latentarm.studies.shared_autonomy.people import (
+    NEAR_OPTIMAL,
+    Person,
+    changing,
+    learner,
+    of_fixed_expertise,
+)
+
+
+@dataclass(frozen=True)
+class Ablation:
+    """What is varied about the entropy, one thing at a time, with the cAE.
+
+    Attributes:
+        seeds: models of each kind.
+        drives: drives with each of them and each person.
+        weights: values of lambda_2.
+        sharpness: values of kappa.
+        contexts: where the entropy is taken.
+        without_no_goal: whether to take equation 15 to the letter as well, without an outcome that no goal
+            is conveyed.
+        joints_alone: whether to take progress by the joints alone as well, without the tool.
+    """
+
+    seeds: int = 5
+    drives: int = 50
+    weights: tuple[float, ...] = (0.0, 0.3, 1.0, 5.0, 20.0, 100.0)
+    sharpness: tuple[float, ...] = (1.0, 2.0, 4.0, 8.0)
+    contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")
+    without_no_goal: bool = True
+    joints_alone: bool = True
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Sizes of the study.
+
+    Attributes:
+        name: what it is called on the command line.
+        demonstrations: to train on; a fifth of them is not fitted to and says which epoch was best.
+        test_demonstrations: further ones, that reconstruction is measured on.
+        seeds: models of each kind.
+        drives: drives with each of them and each person, half of them to each cup.
+        epochs: passes over the training pairs, at most.
+        batch_size: pairs per step.
+        hidden: units of each hidden layer.
+        state_noise_rad: SD of the noise on training states, rad.
+        kl_weight: lambda_1 of equation 16, for the cVAE.
+        entropy_weights: lambda_2 of equation 16, by model. The isometric model has less: it is odd in z, so
+            that the way back is always open, and more weight only bends it.
+        betas: rationalities of people of fixed expertise, 1/m²; the first and the last are the extremes.
+        learners: how fast people learn, 1/m² per s, by name.
+        changes_s: after how long people change their mind, s.
+        ablation: what is varied about the entropy, or None.
+    """
+
+    name: str
+    demonstrations: int = 100
+    test_demonstrations: int = 20
+    seeds: int = 5
+    drives: int = 100
+    epochs: int = 60
+    batch_size: int = 100
+    hidden: tuple[int, ...] = (64, 64)
+    state_noise_rad: float = 0.02
+    kl_weight: float = 0.05
+    entropy_weights: Mapping[str, float] = field(
+        default_factory=lambda: {"cae": 5.0, "cvae": 5.0, "isometric": 0.5}
+    )
+    betas: tuple[float, ...] = (0.0, 3.0, 10.0, 30.0, 75.0, 200.0, 1000.0, 10000.0)
+    learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 10.0, "fast": 100.0})
+    changes_s: tuple[float, ...] = (0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0)
+    ablation: Ablation | None = field(default_factory=Ablation)
+
+    @property
+    def people(self) -> tuple[Person, ...]:
+        """Everyone who drives."""
+        return (
+            *(of_fixed_expertise(beta) for beta in self.betas),
+            *(learner(name, slope) for name, slope in self.learners.items()),
+            *(changing(after_s) for after_s in self.changes_s),
+        )
+
+    @property
+    def latest_change(self) -> Person:
+        """Whoever changes their mind last."""
+        return changing(max(self.changes_s))
+
+    @property
+    def drawn_changes_s(self) -> tuple[float, ...]:
+        """After how long those change their mind whose course is drawn: an early change and the latest, s."""
+        times = sorted(self.changes_s)
+        return tuple(dict.fromkeys((times[max(len(times) // 2 - 1, 0)], times[-1])))
+
+    @property
+    def drawn_people(self) -> tuple[Person, ...]:
+        """Whose course over time is drawn."""
+        learners = (learner(name, slope) for name, slope in self.learners.items())
+        return (*learners, *(changing(after_s) for after_s in self.drawn_changes_s))
+
+    @property
+    def varied_people(self) -> tuple[Person, ...]:
+        """Who drives in the ablation: near-optimal people, of a constant mind and with the latest change."""
+        return of_fixed_expertise(NEAR_OPTIMAL), self.latest_change
+
+
+PRESETS: Final[dict[str, Preset]] = {
+    "paper": Preset("paper"),
+    "smoke": Preset(
+        "smoke",
+        demonstrations=12,
+        test_demonstrations=4,
+        seeds=2,
+        drives=8,
+        epochs=8,
+        betas=(0.0, 75.0, 10000.0),
+        changes_s=(2.0, 8.0),
+        ablation=None,
+    ),
+}

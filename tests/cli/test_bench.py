@@ -1,0 +1,22 @@
+"""The bench measures what it says; how long things take is for people to read, not for a test."""
+
+from latentarm.commands.bench_body import run_bench
+
+
+def test_bench_gives_every_figure_and_equal_losses() -> None:
+    all_rows = run_bench(repeats=250, seed=0, progress=False, pairs=3000)
+    rows = {row.measure: row for row in all_rows if row.condition is None}
+    assert {
+        "online_step_median_us",
+        "online_step_p99_us",
+        "torch_decoder_median_us",
+        "batched_fit_s",
+        "sequential_fit_s",
+        "sequential_over_batched",
+    } <= rows.keys()
+    assert rows["batched_fit_loss"].mean == rows["sequential_fit_loss"].mean
+    many = {row.measure: row for row in all_rows if row.condition == "50 goals"}
+    assert {"online_step_median_us", "online_step_p99_us"} <= many.keys()
+    assert rows["online_step_median_us"].n == many["online_step_median_us"].n == 250
+    ratio = many["online_step_median_us"].mean / rows["online_step_median_us"].mean
+    assert many["online_step_over_3_goals"].mean == ratio

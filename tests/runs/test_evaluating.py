@@ -1,0 +1,52 @@
+"""Folds by default with few episodes, a verdict, and results that are not replaced silently."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from latentarm.demonstrations.dataset import write_dataset
+from latentarm.errors import UserError
+from latentarm.runs.evaluating import OVER_FOLDS, evaluate_run
+from latentarm.runs.folder import read_run
+from latentarm.runs.training import TrainConfig, train_run
+from latentarm.tasks.table_top import TableTop
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("evaluating")
+    write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), folder / "table")
+    train_run(TrainConfig(folder / "table", "pca", folder / "run", seeds=1))
+    return folder / "run"
+
+
+def test_with_few_episodes_each_is_held_out_once(run: Path, tmp_path: Path) -> None:
+    evaluation = evaluate_run(run, tmp_path, 0)
+    document = json.loads((tmp_path / "metrics.json").read_text())
+    own = document["about"]["held_out"]
+    assert own == list(read_run(run).held_out)
+    assert sorted([*own, *(one for fold in document["about"]["folds"] for one in fold)]) == list(range(6))
+    over_folds = {row.measure: row for row in evaluation.rows if row.condition == OVER_FOLDS}
+    assert over_folds["noise_free_error"].n == 1 + len(document["about"]["folds"])
+    assert over_folds["noise_free_error"].sd
+    # A plane of motions is PCA itself, so it cannot be better than that.
+    assert "PCA" in evaluation.verdict
+    assert document["verdict"]["sentence"] == evaluation.verdict
+    assert "latentarm " in evaluation.advice
+
+
+def test_zero_folds_measure_the_own_split_alone(run: Path, tmp_path: Path) -> None:
+    evaluation = evaluate_run(run, tmp_path, 0, folds=0)
+    assert {row.condition for row in evaluation.rows} == {None}
+    with pytest.raises(UserError, match="seed 0 there, 1 now"):
+        evaluate_run(run, tmp_path, 1, folds=0)
+    assert evaluate_run(run, tmp_path, 0, folds=0) == evaluation
+
+
+@pytest.mark.parametrize(("folds", "said"), [(1, "at least 2"), (-1, "at least 2"), (7, "too few")])
+def test_folds_that_cannot_be_are_refused(run: Path, tmp_path: Path, folds: int, said: str) -> None:
+    with pytest.raises(UserError, match=said):
+        evaluate_run(run, tmp_path, 0, folds=folds)
+    assert not list(tmp_path.iterdir())

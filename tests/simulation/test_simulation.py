@@ -1,0 +1,82 @@
+import numpy as np
+import pytest
+
+from latentarm.assistance.belief import Rule
+from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
+from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.assistance.catalogue import BELIEFS
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.robots.catalogue import load_robot
+from latentarm.simulation.drive import Setup, simulate
+from latentarm.simulation.drives import drive_all
+from latentarm.tasks.reach import Reach
+from latentarm.tasks.table_top import TableTop
+from latentarm.tasks.task import Task
+from latentarm.types import StepRecord
+
+
+def setup(
+    task: Task,
+    arbitration: Arbitration | None = None,
+    time_limit_s: float = 60.0,
+    rule: Rule = BoltzmannBelief,
+) -> Setup:
+    controller = EndEffectorController(task.robot)
+    return Setup(task, controller, arbitration, BoltzmannConfig(), time_limit_s, rule)
+
+
+def test_mode_switching_reaches_and_stabs() -> None:
+    trace = simulate(setup(TableTop()), 1, "stab", np.random.default_rng(0))
+    assert trace.figures.success
+    assert trace.figures.mode_switches > 0
+    # The end of a stab is well below where it began, above the item.
+    assert trace.position[-1, 2] < TableTop().goals[1].pose.position[2] - 0.08
+
+
+def test_time_runs_out() -> None:
+    trace = simulate(setup(TableTop(), time_limit_s=1.0), 0, "stab", np.random.default_rng(0))
+    assert not trace.figures.success
+    assert trace.figures.time_s == pytest.approx(1.0)
+
+
+def test_every_command_keeps_the_limits() -> None:
+    records: list[StepRecord] = []
+    task = TableTop()
+    simulate(setup(task), 2, "scoop", np.random.default_rng(3), records.append)
+    velocity = np.stack([record.command.velocity for record in records])
+    acceleration = np.diff(velocity, axis=0) * 100.0
+    assert np.isfinite(velocity).all()
+    assert np.abs(velocity).max() <= 0.5 + 1e-9
+    assert (np.abs(acceleration) <= 0.8 * task.robot.limits.acceleration + 1e-6).all()
+    tool = task.robot.chain.forward(np.stack([record.state for record in records])).position
+    assert np.linalg.norm(np.diff(tool, axis=0), axis=1).max() * 100.0 <= 0.25 + 1e-6
+
+
+def test_assistance_believes_in_the_goal_that_is_driven_to() -> None:
+    trace = simulate(setup(TableTop(), FixedAlpha()), 2, "stab", np.random.default_rng(0))
+    assert trace.belief[0] == pytest.approx(1 / 3)
+    assert trace.belief[-1].argmax() == 2
+    assert trace.belief.sum(axis=1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("rule", BELIEFS.values(), ids=BELIEFS.keys())
+@pytest.mark.parametrize("arbitration", [FixedAlpha(), ConfidenceAlpha()], ids=["fixed", "confidence"])
+def test_every_rule_is_sure_of_the_goal_on_the_way(rule: Rule, arbitration: Arbitration) -> None:
+    trace = simulate(setup(TableTop(), arbitration, 20.0, rule), 2, "stab", np.random.default_rng(0))
+    assert trace.belief[0] == pytest.approx(1 / 3)
+    assert trace.belief[:, 2].max() > max(0.5, *trace.belief[:, :2].max(axis=0))
+    assert trace.belief.sum(axis=1) == pytest.approx(1.0)
+
+
+def test_processes_change_nothing() -> None:
+    task = Reach(load_robot("planar"))
+    alone, beside = (drive_all([setup(task)], 2, seed=7, jobs=jobs) for jobs in (1, 2))
+    for one, other in zip(alone, beside, strict=True):
+        np.testing.assert_array_equal(one.position, other.position)
+
+
+def test_another_seed_is_another_drive() -> None:
+    task = Reach(load_robot("planar"))
+    one, other = (drive_all([setup(task)], 1, seed=seed, jobs=1)[0] for seed in (0, 1))
+    assert not np.array_equal(one.position[0], other.position[0])

@@ -1,0 +1,177 @@
+"""One decoder, one cell, one curve: what they hold, and that they are the same again."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from latentarm.alignment.answers import Answers
+from latentarm.alignment.contract import identity
+from latentarm.alignment.queries import next_motion, novelty
+from latentarm.studies.alignment.cell import Cell, measure_cell
+from latentarm.studies.alignment.conditions import (
+    ALL_PRIORS,
+    CONDITIONS,
+    FEW_ANSWERS,
+    LEARNED,
+    NO_ALIGN,
+    SINGLE_PRIORS,
+)
+from latentarm.studies.alignment.curves import (
+    AT_RANDOM,
+    BY_DISAGREEMENT,
+    BY_NOVELTY,
+    CHOICES,
+    CurveCell,
+    measure_curve,
+)
+from latentarm.studies.alignment.decoder import DecoderCell, learn_decoder
+from latentarm.studies.alignment.documents import time_alignment
+from latentarm.studies.alignment.preset import Curves, Preset
+from latentarm.studies.alignment.scene import scene_of
+from latentarm.studies.alignment.streams import Stream
+
+TINY = Preset(
+    "tiny",
+    episodes=3,
+    test_episodes=2,
+    epochs=1,
+    hidden=(8,),
+    noises=(0.0, 0.5),
+    answers=4,
+    ideal_answers=30,
+    unlabelled=40,
+    test_motions=30,
+    runs=2,
+    steps=4,
+    ideal_steps=6,
+    curves=Curves(answers=(1, 4), candidates=12, ensemble=2, ensemble_steps=3, disagreement_up_to=4),
+)
+
+
+@pytest.fixture(scope="module", params=["plane", "reach_and_pour"])
+def learned(request):
+    return learn_decoder(DecoderCell(request.param, "cae", TINY, 0))
+
+
+@pytest.fixture(scope="module")
+def scene(learned):
+    return scene_of(learned)
+
+
+@pytest.fixture(scope="module")
+def result(learned):
+    return measure_cell(Cell(learned, 0.5))
+
+
+def test_every_condition_has_an_error_for_each_run(result):
+    assert list(result.errors) == list(CONDITIONS)
+    for name, errors in result.errors.items():
+        assert errors.shape == ((1,) if name == NO_ALIGN else (TINY.runs,))
+        assert np.isfinite(errors).all()
+        assert (errors > 0).all()
+    assert result.encoded > 0
+    assert set(result.learn_s) == set(CONDITIONS) - {NO_ALIGN, "Manual Align"}
+
+
+def test_a_cell_is_the_same_from_the_same_seed(learned, result):
+    again = measure_cell(Cell(learned, 0.5))
+    for name, errors in result.errors.items():
+        np.testing.assert_array_equal(errors, again.errors[name])
+    assert again.encoded == result.encoded
+    anew = learn_decoder(learned.cell)
+    for name, tensor in learned.model.trained_.tensors.items():
+        np.testing.assert_array_equal(tensor, anew.model.trained_.tensors[name])
+
+
+def test_another_seed_gives_another_decoder(learned):
+    other = learn_decoder(replace(learned.cell, seed=1))
+    assert any(
+        not np.array_equal(tensor, other.model.trained_.tensors[name])
+        for name, tensor in learned.model.trained_.tensors.items()
+    )
+
+
+def test_noise_changes_the_answers_and_not_the_questions(learned, scene):
+    exact, noisy = (scene.ask(8, noise, Stream.QUESTIONS, Stream.ANSWERS, 0) for noise in (0.0, 0.5))
+    np.testing.assert_array_equal(exact.motions.start, noisy.motions.start)
+    assert not np.array_equal(exact.u, noisy.u)
+    other = scene.ask(8, 0.0, Stream.QUESTIONS, Stream.ANSWERS, 1)
+    assert not np.array_equal(exact.motions.start, other.motions.start)
+    # Fewer questions are the first of more.
+    np.testing.assert_array_equal(
+        scene.ask(3, 0.5, Stream.QUESTIONS, Stream.ANSWERS, 0).u, noisy[np.arange(3)].u
+    )
+
+
+def test_alignments_are_judged_on_motions_that_trained_nothing(scene):
+    assert len(scene.test) == TINY.test_motions
+    shown = {tuple(state) for state in scene.shown.start}
+    assert not shown & {tuple(state) for state in scene.test.motions.start}
+    np.testing.assert_array_equal(scene.test.u, scene.preference.inputs(scene.test.motions))
+
+
+def test_z_u_of_a_person_who_means_what_the_decoder_does_is_perfect(scene):
+    """The error is that of the paper: 0 where u does just what was meant."""
+    motions = scene.test.motions
+    u = np.full((len(motions), 2), 0.3)
+    end = motions.start + motions.duration_s * scene.decoder.decode(u, motions.context)
+    met = replace(scene, test=Answers(replace(motions, end=end), u))
+    assert met.errors([identity])[0] == pytest.approx(0, abs=1e-20)
+
+
+def test_single_priors_weigh_what_they_weigh_among_all():
+    assert set(SINGLE_PRIORS) < set(FEW_ANSWERS)
+    for weight in ("proportional", "reversible", "consistent"):
+        alone = [getattr(priors, weight) for priors in SINGLE_PRIORS.values()]
+        assert sum(alone) == getattr(LEARNED[ALL_PRIORS], weight)
+        assert sorted(alone)[:2] == [0, 0]
+
+
+@pytest.fixture(scope="module")
+def curve(learned):
+    return measure_curve(CurveCell(learned, 0.0))
+
+
+def test_a_curve_has_a_point_for_every_number_and_choice(curve):
+    assert set(curve.errors) == set(CHOICES)
+    for errors in curve.errors.values():
+        assert list(errors) == [1, 4]
+        assert all(values.shape == (TINY.runs,) for values in errors.values())
+    # Neither has begun to choose at the first answer.
+    np.testing.assert_array_equal(curve.errors[AT_RANDOM][1], curve.errors[BY_DISAGREEMENT][1])
+    assert not np.array_equal(curve.errors[AT_RANDOM][1], curve.errors[BY_NOVELTY][1])
+
+
+def test_asking_stops_within_what_may_be_asked_and_has_the_error_there(curve):
+    assert ((curve.stopped_after >= 3) & (curve.stopped_after <= 4)).all()
+    for run, count in enumerate(curve.stopped_after):
+        if count == 4:
+            assert curve.stopped_at[run] == pytest.approx(curve.errors[BY_NOVELTY][4][run], rel=1e-4)
+
+
+def test_a_curve_is_the_same_again(learned, curve):
+    again = measure_curve(CurveCell(learned, 0.0))
+    for choice, errors in curve.errors.items():
+        for count, values in errors.items():
+            np.testing.assert_array_equal(values, again.errors[choice][count])
+    np.testing.assert_array_equal(curve.stopped_after, again.stopped_after)
+    np.testing.assert_array_equal(curve.stopped_at, again.stopped_at)
+
+
+def test_questions_by_novelty_soon_hold_both_parts_of_reach_and_pour():
+    """Where two things are meant in two places, both are asked about within three questions."""
+    scene = scene_of(learn_decoder(DecoderCell("reach_and_pour", "pca", TINY, 0)))
+    motions = scene.shown
+    asked = []
+    for _ in range(3):
+        asked.append(next_motion(novelty(scene.chain, motions, asked), asked))
+    there = scene.preference.is_there(scene.chain.forward(motions.start[asked]).position)
+    assert there.any()
+    assert not there.all()
+
+
+def test_the_time_of_one_alignment_and_of_all_runs_is_taken(learned):
+    took = time_alignment(learned)
+    assert took["runs"] == TINY.runs
+    assert min(took["alone_s"], took["in_one_fit_s"]) > 0

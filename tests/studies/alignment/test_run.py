@@ -1,0 +1,151 @@
+import json
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from latentarm.errors import UserError
+from latentarm.metrics.measures import MEASURES
+from latentarm.metrics.results import read_results
+from latentarm.runs.results_folder import CONFIG
+from latentarm.studies.alignment.conditions import CONDITIONS
+from latentarm.studies.alignment.figures.draw import FIGURES
+from latentarm.studies.alignment.preset import PRESETS, Curves, Drives, Preset
+from latentarm.studies.alignment.run import MADE, MODELS, TASKS, AlignmentConfig, run_alignment
+from latentarm.studies.alignment.summary import summary_tables
+
+TINY = Preset(
+    "tiny",
+    episodes=3,
+    test_episodes=2,
+    epochs=1,
+    hidden=(8,),
+    noises=(0.0, 0.5),
+    answers=4,
+    ideal_answers=30,
+    unlabelled=20,
+    test_motions=20,
+    runs=2,
+    steps=2,
+    ideal_steps=2,
+    curves=Curves(
+        noises=(0.0,), answers=(1, 4), candidates=8, ensemble=2, ensemble_steps=2, disagreement_up_to=4
+    ),
+    drives=Drives(models=("cvae",), seeds=1, episodes=6, epochs=1, answers=2, to_each_goal=1, limit_s=0.3),
+)
+SAME_EVERYWHERE = ("results.json", "results.md", "runs.json", "hypotheses.json", "targets.json")
+
+
+def tiny(out: Path, **changes) -> AlignmentConfig:
+    return replace(AlignmentConfig(out, TINY, ("plane",), jobs=1, quiet=True), **changes)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """A run on this process alone: its rows and its folder."""
+    out = tmp_path_factory.mktemp("alone") / "run"
+    return run_alignment(tiny(out)), out
+
+
+def test_every_model_condition_and_noise_has_its_row(done):
+    rows, out = done
+    assert read_results(out / "results.json") == rows
+    assert {row.study for row in rows} == {"alignment"}
+    assert {row.task for row in rows} == {"plane"}
+    assert {row.measure for row in rows} <= set(MEASURES)
+    of = {(row.model, row.condition, row.measure): row for row in rows}
+    for model in MODELS:
+        assert of[model, "the encoder's own choice", "relative_alignment_error"].n == 1
+        for noise in ("0", "0.5"):
+            for name in CONDITIONS:
+                row = of[model, f"{name}, noise {noise}", "relative_alignment_error"]
+                assert row.n == (1 if name == "No Align" else TINY.runs)
+                assert row.mean > 0
+    assert of["cae", "by novelty, 4 answers, noise 0", "relative_alignment_error"].n == TINY.runs
+    assert of["cae", "at random, 1 answer, noise 0", "relative_alignment_error"].mean > 0
+    assert 3 <= of["cae", "by novelty, stopped, noise 0", "answers"].mean <= 4
+
+
+def test_at_a_glance_are_the_papers_conditions_under_every_noise(done):
+    rows, _ = done
+    console = Console(width=100, file=StringIO())
+    console.print(*summary_tables(rows, TINY))
+    said = console.file.getvalue()
+    assert "Plane, cAE, simulated" in " ".join(said.split())
+    for words in (*CONDITIONS, "noise 0", "noise 0.5"):
+        assert words in said
+
+
+def test_noise_changes_nothing_for_who_asks_nothing(done):
+    rows, _ = done
+    for model in MODELS:
+        same = {row.mean for row in rows if row.model == model and (row.condition or "")[:8] == "No Align"}
+        assert len(same) == 1
+
+
+def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
+    _, out = done
+    assert {path.name for path in out.iterdir()} == {CONFIG, *MADE} - {"drives.png"}
+    page = (out / "results.md").read_text()
+    assert "**simulated**" in page
+    assert "--preset tiny --task plane --seed 0" in page
+    for words in ("H1", "H2", "H3", *CONDITIONS, "beyond the paper", "Where asking stops", "missed"):
+        assert words in page
+    for name in FIGURES[:3]:
+        assert f"]({name}.png)" in page
+    assert "Drives to the goals" not in page
+    timings = json.loads((out / "timings.json").read_text())
+    assert timings["one_alignment"][0]["alone_s"] > 0
+    runs = json.loads((out / "runs.json").read_text())
+    assert all(len(one["values"]) in (1, TINY.runs) for one in runs)
+
+
+@pytest.mark.slow
+def test_two_processes_give_the_same_bytes(done, tmp_path):
+    _, out = done
+    run_alignment(tiny(tmp_path / "two", jobs=2))
+    for name in SAME_EVERYWHERE:
+        assert (tmp_path / "two" / name).read_bytes() == (out / name).read_bytes(), name
+
+
+def test_drives_alone_are_a_page_of_their_own(tmp_path):
+    rows = run_alignment(tiny(tmp_path / "run", tasks=("table_top",)))
+    assert "cVAE" in summary_tables(rows, TINY)[0].title
+    assert {row.task for row in rows} == {"table_top"}
+    page = (tmp_path / "run" / "results.md").read_text()
+    assert "## Drives to the goals of the demo" in page
+    assert "Tests of the hypotheses" not in page
+    assert {path.name for path in (tmp_path / "run").glob("*.png")} == {"drives.png"}
+
+
+def test_a_folder_of_something_else_is_left_alone(tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    with pytest.raises(UserError, match="no earlier run of this command"):
+        run_alignment(tiny(tmp_path))
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"tasks": ()}, "at least one task"),
+        ({"tasks": ("plane", "plane")}, "none twice"),
+        ({"tasks": ("stir",)}, "no task 'stir'"),
+        ({"jobs": 0}, "number of jobs"),
+        ({"backend": "abacus"}, "no backend"),
+        ({"seed": -1}, "seed"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_before_any_work(tmp_path, changes, said):
+    with pytest.raises(UserError, match=said):
+        tiny(tmp_path / "run", **changes)
+    assert not (tmp_path / "run").exists()
+
+
+def test_the_paper_preset_has_the_papers_numbers():
+    paper = PRESETS["paper"]
+    assert (paper.answers, paper.ideal_answers, paper.unlabelled, paper.runs) == (10, 1000, 1000, 10)
+    assert paper.noises == (0.0, 0.1, 0.5)
+    assert TASKS[:3] == ("plane", "pour", "reach_and_pour")

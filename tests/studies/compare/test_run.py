@@ -1,0 +1,107 @@
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from latentarm.demonstrations.importing import import_to
+from latentarm.metrics.results import read_results
+from latentarm.robots.catalogue import load_robot
+from latentarm.runs.results_folder import CONFIG
+from latentarm.studies.compare.preset import Preset
+from latentarm.studies.compare.run import MADE, CompareConfig, run_compare
+from latentarm.types import Row
+
+POUR = Path(__file__).parents[4] / "shared" / "demonstrations" / "panda_pour_coffee.npz"
+SAME_EVERYWHERE = ("results.json", "results.md", "seeds.json")
+
+
+def config(table: Path, tiny: Preset, out: Path) -> CompareConfig:
+    return CompareConfig((table,), out, tiny, ours="cae", jobs=1, quiet=True)
+
+
+@pytest.fixture(scope="module")
+def done(table: Path, tiny: Preset, tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Row], Path]:
+    out = tmp_path_factory.mktemp("compared") / "run"
+    return run_compare(config(table, tiny, out)), out
+
+
+def test_the_folder_holds_what_is_promised(done: tuple[list[Row], Path]) -> None:
+    rows, out = done
+    assert {path.name for path in out.iterdir()} == {CONFIG, *MADE}
+    assert read_results(out / "results.json") == rows
+    held_out = json.loads((out / CONFIG).read_text())["held_out"]["table"]
+    assert sorted(index for fold in held_out for index in fold) == list(range(5))
+
+
+def test_every_model_has_every_measure_under_every_noise(done: tuple[list[Row], Path]) -> None:
+    rows, _ = done
+    for noise in ("noise 0 rad", "noise 0.05 rad"):
+        by_model = {
+            model: {row.measure for row in rows if (row.model, row.condition) == (model, noise)}
+            for model in ("pca", "cae")
+        }
+        assert by_model["pca"] == by_model["cae"] >= {"reversal", "planned_reach_m", "motion_turn_p95"}
+
+
+def test_the_noisy_error_is_the_noise_free_one_without_noise(done: tuple[list[Row], Path]) -> None:
+    rows, _ = done
+    at = {(row.measure, row.condition): row.mean for row in rows if row.model == "cae"}
+    noisy, clean = "error_percent_of_pca", "noise_free_error_percent_of_pca"
+    assert at[noisy, "noise 0 rad"] == pytest.approx(at[clean, "noise 0 rad"])
+    assert at[noisy, "noise 0.05 rad"] != at[clean, "noise 0.05 rad"]
+
+
+def test_pca_neither_drifts_nor_forgets(done: tuple[list[Row], Path]) -> None:
+    rows, _ = done
+    for row in rows:
+        if row.model == "pca" and row.measure in ("drift", "reversal"):
+            assert row.mean == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_seeds_are_those_behind_the_table(done: tuple[list[Row], Path], tiny: Preset) -> None:
+    rows, out = done
+    seeds = [
+        entry["values"]
+        for entry in json.loads((out / "seeds.json").read_text())
+        if (entry["model"], entry["noise_rad"], entry["measure"]) == ("cae", 0.0, "reversal")
+        and entry["demonstrations"] > 1
+    ]
+    assert np.shape(seeds) == (tiny.folds, tiny.seeds)
+    (row,) = (
+        row for row in rows if (row.model, row.condition, row.measure) == ("cae", "noise 0 rad", "reversal")
+    )
+    assert row.mean == pytest.approx(np.mean(seeds))
+    assert row.sd == pytest.approx(np.mean(seeds, axis=0).std(ddof=1))
+
+
+def test_drives_are_told_from_measurements_and_called_simulated(done: tuple[list[Row], Path]) -> None:
+    rows, out = done
+    driven = {row.model for row in rows if row.condition == "noise 0 rad, driven"}
+    assert driven == {"cae", "end_effector"}
+    page = (out / "results.md").read_text()
+    assert "A **simulated** operator drives" in page
+    assert "![Error against reversal and reach](pareto.png)" in page
+
+
+@pytest.mark.slow
+def test_the_same_seed_gives_the_same_bytes_in_two_processes(
+    done: tuple[list[Row], Path], table: Path, tiny: Preset, tmp_path: Path
+) -> None:
+    _, out = done
+    again = tmp_path / "again"
+    run_compare(replace(config(table, tiny, again), jobs=2))
+    for name in SAME_EVERYWHERE:
+        assert (again / name).read_bytes() == (out / name).read_bytes(), name
+
+
+@pytest.mark.skipif(not POUR.exists(), reason="the recorded demonstrations are not beside this clone")
+def test_recorded_demonstrations_are_compared_on(tmp_path: Path, tiny: Preset) -> None:
+    import_to(POUR, tmp_path / "pour", load_robot("panda"))
+    small = replace(tiny, models=("pca", "scl"), noises_rad=(0.01,), seeds=1, demonstrations=(), drives=0)
+    rows = run_compare(CompareConfig((tmp_path / "pour",), tmp_path / "out", small, jobs=1, quiet=True))
+    at = {(row.model, row.measure): row.mean for row in rows if row.condition == "noise 0.01 rad"}
+    assert at["pca", "error_percent_of_pca"] == pytest.approx(100.0, abs=5.0)
+    assert at["scl", "drift"] == pytest.approx(0.0, abs=1e-9)
+    assert "No targets are judged" in (tmp_path / "out" / "results.md").read_text()

@@ -1,0 +1,189 @@
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from latentarm.errors import UserError
+from latentarm.metrics.measures import MEASURES
+from latentarm.metrics.results import read_results
+from latentarm.parallel.grid import CellError
+from latentarm.runs.results_folder import CONFIG
+from latentarm.studies.shared_autonomy import run as study
+from latentarm.studies.shared_autonomy.ablations import variants
+from latentarm.studies.shared_autonomy.cell import METHODS, TASKS, Entropy, measure_cell
+from latentarm.studies.shared_autonomy.preset import PRESETS, Ablation, Preset
+from latentarm.studies.shared_autonomy.run import (
+    MADE,
+    MODELS,
+    SharedAutonomyConfig,
+    run_shared_autonomy,
+)
+
+TINY = Preset(
+    "tiny",
+    demonstrations=6,
+    test_demonstrations=2,
+    seeds=3,
+    drives=2,
+    epochs=1,
+    hidden=(8,),
+    betas=(0.0, 75.0, 1e4),
+    learners={"slow": 10.0},
+    changes_s=(0.0, 1.0),
+    ablation=Ablation(seeds=2, drives=2, weights=(0.0, 2.0), sharpness=(8.0,), contexts=("demonstrated",)),
+)
+TASK = "planar_two_cups"
+SAME_EVERYWHERE = ("results.json", "results.md", "seeds.json", "courses.json", "hypotheses.json")
+
+
+def tiny(out: Path, **changes) -> SharedAutonomyConfig:
+    return replace(SharedAutonomyConfig(out, TINY, (TASK,), jobs=1, quiet=True), **changes)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """A run on this process alone: its rows and its folder."""
+    out = tmp_path_factory.mktemp("alone") / "run"
+    return run_shared_autonomy(tiny(out)), out
+
+
+def test_every_method_and_person_has_every_measure(done):
+    rows, out = done
+    assert read_results(out / "results.json") == rows
+    assert {row.study for row in rows} == {"shared_autonomy"}
+    assert {row.task for row in rows} == {TASK}
+    assert {row.model for row in rows} == set(MODELS)
+    of = {(row.model, row.condition, row.measure): row for row in rows}
+    measures = {row.measure for row in rows if row.condition == "LA, beta 75"}
+    assert {"final_state_error", "final_tool_error", "time_s", "arrival_rate", "success_rate"} <= measures
+    assert measures <= set(MEASURES)
+    for model in MODELS:
+        for method in METHODS:
+            for person in TINY.people:
+                for measure in measures:
+                    row = of[model, f"{method}, {person.label}", measure]
+                    assert row.n == TINY.seeds
+                    assert row.mean is not None
+        for trained in ("without entropy", "with entropy"):
+            assert of[model, trained, "noise_free_error_percent_of_pca"].mean > 0
+
+
+def test_without_help_nothing_is_certified(done):
+    rows, _ = done
+    shares = [row for row in rows if row.measure.startswith("certified_share")]
+    assert all(row.mean == 0.0 for row in shares if (row.condition or "").startswith("LA, "))
+
+
+def test_every_variant_of_the_entropy_has_its_rows(done):
+    rows, _ = done
+    known = {(row.condition, row.measure) for row in rows if row.model == "cae"}
+    names = variants(TINY.ablation, TINY.entropy_weights["cae"])
+    assert list(names) == [
+        "lambda_2 0",
+        "lambda_2 2",
+        "kappa 8",
+        "equation 15 to the letter",
+        "progress of the joints alone",
+        "contexts demonstrated",
+    ]
+    assert names["lambda_2 0"] is None
+    assert names["lambda_2 2"] == Entropy(2.0)
+    for name in names:
+        assert (name, "noise_free_error_percent_of_pca") in known
+        assert {(f"{name}, {person.label}", "final_state_error") for person in TINY.varied_people} <= known
+
+
+def test_what_is_varied_by_nothing_is_the_study_itself(tmp_path):
+    """Two of the three seeds, and the first drives of each: the same models, starts and chances."""
+    whole = study._cells(tiny(tmp_path))
+    proper = next(cell for cell in whole if (cell.model, cell.entropy) == ("cae", Entropy(2.0)))
+    varied = next(cell for cell in whole if cell.variant == "lambda_2 2")
+    latest = TINY.latest_change.label
+    one, other = (
+        next(outcome for outcome in measure_cell(cell).outcomes if outcome.person.label == latest)
+        for cell in (replace(proper, drives=4), varied)
+    )
+    few = one.figures["final_state_error"][: TINY.ablation.seeds, : TINY.ablation.drives]
+    assert other.figures["final_state_error"] == pytest.approx(few, rel=1e-3)
+
+
+def test_rows_stand_in_one_order_wherever_they_were_measured(done):
+    rows, _ = done
+    proper = [row.model for row in rows if row.condition in ("without entropy", "with entropy")]
+    assert proper == [model for model in MODELS for _ in range(2)]
+
+
+def test_the_folder_holds_what_is_promised(done):
+    _, out = done
+    made = {path.name for path in out.iterdir()}
+    assert made == {CONFIG, *MADE} - {f"{task}.png" for task in TASKS if task != TASK}
+    config = json.loads((out / CONFIG).read_text())
+    assert config["preset"]["name"] == "tiny"
+    assert config["preset"]["learners"] == {"slow": 10.0}
+    seeds = json.loads((out / "seeds.json").read_text())
+    rows = json.loads((out / "results.json").read_text())["rows"]
+    assert [entry["mean"] for entry in seeds] == [row["mean"] for row in rows]
+    assert {entry["over"] for entry in seeds} == {"seeds", "drives"}
+    courses = json.loads((out / "courses.json").read_text())
+    assert {course["method"] for course in courses} == set(METHODS)
+    assert all(course["belief_mean"][0] == 0.5 for course in courses)
+
+
+@pytest.mark.parametrize(
+    ("backend", "jobs"), [("joblib", 2), ("dask", 2), pytest.param("ray", 2, marks=pytest.mark.slow)]
+)
+def test_the_same_bytes_wherever_the_cells_run(done, tmp_path, backend, jobs):
+    run_shared_autonomy(tiny(tmp_path, backend=backend, jobs=jobs))
+    for name in SAME_EVERYWHERE:
+        assert (tmp_path / name).read_bytes() == (done[1] / name).read_bytes(), name
+
+
+def test_an_earlier_run_makes_room_and_another_study_stays(done, tmp_path, monkeypatch):
+    out = tmp_path / "run"
+    out.mkdir()
+    (out / CONFIG).write_bytes((done[1] / CONFIG).read_bytes())
+    (out / "models.png").write_text("of the earlier run")
+    (out / "notes.txt").write_text("mine")
+    monkeypatch.setattr(study, "measure_cell", _faulty)
+    with pytest.raises(CellError, match=r"planar_two_cups, isometric, without entropy[\s\S]*no way"):
+        run_shared_autonomy(tiny(out))
+    assert {path.name for path in out.iterdir()} == {CONFIG, "notes.txt"}
+    (out / CONFIG).write_text('{"study": "properties"}')
+    with pytest.raises(UserError, match="no earlier run of this command"):
+        run_shared_autonomy(tiny(out))
+    assert (out / CONFIG).read_text() == '{"study": "properties"}'
+
+
+def _faulty(cell):
+    raise ZeroDivisionError("no way")
+
+
+def test_sizes_that_make_no_sense_name_the_cell(tmp_path):
+    with pytest.raises(UserError, match=r"planar_two_cups, isometric, without entropy: .*demonstration"):
+        run_shared_autonomy(tiny(tmp_path, preset=replace(TINY, demonstrations=0)))
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"tasks": ("three_cups",)}, "three_cups.*planar_two_cups, panda_two_cups"),
+        ({"tasks": ()}, "at least one task"),
+        ({"tasks": (TASK, TASK)}, "twice"),
+        ({"seed": -1}, "seed"),
+        ({"jobs": 0}, "jobs"),
+        ({"backend": "slurm"}, "slurm"),
+    ],
+)
+def test_refused_before_anything_is_written(tmp_path, changes, said):
+    with pytest.raises(UserError, match=said):
+        tiny(tmp_path / "run", **changes)
+    assert not (tmp_path / "run").exists()
+
+
+def test_presets_have_their_own_names_and_the_paper_s_has_everyone():
+    assert {name: preset.name for name, preset in PRESETS.items()} == {name: name for name in PRESETS}
+    labels = [person.label for person in PRESETS["paper"].people]
+    assert len(set(labels)) == len(labels)
+    assert {"beta 75", "beta 1000", "slow learner", "fast learner", "change after 8 s"} <= set(labels)
+    assert max(person.changes_at_s for person in PRESETS["paper"].people) == 8.0
