@@ -28,14 +28,20 @@ $(VENV)/installed-dev: $(VENV)/installed
 	$(PIP) --editable '.[dev]'
 	@touch $@
 
+# Node comes with the dev extra, TypeScript from npm: both check the page's JavaScript, and neither reaches the browser.
+node_modules/installed: package-lock.json $(VENV)/installed-dev
+	$(BIN)/npm ci --silent
+	@touch $@
+
 demo: $(VENV)/installed ## Learn latent actions and drive a 7-DoF arm to three goals (minutes).
 	$(BIN)/latentarm demo --out demo
 
-check: $(VENV)/installed-dev ## Lint, formatting, types and import layers.
+check: $(VENV)/installed-dev node_modules/installed ## Lint, formatting, types and import layers.
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright --pythonpath $(BIN)/python
 	$(BIN)/lint-imports
+	$(BIN)/node node_modules/typescript/bin/tsc
 
 test: check ## Everything that must hold, in minutes.
 	$(PYTEST) -m "not slow and not clock" $(PARALLEL)
