@@ -19,15 +19,15 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.control.loop import ControlLoop
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
-from latentarm.web.addresses import TeleopConfig, listen
-from latentarm.web.channel import Given, Order, Report, new_channel, parse_report
-from latentarm.web.cockpit import Cockpit
-from latentarm.web.connections import ConnectionLimits
-from latentarm.web.live_arm import LiveArm
-from latentarm.web.recording import EpisodeWriter
-from latentarm.web.server import build_app, gated, serve_on, server_config
-from latentarm.web.setting import PERIOD_S, Setting, Spec, load_setting
-from latentarm.web.supervisor import ControlProcess
+from latentarm.web.arm_process.cockpit import Cockpit
+from latentarm.web.arm_process.drive_setup import PERIOD_S, Setting, Spec, load_setting
+from latentarm.web.arm_process.live_arm import LiveArm
+from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.protocol.channel import Given, Order, Report, new_channel, parse_report
+from latentarm.web.server.addresses import TeleopConfig, listen
+from latentarm.web.server.app import build_app, gated, serve_on, server_config
+from latentarm.web.server.connections import ConnectionLimits
+from latentarm.web.server.control_process import ControlProcess
 
 HERE = Path(__file__).parent
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from latentarm.control.journal import read_journal
-from latentarm.web.channel import ChooseMode, ChooseProfile, ChooseRun, Enable, Record, Reset
-from latentarm.web.cockpit import LATCH_MAX_S
+from latentarm.web.arm_process.cockpit import LATCH_MAX_S
+from latentarm.web.protocol.channel import ChooseMode, ChooseProfile, ChooseRun, Enable, Record, Reset
 
 
 def enabled_at(desk, now_s, at_s=0.1):

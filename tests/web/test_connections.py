@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import pytest
 import uvicorn
 
-from latentarm.web.addresses import TeleopConfig, listen
-from latentarm.web.connections import HEAD_LIMIT, ConnectionLimits
-from latentarm.web.server import serve_on, server_config
-from latentarm.web.setting import Spec
+from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.server.addresses import TeleopConfig, listen
+from latentarm.web.server.app import serve_on, server_config
+from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits
 
 from .test_tls import made_certificate
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from latentarm.web.allowance import BURST
-from latentarm.web.messages import FRAME_LIMIT
+from latentarm.web.protocol.messages import FRAME_LIMIT
+from latentarm.web.server.allowance import BURST
 
 HELLO = '{"type": "hello", "version": 1}'
 

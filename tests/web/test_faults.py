@@ -11,7 +11,7 @@ import pytest
 
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.journal import read_journal
-from latentarm.web.setting import Spec
+from latentarm.web.arm_process.drive_setup import Spec
 
 from .conftest import served
 
@@ -94,9 +94,9 @@ def test_a_blocked_event_loop(recorded):
 SERVER = """
 import sys, time
 from pathlib import Path
-from latentarm.web.channel import ChooseMode, Enable, Given, Record
-from latentarm.web.setting import Spec
-from latentarm.web.supervisor import ControlProcess
+from latentarm.web.protocol.channel import ChooseMode, Enable, Given, Record
+from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.server.control_process import ControlProcess
 
 if __name__ == "__main__":
     control = ControlProcess(Spec(Path(sys.argv[1]), out=Path(sys.argv[2])))

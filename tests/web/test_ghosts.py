@@ -5,8 +5,8 @@ import pytest
 
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.types import Context, Input
-from latentarm.web.ghosts import GhostPaths
-from latentarm.web.setting import PERIOD_S
+from latentarm.web.arm_process.drive_setup import PERIOD_S
+from latentarm.web.arm_process.ghosts import GhostPaths
 
 DIRECTIONS = {"up": (0.0, 1.0), "down": (0.0, -1.0), "left": (-1.0, 0.0), "right": (1.0, 0.0)}
 

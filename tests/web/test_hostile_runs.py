@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.web import trial
-from latentarm.web.setting import Spec
-from latentarm.web.trial import Trial
+from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.server import run_check
+from latentarm.web.server.run_check import Trial
 
 from .conftest import wait_for
 
@@ -99,7 +99,7 @@ def test_while_the_arm_moves_no_run_is_tried(tmp_path, serve, trained):
 
 
 def test_a_run_that_loads_for_ever_is_given_up(tmp_path, trained, monkeypatch):
-    monkeypatch.setattr(trial, "WITHIN_S", 0.0)
+    monkeypatch.setattr(run_check, "WITHIN_S", 0.0)
     tried = Trial(Spec(out=tmp_path), trained, "mine")
     try:
         assert "The run mine takes more than" in str(asyncio.run(tried.failure()))

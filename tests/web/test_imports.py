@@ -7,8 +7,8 @@ import sys
 def test_neither_the_server_nor_the_control_process_loads_torch_or_scikit_learn(trained):
     code = (
         "import sys; from pathlib import Path;"
-        "import latentarm.web.server, latentarm.web.page, latentarm.web.control_process;"
-        "from latentarm.web.setting import Spec, load_setting;"
+        "import latentarm.web.server.app, latentarm.web.server.pages, latentarm.web.arm_process.process;"
+        "from latentarm.web.arm_process.drive_setup import Spec, load_setting;"
         f"load_setting(Spec(Path({str(trained)!r}))).step();"
         "print({'torch', 'sklearn'} & set(sys.modules))"
     )

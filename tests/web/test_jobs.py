@@ -11,7 +11,7 @@ from typing import Literal
 from pydantic import TypeAdapter
 
 from latentarm.errors import UserError
-from latentarm.web.jobs import Job, JobMessage, Wire
+from latentarm.web.jobs.job import Job, JobMessage, Wire
 
 
 class Number(JobMessage):
@@ -93,7 +93,7 @@ def test_a_job_dies_with_its_parent(tmp_path):
     code = (
         "import sys, time; sys.path.insert(0, sys.argv[1]);"
         "import test_jobs as t;"
-        "from latentarm.web.jobs import Job;"
+        "from latentarm.web.jobs.job import Job;"
         "job = Job(t.sleep_on, (sys.argv[2],), t.NUMBERS, 'Sleeping');"
         "print(t.until(job.heard)[0].value, flush=True); time.sleep(60)"
     )

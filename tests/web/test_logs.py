@@ -5,7 +5,7 @@ import logging
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.web.logs import make_printable
+from latentarm.web.server.logs import make_printable
 
 
 def shown(message, *args, error=None):

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from latentarm.alignment.profile import TRIAL, profile_names, trial_folder
-from latentarm.web import personalising
-from latentarm.web.channel import ChooseProfile
-from latentarm.web.messages import parse_message
-from latentarm.web.personalise_job import PersonaliseJob, PersonalisePlan
-from latentarm.web.personalise_messages import (
+from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
+from latentarm.web.protocol.channel import ChooseProfile
+from latentarm.web.protocol.messages import parse_message
+from latentarm.web.protocol.personalise_messages import (
     BeginPersonalise,
     CancelPersonalise,
     DiscardAlignment,
@@ -22,8 +22,8 @@ from latentarm.web.personalise_messages import (
     Personalise,
     TryAlignment,
 )
-from latentarm.web.personalising import Driven, Personalising
-from latentarm.web.setting import Spec
+from latentarm.web.server import personalising
+from latentarm.web.server.personalising import Driven, Personalising
 
 from .conftest import wait_for
 

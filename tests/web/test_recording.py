@@ -9,8 +9,8 @@ from latentarm.control.journal import read_journal
 from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.types import Command, StepRecord, Stop
-from latentarm.web import recording
-from latentarm.web.recording import EpisodeWriter
+from latentarm.web.arm_process import recording
+from latentarm.web.arm_process.recording import EpisodeWriter
 
 HEADER = EpisodeHeader("panda", tuple(f"joint{i + 1}" for i in range(7)), 100.0)
 

@@ -8,7 +8,7 @@ from starlette.applications import Starlette
 from starlette.responses import PlainTextResponse
 from starlette.routing import Route, WebSocketRoute
 
-from latentarm.web.security import (
+from latentarm.web.server.security import (
     COOKIE,
     EXPIRED,
     EXPIRED_WHY,

@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from latentarm.web.sessions import MOST, Sessions
+from latentarm.web.server.sessions import MOST, Sessions
 
 
 def test_the_first_page_drives_and_the_next_watches():

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.web.shared import Flag, LatestSlot
+from latentarm.web.protocol.shared_memory import Flag, LatestSlot
 
 
 @given(st.lists(st.binary(max_size=64), min_size=1))

@@ -5,9 +5,9 @@ import time
 
 import pytest
 
-from latentarm.web.channel import Report
-from latentarm.web.sessions import Sessions
-from latentarm.web.states import States
+from latentarm.web.protocol.channel import Report
+from latentarm.web.server.sessions import Sessions
+from latentarm.web.server.states import States
 
 LONG_S = 0.4
 

@@ -12,10 +12,10 @@ from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.errors import UserError
 from latentarm.runs.folder import read_run
 from latentarm.types import Command, StepRecord
-from latentarm.web.messages import parse_message
-from latentarm.web.setting import Spec
-from latentarm.web.shelf import Shelf
-from latentarm.web.training_job import FEWEST, TrainingJob, TrainingPlan, train_as_planned
+from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.jobs.training import FEWEST, TrainingJob, TrainingPlan, train_as_planned
+from latentarm.web.protocol.messages import parse_message
+from latentarm.web.server.run_list import Shelf
 
 from .conftest import wait_for
 

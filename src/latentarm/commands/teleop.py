@@ -43,9 +43,9 @@ def teleop(
     """
     from latentarm.control.journal_limits import JournalLimits
     from latentarm.control.recordings import JOURNAL_SUFFIX
-    from latentarm.web.addresses import TeleopConfig
-    from latentarm.web.server import serve
-    from latentarm.web.setting import Spec
+    from latentarm.web.arm_process.drive_setup import Spec
+    from latentarm.web.server.addresses import TeleopConfig
+    from latentarm.web.server.app import serve
 
     def announce(sentence: str) -> None:
         say(sentence, json)

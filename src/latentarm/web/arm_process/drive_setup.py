@@ -1,0 +1,210 @@
+"""What a page drives: the task, its modes, and what steers in each. Read by both processes."""
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.assistance.blending import Arbitration, FixedAlpha
+from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.control.journal_limits import JournalLimits
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.step import Step
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.joined import JoinedController
+from latentarm.controllers.latent import latent_controller
+from latentarm.errors import UserError
+from latentarm.runs.folder import read_run, weights_fingerprint
+from latentarm.runs.tasks import task_of_run, task_without_run
+from latentarm.tasks.task import Task
+from latentarm.types import FloatArray
+from latentarm.web.protocol.channel import ModeName
+
+PERIOD_S: Final = 0.01
+"""Of the control loop: 100 Hz, the most that a real arm is sent from Python."""
+
+BELIEF_PERIOD_S: Final = 0.1
+"""How often the belief is updated, s."""
+
+INPUT_TIMEOUT_S: Final = 0.05
+"""How long a fresh input counts: 2.5 inputs of a page that sends 50 a second. What is left of 0.15 s is the
+stop's."""
+
+INPUT_GRACE_S: Final = 0.07
+"""A person whose connection falters for no longer than this and the above finds the arm slowed down, and need
+not enable it again."""
+
+RELEASE_FRACTION: Final = 0.8
+"""As hard as a stop: whoever lets go finds the arm at rest within 0.15 s."""
+
+MOST_JOINTS: Final = 64
+MOST_GOALS: Final = 200
+"""What the pages can be told of in every tick."""
+
+COMMAND_PERIODS: Final = 5.0
+"""How many periods a command lasts: a shared computer may hold the loop up for 50 ms before the arm stops."""
+
+
+@final
+@dataclass(frozen=True)
+class Spec:
+    """What is to be driven, in words, so that another process can be told.
+
+    Attributes:
+        run: a trained run, or None for end-effector control alone at the table-top task.
+        profile: the person whose alignment is used; z = u where None.
+        seed: of where the arm starts.
+        out: folder for recordings.
+        journal: how much room a recording may take.
+
+    Raises:
+        UserError: the seed is none, or a profile is named without a run.
+    """
+
+    run: Path | None = None
+    profile: str | None = None
+    seed: int = 0
+    out: Path = Path("teleop")
+    journal: JournalLimits = field(default_factory=JournalLimits)
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.seed < 2**31:
+            raise UserError(f"The seed is {self.seed}: it must be from 0 to {2**31 - 1}.")
+        if self.run is None and self.profile is not None:
+            raise UserError(
+                "A profile belongs to a run: name one, as in `latentarm teleop RUN --profile NAME`."
+            )
+
+
+@final
+class Help(Arbitration):
+    """Help that can be switched on and off while the arm is driven.
+
+    Args:
+        inner: says how much while it is on.
+    """
+
+    def __init__(self, inner: Arbitration) -> None:
+        self._inner = inner
+        self.on = False
+
+    @property
+    def acts_at_rest(self) -> bool:
+        """No: an arm whose person lets go stands still."""
+        return False
+
+    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
+        """What ``inner`` says, or zero; see `Arbitration.alpha`."""
+        return self._inner.alpha(u, belief) if self.on else np.zeros(u.shape[:-1])
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """Everything that a spec names, loaded.
+
+    Attributes:
+        spec: what was asked for.
+        task: the robot, its goals and what it must keep clear of.
+        controller: all modes: the latent actions first where there are any, then the pairs of axes of the
+            end-effector.
+        latent_dim: d, axes of the latent actions; 0 without a run.
+        axes: names of the pairs of axes of end-effector control.
+        help: whether and how much the robot helps.
+        start: (n,), where the arm starts, rad.
+        run_fingerprint: of the run's weights; "" without a run.
+    """
+
+    spec: Spec
+    task: Task
+    controller: JoinedController
+    latent_dim: int
+    axes: tuple[str, ...]
+    help: Help
+    start: FloatArray
+    run_fingerprint: str = ""
+
+    @property
+    def modes(self) -> tuple[ModeName, ...]:
+        """What a person may choose from; without goals nothing can be helped towards."""
+        if not self.latent_dim:
+            return ("end_effector",)
+        return ("latent", "assisted", "end_effector") if self.task.goals else ("latent", "end_effector")
+
+    def mode_index(self, mode: ModeName, axes: int) -> int:
+        """Index into the controller's modes.
+
+        Args:
+            mode: one of `modes`.
+            axes: which pair of axes end-effector control moves.
+        """
+        return (1 if self.latent_dim else 0) + axes if mode == "end_effector" else 0
+
+    def step(self) -> Step:
+        """Algorithm 1 with its safety filters, disengaged."""
+        goals = np.array([goal.configuration for goal in self.task.goals])
+        return Step(
+            self.task.robot,
+            self.controller,
+            SafetyConfig(
+                input_timeout_s=INPUT_TIMEOUT_S,
+                input_grace_s=INPUT_GRACE_S,
+                release_fraction=RELEASE_FRACTION,
+                command_periods=COMMAND_PERIODS,
+                obstacles=tuple(self.task.obstacles),
+            ),
+            goals=self.task.goals,
+            belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
+            arbitration=self.help if self.task.goals else None,
+            dt_s=PERIOD_S,
+        )
+
+
+def with_profile(setting: Setting, profile: str | None) -> Setting:
+    """The same with another person's alignment; neither the dataset nor the robot is read again.
+
+    Args:
+        setting: what is driven.
+        profile: whose alignment; z = u where None.
+
+    Raises:
+        UserError: nothing trained is driven, or the profile or the model cannot be used.
+    """
+    spec = replace(setting.spec, profile=profile)
+    if spec.run is None:
+        return setting
+    robot = setting.task.robot
+    latent = latent_controller(spec.run, profile, robot)
+    return replace(setting, spec=spec, controller=JoinedController([latent, EndEffectorController(robot)]))
+
+
+def load_setting(spec: Spec) -> Setting:
+    """Load what a spec names.
+
+    Raises:
+        UserError: the run, its dataset or the profile is not to be had, or they do not fit each other.
+    """
+    if spec.run is None:
+        task = task_without_run()
+        latent = None
+    else:
+        run = read_run(spec.run)
+        task = task_of_run(run, run.dataset())
+        latent = latent_controller(spec.run, spec.profile, task.robot)
+    if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
+        raise UserError(
+            f"{spec.run} has {task.robot.dof} joints and {len(task.goals)} goals: the page drives"
+            f" {MOST_JOINTS} joints and shows {MOST_GOALS} goals at most."
+        )
+    end_effector = EndEffectorController(task.robot)
+    return Setting(
+        spec=spec,
+        task=task,
+        controller=JoinedController([end_effector] if latent is None else [latent, end_effector]),
+        latent_dim=0 if latent is None else latent.input_dim,
+        axes=end_effector.modes,
+        help=Help(FixedAlpha()),
+        start=task.sample_start(0, np.random.default_rng(spec.seed)),
+        run_fingerprint="" if spec.run is None else weights_fingerprint(spec.run),
+    )

@@ -1,0 +1,99 @@
+"""The process that owns the arm: it drives at its own rate on its own clock, whatever the web server does."""
+
+import gc
+import os
+import signal
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from types import FrameType
+from typing import Final
+
+from threadpoolctl import threadpool_limits
+
+from latentarm.arms.contract import Arm
+from latentarm.control.clock import MonotonicClock
+from latentarm.control.loop import ControlLoop
+from latentarm.errors import UserError
+from latentarm.untrusted.terminal import one_line
+from latentarm.web.arm_process.cockpit import Cockpit
+from latentarm.web.arm_process.drive_setup import Setting, Spec, load_setting, with_profile
+from latentarm.web.arm_process.live_arm import LiveArm
+from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.protocol.channel import Channel, ChooseProfile, ChooseRun, Reset
+
+_PRIORITY: Final = 10
+"""Of the least urgent real-time processes."""
+
+
+def run_control(spec: Spec, channel: Channel, server: int) -> None:
+    """Drive until the server says so or is gone; then bring the arm to rest and return.
+
+    Args:
+        spec: what to drive.
+        channel: to the server.
+        server: its process id.
+
+    Raises:
+        UserError: the spec names what is not to be had.
+    """
+
+    def end(number: int, frame: FrameType | None) -> None:
+        channel.ending.raise_()
+
+    # Ctrl-C in a terminal reaches both processes: the server then ends this one in good order.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, end)
+    _ask_for_priority()
+    with threadpool_limits(1):
+        setting = load_setting(spec)
+        clock = MonotonicClock()
+        writer = EpisodeWriter(spec.out, spec.journal)
+        cockpit = Cockpit(setting, channel, clock, writer, orphaned=lambda: os.getppid() != server)
+        arm: Arm = LiveArm(setting.task.robot, setting.start, clock)
+        # Nothing that is there by now is ever garbage: the collector need not look through it.
+        gc.collect()
+        gc.freeze()
+        note = ""
+        try:
+            while True:
+                step = setting.step()
+                loop = ControlLoop(step, arm, cockpit, clock, [cockpit.observe])
+                cockpit.take_seat(loop, step, arm, setting, note)
+                loop.run()
+                note = ""
+                match cockpit.change:
+                    case None:
+                        break
+                    case Reset():
+                        arm = LiveArm(setting.task.robot, setting.start, clock)
+                    case ChooseProfile(name=name):
+                        setting, note = _loaded(partial(with_profile, setting, name), setting)
+                    case ChooseRun(run=run):
+                        spec = replace(setting.spec, run=Path(run), profile=None)
+                        setting, note = _loaded(partial(load_setting, spec), setting)
+                        if not note:
+                            arm = LiveArm(setting.task.robot, setting.start, clock)
+        finally:
+            writer.close()
+            gc.unfreeze()
+
+
+def _ask_for_priority() -> None:
+    """Come before ordinary processes, where the system allows it: a busy computer makes us late."""
+    with suppress(OSError, AttributeError):  # not allowed, or a system that has no such thing
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
+
+
+def _loaded(load: Callable[[], Setting], before: Setting) -> tuple[Setting, str]:
+    """What is loaded, or what there was before and why the other cannot be used."""
+    try:
+        setting = load()
+        setting.step()
+        return setting, ""
+    except UserError as error:
+        return before, one_line(str(error))
+    except Exception as error:  # noqa: BLE001 - whatever a file does, the process that owns the arm goes on
+        return before, one_line(f"It cannot be loaded ({error!r}): the arm is as before.")

@@ -1,0 +1,188 @@
+"""Recording a drive without keeping the control loop waiting for the disk."""
+
+import math
+import threading
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from queue import Empty, Full, Queue
+from typing import Final, final
+
+from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalLostError
+from latentarm.control.recorder import EpisodeHeader, Recorder
+from latentarm.errors import UserError
+from latentarm.types import StepRecord, Stop
+from latentarm.web.protocol.channel import Recording
+
+_MOST_WAITING: Final = 6000
+"""Samples that may wait for the disk: a minute of them."""
+
+_CHECK_S: Final = 1.0
+"""How often the journal is looked after while nothing is recorded, s."""
+
+_CLOSE: Final = "close"
+
+
+@final
+@dataclass(frozen=True)
+class _End:
+    """The episode ends; with which kinds of input device it was driven."""
+
+    device: str
+
+
+@final
+class EpisodeWriter:
+    """Writes episodes to a journal in a thread of its own; its callers never wait.
+
+    The journal is made when the first episode begins, and another one where it was lost. An episode that the
+    disk cannot keep up with is left incomplete and so never becomes part of a dataset. One whose arm can
+    no longer be trusted to say where it is ends before that, and one that fills the journal ends there; both
+    are complete.
+
+    Args:
+        folder: where journals go.
+        limits: how much room a journal may take.
+    """
+
+    def __init__(self, folder: Path, limits: JournalLimits | None = None) -> None:
+        self._folder = folder
+        self._limits = limits
+        self._path = self._new_path()
+        self._untrusted: Stop | None = None
+        self._waiting: Queue[StepRecord | EpisodeHeader | _End | str] = Queue(_MOST_WAITING)
+        self._thread: threading.Thread | None = None
+        self._on = False
+        self._samples = 0
+        self._episodes = 0
+        self._problem: str | None = None
+        self._lost = False
+
+    @property
+    def on(self) -> bool:
+        """Whether an episode is under way."""
+        return self._on
+
+    @property
+    def status(self) -> Recording | None:
+        """What is recorded; None where nothing ever was."""
+        if self._thread is None:
+            return None
+        return Recording(
+            on=self._on,
+            samples=self._samples,
+            episodes=self._episodes,
+            problem=self._problem,
+            journal=str(self._path),
+        )
+
+    def begin(self, header: EpisodeHeader) -> None:
+        """Begin an episode, where none is under way."""
+        if self._on:
+            return
+        # Before the thread begins: it may find at once that nothing can be written.
+        self._problem = None
+        if self._lost:
+            self._lost, self._path, self._episodes = False, self._new_path(), 0
+        self._on, self._samples = True, 0
+        self._put(header)
+        if self._thread is None or not self._thread.is_alive():
+            self._thread = threading.Thread(target=self._write, name="recording", daemon=True)
+            self._thread.start()
+
+    def add(self, record: StepRecord) -> None:
+        """Keep a step, where an episode is under way; one that is not to be trusted ends it."""
+        stop = record.command.stop
+        untrusted = stop if stop is not None and stop.untrusted else None
+        # The reason stays until the arm is enabled again: only where it is new does it end an episode.
+        news, self._untrusted = untrusted is not self._untrusted, untrusted
+        if not self._on:
+            return
+        if (untrusted is not None and news) or math.isnan(record.state[0]):
+            why = "The joints could not be read." if stop is None else stop.reason
+            self.end()
+            self._problem = f"The recording was ended before this: {why}"
+        else:
+            self._samples += 1
+            self._put(record)
+
+    def end(self, device: str = "") -> None:
+        """End the episode, where one is under way.
+
+        Args:
+            device: kind of input device that it was driven with.
+        """
+        if self._on:
+            self._on = False
+            self._put(_End(device))
+
+    def close(self) -> None:
+        """Write what is waiting and close the journal; an episode under way stays incomplete."""
+        if self._thread is not None:
+            self._put(_CLOSE)
+            self._thread.join(timeout=5.0)
+
+    def _put(self, item: StepRecord | EpisodeHeader | _End | str) -> None:
+        try:
+            self._waiting.put_nowait(item)
+        except Full:
+            self._break_off("The disk cannot keep up with the recording: the episode was broken off.")
+
+    def _break_off(self, problem: str) -> None:
+        self._on = False
+        self._problem = problem
+
+    def _write(self) -> None:
+        try:
+            recorder = Recorder(self._path, self._limits)
+            try:
+                while (item := self._next()) != _CLOSE:
+                    try:
+                        self._handle(recorder, item)
+                    except JournalFullError as error:
+                        self._full(recorder, error)
+            finally:
+                recorder.close()
+        except UserError as error:
+            self._lost = isinstance(error, JournalLostError)
+            self._break_off(str(error))
+            while True:
+                try:
+                    self._waiting.get_nowait()
+                except Empty:
+                    return
+
+    def _next(self) -> StepRecord | EpisodeHeader | _End | str | None:
+        """What comes next; None where nothing comes for a while, to look after the journal meanwhile."""
+        try:
+            return self._waiting.get(timeout=_CHECK_S)
+        except Empty:
+            return None
+
+    def _handle(self, recorder: Recorder, item: StepRecord | EpisodeHeader | _End | str | None) -> None:
+        if item is None:
+            recorder.check()
+        elif isinstance(item, EpisodeHeader):
+            recorder.begin_episode(item)
+        elif isinstance(item, StepRecord) and recorder.recording:
+            recorder.record(item)
+        elif isinstance(item, _End) and recorder.recording:
+            recorder.end_episode(item.device)
+            self._episodes += 1
+
+    def _full(self, recorder: Recorder, error: JournalFullError) -> None:
+        """The journal has no room for more: what was recorded of the episode is kept."""
+        if error.ended_episode:
+            self._episodes += 1
+        if self._on:
+            self._break_off(str(error))
+
+    def _new_path(self) -> Path:
+        """A journal that is not there yet, named after the time."""
+        named = f"journal-{datetime.now():%Y%m%d-%H%M%S}"
+        path = self._folder / f"{named}.sqlite"
+        number = 1
+        while path.exists():
+            number += 1
+            path = self._folder / f"{named}-{number}.sqlite"
+        return path

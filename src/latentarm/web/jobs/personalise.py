@@ -1,0 +1,238 @@
+"""Asking a person on the page, and learning from their answers, in a child process."""
+
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Final, Literal, final
+
+import numpy as np
+from pydantic import Field, TypeAdapter
+
+from latentarm.runs.person import Kind, Person, Question, Reply
+from latentarm.web.jobs.job import Job, JobMessage, Wire
+from latentarm.web.protocol.personalise_messages import Personalise, ShownMotion
+from latentarm.web.protocol.scene import pose_of
+
+_TELL_EVERY: Final = 10
+"""Steps of a fit."""
+
+_FRAMES: Final = 16
+"""Poses along a motion; pages glide from one to the next."""
+
+_STILL_M: Final = 5e-4
+"""A tool that moves less is not shown."""
+
+
+@final
+@dataclass(frozen=True)
+class PersonalisePlan:
+    """Who is asked about what.
+
+    Attributes:
+        run: the run's folder.
+        name: the person's.
+        questions: to be answered, at most.
+        out: where the profile is written; nothing is there yet.
+    """
+
+    run: Path
+    name: str
+    questions: int
+    out: Path
+
+
+@final
+class _Asked(JobMessage):
+    type: Literal["asked"] = "asked"
+    number: int
+    of: int
+    back: bool
+    motion: ShownMotion
+
+
+@final
+class _Fitting(JobMessage):
+    type: Literal["fitting"] = "fitting"
+    last: bool
+    share: float
+
+
+@final
+class _Learned(JobMessage):
+    type: Literal["learned"] = "learned"
+    answers: int
+    error: float
+    error_without: float
+
+
+_Said = _Asked | _Fitting | _Learned
+_SAID: Final[TypeAdapter[_Said]] = TypeAdapter(Annotated[_Said, Field(discriminator="type")])
+
+
+@final
+class _Answer(JobMessage):
+    type: Literal["answer"] = "answer"
+    u: tuple[float, ...]
+
+
+@final
+class _Instead(JobMessage):
+    type: Literal["skip", "back"]
+
+
+_Told = _Answer | _Instead
+_TOLD: Final[TypeAdapter[_Told]] = TypeAdapter(Annotated[_Told, Field(discriminator="type")])
+
+
+@final
+class PersonaliseJob:
+    """A person being asked, as the page's server sees it.
+
+    Args:
+        plan: what is to be done.
+    """
+
+    def __init__(self, plan: PersonalisePlan) -> None:
+        self._job = Job(ask_and_learn, (plan,), _SAID, "The asking")
+        self._state = Personalise(phase="preparing", name=plan.name, of=plan.questions)
+
+    @property
+    def under_way(self) -> bool:
+        """Whether it has not come to an end of any kind."""
+        return self._state.phase not in ("learned", "failed")
+
+    def look(self) -> Personalise:
+        """How far it is."""
+        if not self.under_way:
+            return self._state
+        alive = self._job.alive  # before what it said is read: whoever is dead says no more
+        for said in self._job.heard():
+            match said:
+                case _Asked(number=number, of=of, back=back, motion=motion):
+                    self._change(
+                        phase="asking",
+                        question=self._state.question + 1,
+                        number=number,
+                        of=of,
+                        back=back,
+                        motion=motion,
+                    )
+                case _Fitting(last=last, share=share):
+                    self._change(phase="learning" if last else "thinking", motion=None, share=share)
+                case _Learned(answers=answers, error=error, error_without=error_without):
+                    self._change(
+                        phase="learned", answers=answers, error=error, error_without=error_without, share=1.0
+                    )
+        if not alive and self.under_way:
+            failure = self._job.failure or "The asking broke off unexpectedly: try it again."
+            self._change(phase="failed", motion=None, why=failure)
+        return self._state
+
+    def answer(self, question: int, u: tuple[float, ...]) -> None:
+        """Pass an answer on, if it is one to the question that is asked."""
+        self._reply(question, _Answer(u=u))
+
+    def skip(self, question: int) -> None:
+        """Pass on that the person would not know."""
+        self._reply(question, _Instead(type="skip"))
+
+    def back(self, question: int) -> None:
+        """Pass on that the person wants the question before once more."""
+        self._reply(question, _Instead(type="back"))
+
+    def end(self) -> None:
+        """End it; waits two seconds at most."""
+        self._job.end()
+
+    def _reply(self, question: int, reply: _Told) -> None:
+        asked = self._state.phase == "asking" and question == self._state.question
+        # What nobody takes is not answered: the question stays, for the person to answer once more.
+        if asked and self._job.say(reply):
+            self._change(phase="thinking", motion=None, share=0.0)
+
+    def _change(self, **fields: object) -> None:
+        self._state = self._state.model_copy(update=fields)
+
+
+@final
+class PersonOnPage(Person):
+    """Is shown motions on a page, through the parent process, and answers there.
+
+    Args:
+        wire: to the parent.
+    """
+
+    def __init__(self, wire: Wire) -> None:
+        self._wire = wire
+        self._behind = 0
+
+    @property
+    def kind(self) -> Kind:
+        """``person``."""
+        return "person"
+
+    def answer(self, question: Question) -> Reply:
+        """Wait for what the page says, for as long as it takes."""
+        motion = shown_motion(question)
+        self._wire.say(
+            _Asked(number=question.number, of=question.total, back=self._behind > 0, motion=motion)
+        )
+        match self._wire.hear(_TOLD):
+            case _Instead(type="back"):
+                self._behind = max(self._behind - 1, 0)
+                return "back"
+            case _Instead():
+                self._behind += 1
+                return None
+            case _Answer(u=u):
+                self._behind += 1
+                named = np.array(u)[: question.axes]
+                return np.pad(named, (0, question.axes - len(named)))
+
+
+def ask_and_learn(wire: Wire, plan: PersonalisePlan) -> None:
+    """The work itself, in the child.
+
+    Raises:
+        UserError: the run cannot be aligned, nothing was answered, or the profile cannot be written.
+    """
+    # torch, which takes seconds to load: in this process alone.
+    from latentarm.alignment.queries import StoppingRule
+    from latentarm.runs.aligning import NO_ALIGN, PROFILE, alignable, learn
+    from latentarm.runs.questions import ask
+
+    last = False
+
+    @contextmanager
+    def watch() -> Generator[Callable[[int, int], None]]:
+        def report(step: int, steps: int) -> None:
+            if step % _TELL_EVERY == 0:
+                wire.say(_Fitting(last=last, share=step / steps))
+
+        yield report
+
+    known = alignable(plan.run, watch=watch)
+    person = PersonOnPage(wire)
+    answers = ask(known.scene, person, plan.questions, lambda text: None, StoppingRule())
+    last = True
+    learned = learn(known, answers, plan.name, person.kind)
+    learned.save(plan.out)
+    errors = {row.condition: float(row.mean or 0.0) for row in learned.rows}
+    wire.say(_Learned(answers=len(answers), error=errors[PROFILE], error_without=errors[NO_ALIGN]))
+
+
+def shown_motion(question: Question) -> ShownMotion:
+    """A question's motion for a page to show, its states straight on from the first to the last."""
+    motion, chain = question.motion, question.chain
+    share = np.linspace(0.0, 1.0, _FRAMES)[:, None]
+    states = (1.0 - share) * motion.start[0] + share * motion.end[0]
+    links = chain.link_transforms(states)
+    poses = [pose_of(np.concatenate([np.eye(4)[None], one])) for one in links]
+    ways = [chain.forward(states, tool).position for tool in range(len(chain.tools))]
+    moving = [way for way in ways if np.linalg.norm(way[-1] - way[0]) > _STILL_M] or ways[:1]
+    return ShownMotion(
+        duration_s=motion.duration_s,
+        frames=tuple(tuple(tuple(pose) for pose in np.round(frame, 4).tolist()) for frame in poses),
+        tools=tuple(tuple((x, y, z) for x, y, z in np.round(way, 4).tolist()) for way in moving),
+    )

@@ -1,0 +1,238 @@
+"""Training on what was recorded, in a child process: a journal in, a dataset and a run out."""
+
+import math
+import re
+import shutil
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Final, Literal, final
+
+from pydantic import Field, TypeAdapter
+
+from latentarm.control.export import ImplausibleWarning, demonstrations_of
+from latentarm.control.journal import read_journal
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations
+from latentarm.web.jobs.job import Job, JobMessage, Wire
+from latentarm.web.protocol.learning_messages import ModelChoice, Training, TrainingPhase
+
+RATE_HZ: Final = 10.0
+"""Samples a second of motion that a model is trained on: an action then looks half a second ahead."""
+
+FEWEST: Final = 3
+"""Episodes: one trains, one says when to stop, and one is kept for `latentarm evaluate`."""
+
+SHORTEST_S: Final = 1.0
+"""An episode that moves for less than this shows nothing."""
+
+STATE_NOISE_RAD: Final = 0.01
+"""As `latentarm train` has it."""
+
+_NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
+_TELL_EVERY_S: Final = 0.1
+_COLLAPSED: Final = (
+    "One axis of the stick moves hardly anything, because the episodes differ too little: choose one axis, or"
+    " record motions that differ."
+)
+
+
+@final
+@dataclass(frozen=True)
+class TrainingPlan:
+    """What is to be trained on what.
+
+    Attributes:
+        journal: where the episodes are.
+        episodes: their numbers.
+        name: of the new dataset and the new run.
+        model: a name in the catalogue of models.
+        latent_dim: d.
+        out: folder that holds ``datasets`` and ``runs``.
+        end_effector: site, body or link, where the robot is a model file.
+
+    Raises:
+        UserError: the name cannot be that of a folder or is taken, or there are too few episodes.
+    """
+
+    journal: Path
+    episodes: tuple[int, ...]
+    name: str
+    model: ModelChoice
+    latent_dim: int
+    out: Path
+    end_effector: str | None = None
+
+    def __post_init__(self) -> None:
+        if not _NAME.fullmatch(self.name):
+            raise UserError(
+                "A name has 1 to 60 letters, digits, spaces, dots, dashes and underscores, and begins and"
+                " ends with a letter or a digit: choose another one."
+            )
+        if self.dataset.exists() or self.run.exists():
+            raise UserError(f"There is a run or a dataset named {self.name} already: choose another name.")
+        chosen = len(set(self.episodes))
+        if chosen < FEWEST:
+            raise UserError(
+                f"Training needs at least {FEWEST} episodes, and {chosen or 'none'} of them"
+                f" {'is' if chosen == 1 else 'are'} chosen: record more on the Drive page."
+            )
+
+    @property
+    def dataset(self) -> Path:
+        """The new dataset's folder."""
+        return self.out / "datasets" / self.name
+
+    @property
+    def run(self) -> Path:
+        """The new run's folder."""
+        return self.out / "runs" / self.name
+
+
+@final
+class _Epoch(JobMessage):
+    type: Literal["epoch"] = "epoch"
+    epoch: int
+    epochs: int
+    loss: float | None
+    seconds_left: float | None
+
+
+@final
+class _Finished(JobMessage):
+    type: Literal["finished"] = "finished"
+    warned: str | None
+
+
+_Said = _Epoch | _Finished
+_SAID: Final[TypeAdapter[_Said]] = TypeAdapter(Annotated[_Said, Field(discriminator="type")])
+
+
+@final
+class TrainingJob:
+    """A training under way, as the page's server sees it.
+
+    Args:
+        plan: what is to be done.
+    """
+
+    def __init__(self, plan: TrainingPlan) -> None:
+        self._job = Job(train_as_planned, (plan,), _SAID, "The training")
+        self._state = Training(phase="exporting", run=plan.name)
+        self._finished = self._cancelled = False
+
+    @property
+    def under_way(self) -> bool:
+        """Whether it has not come to an end of any kind."""
+        return self._state.phase in ("exporting", "training")
+
+    def look(self) -> Training:
+        """How far it is."""
+        if not self.under_way:
+            return self._state
+        alive = self._job.alive  # before what it said is read: whoever is dead says no more
+        for said in self._job.heard():
+            match said:
+                case _Epoch(epoch=epoch, epochs=epochs, loss=loss, seconds_left=seconds_left):
+                    self._change(
+                        phase="training", epoch=epoch, epochs=epochs, loss=loss, seconds_left=seconds_left
+                    )
+                case _Finished(warned=warned):
+                    self._finished = True
+                    self._change(why=warned)
+        if self._finished or not alive:
+            self._change(phase=self._outcome(), seconds_left=None)
+            self._change(why=self._job.failure or self._state.why)
+        return self._state
+
+    def cancel(self) -> None:
+        """End it; waits until it has tidied up, two seconds at most."""
+        self._cancelled = True
+        self._job.end()
+
+    def _outcome(self) -> TrainingPhase:
+        if self._finished:
+            return "done"
+        return "cancelled" if self._cancelled else "failed"
+
+    def _change(self, **fields: object) -> None:
+        self._state = self._state.model_copy(update=fields)
+
+
+def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
+    """The work itself, in the child. Nothing of it stays where it fails or is ended.
+
+    Episodes are written as `demonstrations.pauses` makes them: motion alone, at `RATE_HZ`.
+
+    Raises:
+        UserError: the episodes cannot be learned from, or the disk has no room.
+    """
+    from latentarm.demonstrations.pauses import without_pauses
+
+    with warnings.catch_warnings(record=True) as cut:
+        warnings.simplefilter("always", ImplausibleWarning)
+        recorded = demonstrations_of(read_journal(plan.journal, plan.episodes), source="The recording")
+    demonstrations = without_pauses(recorded, RATE_HZ)
+    long_enough = [one for one in demonstrations.episodes if one.timestamp[-1] >= SHORTEST_S]
+    if len(long_enough) < max(FEWEST, len(set(plan.episodes))):
+        raise UserError(
+            f"The arm moves for at least {SHORTEST_S:.0f} s in {len(long_enough)} of the"
+            f" {len(set(plan.episodes))} chosen episodes: leave the others out, or record longer ones."
+        )
+    try:
+        warned = _train(wire, plan, demonstrations)
+    except BaseException:
+        shutil.rmtree(plan.run, ignore_errors=True)
+        shutil.rmtree(plan.dataset, ignore_errors=True)
+        raise
+    wire.say(_Finished(warned=" ".join([*(str(one.message) for one in cut), *warned]) or None))
+
+
+def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[str]:
+    """Write the dataset and the run; what was warned of."""
+    # pyarrow, and then torch, which take seconds to load: in this process alone.
+    from latentarm.demonstrations.dataset import write_dataset
+
+    write_dataset(demonstrations, plan.dataset)
+    from latentarm.models.scaling import CollapseWarning
+    from latentarm.runs.training import TrainConfig, train_run
+
+    config = TrainConfig(
+        demonstrations=plan.dataset,
+        model=plan.model,
+        out=plan.run,
+        latent_dim=plan.latent_dim,
+        seeds=1,
+        state_noise_rad=STATE_NOISE_RAD,
+        end_effector=plan.end_effector,
+    )
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UserWarning)
+        train_run(config, _report_to(wire))
+    return [
+        _COLLAPSED if issubclass(one.category, CollapseWarning) else str(one.message)
+        for one in caught
+        if issubclass(one.category, UserWarning)
+    ]
+
+
+def _report_to(wire: Wire) -> Callable[[int, int, float], None]:
+    """A report of each epoch that goes to the parent, ten times a second at most."""
+    begun_s = time.monotonic()
+    told_s = -math.inf
+
+    def report(epoch: int, epochs: int, loss: float) -> None:
+        nonlocal begun_s, told_s
+        now_s = time.monotonic()
+        if epoch == 0:
+            begun_s = now_s
+        if now_s - told_s < _TELL_EVERY_S and epoch < epochs:
+            return
+        told_s = now_s
+        left_s = (now_s - begun_s) / epoch * (epochs - epoch) if epoch else None
+        finite = loss if math.isfinite(loss) else None
+        wire.say(_Epoch(epoch=epoch, epochs=epochs, loss=finite, seconds_left=left_s))
+
+    return report

@@ -1,0 +1,96 @@
+/** Four large buttons: hold one, or press it for a step, or press it on and off. */
+
+/** @typedef {"up" | "down" | "left" | "right"} Direction */
+
+/** @type {Record<Direction, [number, number]>} */
+export const DIRECTIONS = { up: [0, 1], down: [0, -1], left: [-1, 0], right: [1, 0] };
+
+/**
+ * @param {HTMLElement} element the group of buttons
+ * @param {HTMLElement} help
+ * @param {import("./inputs.js").Inputs | import("../personalise/answering.js").Answering} inputs
+ * @param {import("../settings/settings.js").Settings} settings
+ * @param {() => void} refused said when a press cannot move the arm yet
+ */
+export function attachDpad(element, help, inputs, settings, refused) {
+  const buttons = /** @type {HTMLButtonElement[]} */ ([...element.querySelectorAll("button")]);
+  /** @type {{pointer: number, button: HTMLButtonElement} | null} */
+  let held = null;
+  /** @type {HTMLButtonElement | null} */
+  let latched = null;
+  let timer = 0;
+
+  const show = (/** @type {HTMLButtonElement | null} */ pressed) => {
+    for (const button of buttons) {
+      button.dataset.pressed = String(button === pressed);
+      if (settings.values.press === "latch") button.setAttribute("aria-pressed", String(button === pressed));
+      else button.removeAttribute("aria-pressed");
+    }
+  };
+  const letGo = () => {
+    clearTimeout(timer);
+    held = latched = null;
+    inputs.release("dpad");
+    show(null);
+  };
+  const begin = (/** @type {HTMLButtonElement} */ button, stays = false) => {
+    const [x, y] = DIRECTIONS[/** @type {Direction} */ (button.dataset.direction)];
+    inputs.hold("dpad", x, y, stays);
+    show(button);
+  };
+  const step = (/** @type {HTMLButtonElement} */ button) => {
+    letGo();
+    begin(button);
+    timer = setTimeout(letGo, settings.values.stepS * 1000);
+  };
+  const toggle = (/** @type {HTMLButtonElement} */ button) => {
+    const again = latched === button;
+    letGo();
+    if (again) return;
+    latched = button;
+    begin(button, true);
+  };
+
+  for (const button of buttons) {
+    button.addEventListener("pointerdown", (event) => {
+      if (held !== null || event.button !== 0) return;
+      if (!inputs.live) refused();
+      else if (settings.values.press === "step") step(button);
+      else if (settings.values.press === "latch") toggle(button);
+      else {
+        held = { pointer: event.pointerId, button };
+        button.setPointerCapture(event.pointerId);
+        begin(button);
+      }
+    });
+    button.addEventListener("pointerup", (event) => {
+      if (event.pointerId === held?.pointer) letGo();
+    });
+    for (const lost of ["pointercancel", "lostpointercapture"]) {
+      button.addEventListener(lost, (event) => {
+        if (/** @type {PointerEvent} */ (event).pointerId !== held?.pointer) return;
+        letGo();
+        inputs.halt("the pointer was lost");
+      });
+    }
+    // A click without a pointer comes from Enter or from a switch or a screen reader: there is nothing to hold.
+    button.addEventListener("click", (event) => {
+      if (event.detail !== 0) return;
+      if (!inputs.live) refused();
+      else if (settings.values.press === "latch") toggle(button);
+      else step(button);
+    });
+    button.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+  inputs.addEventListener("dropped", letGo);
+  const explain = () => {
+    help.textContent = {
+      hold: "Press and hold; let go to stop.",
+      step: `Each press moves for ${settings.values.stepS.toFixed(1)} s.`,
+      latch: "Press to move, press again to stop.",
+    }[settings.values.press] ?? "";
+    show(latched);
+  };
+  settings.addEventListener("change", explain);
+  explain();
+}

@@ -1,0 +1,58 @@
+/** A gamepad, or any stick that the browser takes for one: its first two axes drive, its buttons stop and enable. */
+
+const ENABLE_BUTTON = 0;
+/** A stick that rests a little off its middle is at rest. */
+const REST = 0.08;
+const IDLE_MS = 100;
+
+/**
+ * @param {import("./inputs.js").Inputs | import("../personalise/answering.js").Answering} inputs
+ * @param {import("../settings/settings.js").Settings} settings
+ * @param {{enable: () => void, stop: () => void, press: (number: number, down: boolean) => boolean}} actions
+ *   `press` takes a button as a switch, where scanning is on, and says whether it did.
+ */
+export function attachGamepad(inputs, settings, actions) {
+  /** @type {boolean[]} */
+  let down = [];
+  /** @type {number | null} */
+  let driving = null;
+
+  const lost = () => {
+    driving = null;
+    down = [];
+    inputs.halt("the gamepad was disconnected");
+  };
+
+  const poll = () => {
+    const pads = navigator.getGamepads();
+    const pad = driving === null ? [...pads].find((one) => one?.connected) : pads[driving];
+    if (!pad || !pad.connected) {
+      if (driving !== null) lost();
+      return;
+    }
+    driving = pad.index;
+    const pressed = pad.buttons.map((button) => button.pressed);
+    pressed.forEach((is, number) => {
+      if (is !== Boolean(down[number])) act(number, is);
+    });
+    down = pressed;
+    const [x, y] = [pad.axes[0] ?? 0, pad.axes[1] ?? 0];
+    const resting = !(Math.hypot(x, y) > REST);
+    if (!resting || inputs.source === "gamepad") inputs.hold("gamepad", resting ? 0 : x, resting ? 0 : -y);
+  };
+  const act = (/** @type {number} */ number, /** @type {boolean} */ isDown) => {
+    const stops = settings.values.gamepadStop;
+    if (actions.press(number, isDown) || !isDown) return;
+    if (stops === "any" || Number(stops) === number) actions.stop();
+    else if (number === ENABLE_BUTTON) actions.enable();
+  };
+
+  window.addEventListener("gamepaddisconnected", (event) => {
+    if (event.gamepad.index === driving) lost();
+  });
+  // While inputs flow the pad is read with each of them; else often enough to notice a button.
+  inputs.addEventListener("poll", poll);
+  setInterval(() => {
+    if (!inputs.flowing && !document.hidden) poll();
+  }, IDLE_MS);
+}

@@ -1,0 +1,140 @@
+/** The stick drawn on a grid: a pointer or a finger pushes it, and letting go lets it spring back. */
+
+const SVG = "http://www.w3.org/2000/svg";
+const SIZE = 264;
+/** From the middle to where the input is 1, in the drawing's units. */
+const REACH = 96;
+const CELLS = 8;
+
+/**
+ * @param {HTMLElement} element
+ * @param {HTMLElement} spoken where the position is put into words
+ * @param {import("./inputs.js").Inputs | import("../personalise/answering.js").Answering} inputs
+ * @param {import("../settings/settings.js").Settings} settings
+ */
+export function attachStick(element, spoken, inputs, settings) {
+  const drawing = draw(element);
+  /** @type {number | null} */
+  let pointer = null;
+
+  const push = (/** @type {PointerEvent} */ event) => {
+    const box = element.getBoundingClientRect();
+    const unit = (REACH / SIZE) * box.width;
+    const x = clamp((event.clientX - box.left - box.width / 2) / unit);
+    const y = clamp(-(event.clientY - box.top - box.height / 2) / unit);
+    inputs.hold("pointer", x, y, settings.values.press === "latch");
+  };
+  const letGo = () => {
+    pointer = null;
+    inputs.release("pointer");
+  };
+
+  element.addEventListener("pointerdown", (event) => {
+    if (pointer !== null || event.button !== 0) return;
+    event.preventDefault();
+    element.focus({ preventScroll: true });
+    // A second press on a stick that stays where it was put takes it back.
+    if (inputs.source === "pointer") {
+      letGo();
+      return;
+    }
+    pointer = event.pointerId;
+    element.setPointerCapture(pointer);
+    push(event);
+  });
+  element.addEventListener("pointermove", (event) => {
+    if (event.pointerId === pointer) push(event);
+  });
+  element.addEventListener("pointerup", (event) => {
+    if (event.pointerId !== pointer) return;
+    if (settings.values.press === "latch" && inputs.live) pointer = null;
+    else letGo();
+  });
+  for (const lost of ["pointercancel", "lostpointercapture"]) {
+    element.addEventListener(lost, (event) => {
+      // After an ordinary release the capture is lost too, and nothing is held any more.
+      if (/** @type {PointerEvent} */ (event).pointerId !== pointer) return;
+      pointer = null;
+      inputs.halt("the pointer was lost");
+    });
+  }
+  element.addEventListener("contextmenu", (event) => event.preventDefault());
+  inputs.addEventListener("dropped", () => {
+    pointer = null;
+  });
+  const show = () => {
+    const [x, y] = [inputs.x, inputs.y];
+    drawing.knob.setAttribute("transform", `translate(${x * REACH} ${-y * REACH})`);
+    drawing.arm.setAttribute("x2", String(x * REACH));
+    drawing.arm.setAttribute("y2", String(-y * REACH));
+    spoken.textContent = words(x, y);
+  };
+  inputs.addEventListener("change", show);
+  const outline = () => drawing.dead.setAttribute("r", String(settings.values.deadZone * REACH));
+  settings.addEventListener("change", outline);
+  outline();
+  show();
+
+  return {
+    /** A dot that stays, or none. @param {[number, number] | null} at */
+    mark(at) {
+      drawing.mark.setAttribute("visibility", at ? "visible" : "hidden");
+      if (at) drawing.mark.setAttribute("transform", `translate(${at[0] * REACH} ${-at[1] * REACH})`);
+    },
+  };
+}
+
+/** @param {number} x @param {number} y */
+export function words(x, y) {
+  const across = Math.round(Math.abs(x) * 100);
+  const along = Math.round(Math.abs(y) * 100);
+  const said = [];
+  if (along) said.push(`${y > 0 ? "up" : "down"} ${along} %`);
+  if (across) said.push(`${x > 0 ? "right" : "left"} ${across} %`);
+  return said.join(", ") || "Centre";
+}
+
+/** @param {number} value */
+function clamp(value) {
+  return Math.min(Math.max(value, -1), 1);
+}
+
+/** @param {HTMLElement} element */
+function draw(element) {
+  const half = SIZE / 2;
+  const svg = part("svg", { viewBox: `${-half} ${-half} ${SIZE} ${SIZE}`, "aria-hidden": "true" });
+  svg.append(part("rect", { class: "pad", x: 1 - half, y: 1 - half, width: SIZE - 2, height: SIZE - 2, rx: 10 }));
+  for (let cell = -CELLS / 2; cell <= CELLS / 2; cell += 1) {
+    const at = (cell * REACH) / (CELLS / 2);
+    const kind = cell === 0 ? "axis" : "grid-line";
+    svg.append(part("line", { class: kind, x1: at, x2: at, y1: -REACH, y2: REACH }));
+    svg.append(part("line", { class: kind, y1: at, y2: at, x1: -REACH, x2: REACH }));
+  }
+  const dead = part("circle", { class: "dead" });
+  const arm = part("line", { class: "arm", x1: 0, y1: 0 });
+  const knob = part("g", {});
+  knob.append(part("circle", { class: "knob", r: 31 }));
+  svg.append(dead, arm);
+  for (const [text, x, y] of /** @type {[string, number, number][]} */ ([
+    ["Up", 0, 5 - REACH - 14], ["Down", 0, REACH + 22],
+  ])) {
+    svg.append(part("text", { x, y, "text-anchor": "middle" }, text));
+  }
+  for (const [text, side] of /** @type {[string, number][]} */ ([["Left", -1], ["Right", 1]])) {
+    const x = side * (REACH + 17);
+    svg.append(part("text", { x, y: 5, "text-anchor": "middle", transform: `rotate(${side * 90} ${x} 0)` }, text));
+  }
+  const mark = part("g", { class: "mark", visibility: "hidden" });
+  mark.append(part("circle", { class: "mark-edge", r: 13 }), part("circle", { class: "mark-dot", r: 8 }));
+  svg.append(knob, mark);
+  element.replaceChildren(svg);
+  return { knob, arm, dead, mark };
+}
+
+/** @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
+function part(name, attributes, text = "") {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
+  made.textContent = text;
+  return made;
+}

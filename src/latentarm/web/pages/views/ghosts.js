@@ -1,0 +1,91 @@
+/** What each direction will do: paths of the tool over the next second, drawn in both views. */
+
+import { THREE } from "nicegui-scene";
+import { colour } from "./colours.js";
+import { LOOKS } from "./predictions.js";
+
+/** @typedef {import("../inputs/dpad.js").Direction} Direction */
+
+const THICK_M = 0.006;
+/** A path shorter than this, m, is not drawn. */
+const SHORT_M = 0.006;
+const BEADS = 9;
+
+export class Ghosts {
+  /**
+   * @param {any} scene
+   * @param {import("./labels.js").Labels} labels
+   */
+  constructor(scene, labels) {
+    this._labels = labels;
+    this._ghosts = /** @type {Direction[]} */ (Object.keys(LOOKS)).map((direction) => {
+      const material = new THREE.MeshBasicMaterial({ transparent: true, depthTest: false });
+      const body = new THREE.Mesh(new THREE.BufferGeometry(), material);
+      const head = new THREE.Mesh(new THREE.ConeGeometry(0.016, 0.034, 10), material);
+      const beads = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(0.0075, 1), material, BEADS);
+      beads.frustumCulled = body.frustumCulled = false;
+      for (const object of [body, head, beads]) {
+        object.renderOrder = 2;
+        object.visible = false;
+        scene.add(object);
+      }
+      return { direction, material, body, head, beads };
+    });
+    this.repaint();
+  }
+
+  repaint() {
+    for (const { direction, material } of this._ghosts) material.color.set(colour(`ghost-${direction}`));
+  }
+
+  /**
+   * @param {Record<Direction, number[][] | null>} paths points of the tool, m, for the person's own directions
+   * @param {Direction[]} pressed the directions that are pressed now; the others step back
+   * @param {boolean} shown
+   */
+  show(paths, pressed, shown) {
+    for (const ghost of this._ghosts) {
+      const path = paths[ghost.direction];
+      const visible = shown && path !== null && lengthOf(path) > SHORT_M;
+      ghost.body.visible = visible && isUpright(ghost.direction);
+      ghost.beads.visible = visible && !isUpright(ghost.direction);
+      ghost.head.visible = visible;
+      ghost.material.opacity = pressed.length === 0 || pressed.includes(ghost.direction) ? 0.95 : 0.3;
+      this._labels.set(`ghost-${ghost.direction}`, visible ? this._lay(ghost, path) : null,
+        LOOKS[ghost.direction].mark, { shown: visible, ghost: ghost.direction });
+    }
+  }
+
+  /** Up and down are tubes, left and right are beads; all end in a cone. @param {any} ghost @param {number[][]} path */
+  _lay({ direction, body, beads, head }, path) {
+    const points = path.map(([x, y, z]) => new THREE.Vector3(x, y, z));
+    const curve = new THREE.CatmullRomCurve3(points);
+    if (isUpright(direction)) {
+      body.geometry.dispose();
+      body.geometry = new THREE.TubeGeometry(curve, 12, THICK_M, 6);
+    } else {
+      for (let bead = 0; bead < BEADS; bead += 1) {
+        const { x, y, z } = curve.getPoint(bead / (BEADS - 1));
+        beads.setMatrixAt(bead, new THREE.Matrix4().makeTranslation(x, y, z));
+      }
+      beads.instanceMatrix.needsUpdate = true;
+    }
+    const end = curve.getPoint(1);
+    const ahead = curve.getTangent(1);
+    head.position.copy(end).addScaledVector(ahead, 0.012);
+    head.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), ahead);
+    return end.addScaledVector(ahead, 0.05);
+  }
+}
+
+/** @param {Direction} direction */
+function isUpright(direction) {
+  return direction === "up" || direction === "down";
+}
+
+/** @param {number[][]} path */
+function lengthOf(path) {
+  let length = 0;
+  for (let i = 1; i < path.length; i += 1) length += Math.hypot(...path[i].map((to, axis) => to - path[i - 1][axis]));
+  return length;
+}

@@ -1,0 +1,1 @@
+"""What pages, server and arm process say to each other."""

@@ -1,0 +1,253 @@
+"""What the page's server and the control process say to each other, and the ways it goes.
+
+Neither ever waits for the other. Inputs and reports are latest-wins; a stop is a slot of its own, so that it
+arrives however full the pipe of orders is. Nothing unpickles: everything is JSON of a strict schema.
+"""
+
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from typing import Annotated, Final, Literal, final
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from latentarm.web.protocol.shared_memory import Flag, LatestSlot
+
+ORDER_LIMIT: Final = 4096
+"""The longest order, bytes; short enough that the pipe takes it whole or not at all."""
+
+_REPORT_LIMIT: Final = 65536
+_GIVEN_LIMIT: Final = 1024
+_REASON_LIMIT: Final = 512
+
+ModeName = Literal["latent", "assisted", "end_effector"]
+Phase = Literal["disengaged", "neutral_needed", "ready", "moving", "stopping"]
+Point = tuple[float, float, float]
+
+
+class _Message(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+@final
+class Given(_Message):
+    """What the person at the wheel does.
+
+    Attributes:
+        driver: counts the drivers: inputs of one who has handed over are none of the next one's.
+        seq: grows with every input of a driver.
+        nonce: the newest that their page has seen.
+        u: entries in [-1, 1].
+        latched: goes on without being held, and so for a limited time.
+        source: with what kind of device.
+    """
+
+    driver: int
+    seq: int
+    nonce: str
+    u: tuple[float, ...]
+    latched: bool
+    source: str = ""
+
+
+@final
+class Enable(_Message):
+    """Let the arm move, if the driver's input is neutral.
+
+    Attributes:
+        driver: who asked.
+        stops: version of the stop slot as the driver knew it: a later Stop wins.
+    """
+
+    order: Literal["enable"] = "enable"
+    driver: int
+    stops: int
+
+
+@final
+class ChooseMode(_Message):
+    """Steer in another way; ``axes`` is which pair of the end-effector's, None for the one before."""
+
+    order: Literal["mode"] = "mode"
+    mode: ModeName
+    axes: int | None
+
+
+@final
+class ChooseProfile(_Message):
+    """Take another person's alignment, or None for z = u; only while the arm stands disengaged."""
+
+    order: Literal["profile"] = "profile"
+    name: str | None
+
+
+@final
+class ChooseRun(_Message):
+    """Drive another run from its start, without anybody's alignment; only while the arm stands disengaged."""
+
+    order: Literal["run"] = "run"
+    run: str
+
+
+@final
+class Record(_Message):
+    """Begin an episode of what is driven, or end it once the arm is at rest."""
+
+    order: Literal["record"] = "record"
+    on: bool
+    task: str
+    person: str = ""
+
+
+@final
+class Reset(_Message):
+    """Put the simulated arm back to its start; only while it stands disengaged."""
+
+    order: Literal["reset"] = "reset"
+
+
+Order = Enable | ChooseMode | ChooseProfile | ChooseRun | Record | Reset
+_ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="order")])
+
+
+@final
+class Ghosts(_Message):
+    """Where each full deflection would take the tool over the next second: points, m."""
+
+    up: tuple[Point, ...]
+    down: tuple[Point, ...]
+    left: tuple[Point, ...]
+    right: tuple[Point, ...]
+
+
+@final
+class Recording(_Message):
+    """A recording under way or done.
+
+    Attributes:
+        on: whether an episode is under way.
+        samples: of this episode so far.
+        episodes: whole ones in the journal.
+        problem: why the last episode was broken off, or None.
+        journal: its path.
+    """
+
+    on: bool
+    samples: int
+    episodes: int
+    problem: str | None
+    journal: str
+
+
+@final
+class Report(_Message):
+    """What the control process says of itself, in every tick.
+
+    Attributes:
+        nonce: for the driver to echo.
+        tick: grows.
+        time_s: the control process's clock.
+        driver: whose inputs it takes.
+        phase: ``disengaged``, ``neutral_needed`` (the stick must be let go), ``ready`` (enabled and standing
+            still), ``moving``, ``stopping``.
+        why: one sentence for people.
+        mode: how the arm is steered.
+        axes: which pair of the end-effector's axes.
+        run: path of the run that is driven, as it was named; None without one.
+        profile: whose alignment.
+        loading: whether something else to drive is being loaded; nothing more is said until it is there.
+        q: (n,), joint positions as they were last read, rad.
+        speed: the fastest joint's, rad/s.
+        tool: the tool's position, m.
+        ghosts: what each direction would do now.
+        belief: over the goals; empty where there are none.
+        alpha: how much the robot helps.
+        bound_rad: the radius of equation 14, where there is help.
+        recording: where something is recorded.
+        late_share: share of the loop's deadlines that were missed.
+        late_p99_ms: 99th percentile of the time from a tick's due time until its command was sent.
+    """
+
+    nonce: str
+    tick: int
+    time_s: float
+    driver: int
+    phase: Phase
+    why: str
+    mode: ModeName
+    axes: int
+    run: str | None
+    profile: str | None
+    loading: bool
+    q: tuple[float, ...]
+    speed: float
+    tool: Point
+    ghosts: Ghosts | None
+    belief: tuple[float, ...]
+    alpha: float
+    bound_rad: float | None
+    recording: Recording | None
+    late_share: float
+    late_p99_ms: float
+
+
+@final
+@dataclass(frozen=True)
+class Channel:
+    """The control process's side.
+
+    Attributes:
+        given: the newest input.
+        report: the newest report.
+        stop: the newest reason to stop; every new one stops the arm.
+        ending: raised when the control process shall bring the arm to rest and end.
+        orders: everything else; bounded, for whoever is too slow to read loses orders, not time.
+    """
+
+    given: LatestSlot
+    report: LatestSlot
+    stop: LatestSlot
+    ending: Flag
+    orders: Connection
+
+    def read_orders(self, most: int) -> list[Order]:
+        """Orders that have come, oldest first; what is none is left out.
+
+        Raises:
+            EOFError: the other side is gone.
+        """
+        found: list[Order] = []
+        while len(found) < most and self.orders.poll(0):
+            try:
+                found.append(_ORDERS.validate_json(self.orders.recv_bytes(ORDER_LIMIT)))
+            except ValidationError:
+                continue
+            except OSError as error:
+                raise EOFError from error
+        return found
+
+
+def new_channel(orders: Connection) -> Channel:
+    """Slots and flags for a new control process that reads its orders from ``orders``."""
+    return Channel(
+        given=LatestSlot(_GIVEN_LIMIT),
+        report=LatestSlot(_REPORT_LIMIT),
+        stop=LatestSlot(_REASON_LIMIT),
+        ending=Flag(),
+        orders=orders,
+    )
+
+
+def parse_given(message: bytes) -> Given | None:
+    """An input as it lies in its slot, or None where it is none."""
+    try:
+        return Given.model_validate_json(message)
+    except ValidationError:
+        return None
+
+
+def parse_report(message: bytes) -> Report | None:
+    """A report as it lies in its slot, or None where it is none."""
+    try:
+        return Report.model_validate_json(message)
+    except ValidationError:
+        return None

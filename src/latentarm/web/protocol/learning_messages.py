@@ -1,0 +1,110 @@
+"""What pages and the server say to each other of runs: training them, choosing one."""
+
+from typing import Annotated, Literal, final
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from latentarm.web.protocol.personalise_messages import Personalise
+
+RunName = Annotated[str, Field(min_length=1, max_length=80)]
+ModelChoice = Literal["cvae", "cae", "homogeneous", "pca"]
+TrainingPhase = Literal["exporting", "training", "done", "failed", "cancelled"]
+
+
+class WorkshopMessage(BaseModel):
+    """Base of all of them."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+@final
+class Train(WorkshopMessage):
+    """Train a model on recorded episodes; from the page that drives.
+
+    Attributes:
+        name: of the new run, and of its dataset.
+        model: which latent action model.
+        latent_dim: d, axes of the latent actions.
+        episodes: their numbers, see `Recorded`.
+    """
+
+    type: Literal["train"]
+    name: Annotated[str, Field(max_length=200)]
+    model: ModelChoice
+    latent_dim: Literal[1, 2]
+    episodes: Annotated[tuple[Annotated[int, Field(ge=1, le=2**31)], ...], Field(max_length=300)]
+
+
+@final
+class CancelTraining(WorkshopMessage):
+    """End the training under way; nothing of it stays. From the page that drives."""
+
+    type: Literal["cancel_training"]
+
+
+@final
+class PickRun(WorkshopMessage):
+    """Drive another run, one of `Workshop.runs`; from the page that drives, while the arm is not enabled."""
+
+    type: Literal["run"]
+    run: RunName
+
+
+@final
+class Recorded(WorkshopMessage):
+    """A whole episode in the journal.
+
+    Attributes:
+        number: its own.
+        task: what was done, in words.
+        seconds: how long it is.
+    """
+
+    number: int
+    task: str
+    seconds: float
+
+
+@final
+class Training(WorkshopMessage):
+    """A training under way, or the last one.
+
+    Attributes:
+        phase: where it is.
+        run: the run's name.
+        epoch: how many passes over the episodes are done.
+        epochs: how many there are at most.
+        loss: held-out loss so far, or null.
+        seconds_left: about how long it will take yet, or null.
+        why: what people should know: why it failed, or what the model warned of; or null.
+    """
+
+    phase: TrainingPhase
+    run: str
+    epoch: int = 0
+    epochs: int = 0
+    loss: float | None = None
+    seconds_left: float | None = None
+    why: str | None = None
+
+
+@final
+class Workshop(WorkshopMessage):
+    """What there is to learn from and to drive; sent after `Welcome` and whenever it changes.
+
+    Attributes:
+        training: null where none was begun.
+        personalise: null where nobody was asked.
+        recordings: whole episodes of this journal.
+        runs: names of the runs that can be driven.
+        run: the one that is loaded, or null.
+        profiles: people whose alignment with it can be chosen.
+    """
+
+    type: Literal["workshop"] = "workshop"
+    training: Training | None
+    personalise: Personalise | None
+    recordings: tuple[Recorded, ...]
+    runs: tuple[str, ...]
+    run: str | None
+    profiles: tuple[str, ...]

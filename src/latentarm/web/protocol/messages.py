@@ -1,0 +1,281 @@
+"""What pages and the server say to each other on the socket ``/drive``: JSON in text frames.
+
+The first message is `Hello`. Whatever is not of this schema ends the connection and stops the arm. The server
+answers with `Welcome`, again whenever what is driven has changed, then `State` up to 50 times a second to
+the driver and 30 to watchers, and says `Refused` before it hangs up.
+"""
+
+from typing import Annotated, Final, Literal, final
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from latentarm.web.protocol.channel import Ghosts, ModeName, Phase, Point
+from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
+from latentarm.web.protocol.personalise_messages import PersonaliseMessage
+
+VERSION: Final = 1
+FRAME_LIMIT: Final = 4096
+"""The longest frame from a page, bytes."""
+
+Name = Annotated[str, Field(max_length=40)]
+Id = Annotated[str, Field(max_length=32)]
+Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
+
+
+class _Message(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+@final
+class Hello(_Message):
+    """A page introduces itself. The first page drives; the others watch until they ask."""
+
+    type: Literal["hello"]
+    version: Literal[1]
+    name: Name | None = None
+
+
+@final
+class DriverInput(_Message):
+    """What the person does, 50 times a second while the arm is enabled, neutral too.
+
+    Attributes:
+        seq: grows.
+        nonce: of the newest `State` that the page has seen.
+        u: entries in [-1, 1], right and up positive; axes that are not named are zero.
+        source: with what.
+        latched: goes on without being held, at most `Limits.latch_max_s`.
+    """
+
+    type: Literal["input"]
+    seq: Annotated[int, Field(ge=0, le=2**53)]
+    nonce: Annotated[str, Field(max_length=64)]
+    u: Annotated[tuple[Deflection, ...], Field(min_length=1, max_length=8)]
+    source: Literal["pointer", "keyboard", "dpad", "gamepad", "switch"]
+    latched: bool
+
+
+@final
+class PressEnable(_Message):
+    """Let the arm move. A fresh neutral input must come within 0.3 s, before or after."""
+
+    type: Literal["enable"]
+
+
+@final
+class PressStop(_Message):
+    """Stop the arm, from any page."""
+
+    type: Literal["stop"]
+
+
+@final
+class Mode(_Message):
+    """Steer in another way; at any time."""
+
+    type: Literal["mode"]
+    mode: ModeName
+    axes: Annotated[int, Field(ge=0, le=8)] | None = None
+
+
+@final
+class Profile(_Message):
+    """Use a person's alignment, or null for none; while the arm is not enabled."""
+
+    type: Literal["profile"]
+    name: Annotated[str, Field(max_length=64)] | None
+
+
+@final
+class AskToDrive(_Message):
+    """Take the wheel where nobody has it, else ask the driver for it."""
+
+    type: Literal["ask_to_drive"]
+
+
+@final
+class HandOver(_Message):
+    """Give the wheel to the page that has asked for it."""
+
+    type: Literal["hand_over"]
+    to: Id
+
+
+@final
+class Release(_Message):
+    """Give the wheel up."""
+
+    type: Literal["release"]
+
+
+@final
+class TrailClear(_Message):
+    """Empty the trail of the tool on every page."""
+
+    type: Literal["trail_clear"]
+
+
+@final
+class RecordEpisode(_Message):
+    """Begin an episode, or end it once the arm is at rest; a change of the driver ends it too."""
+
+    type: Literal["record"]
+    on: bool
+    task: Annotated[str, Field(max_length=80)] = ""
+
+
+@final
+class ResetArm(_Message):
+    """Put the simulated arm back to its start; while it is not enabled."""
+
+    type: Literal["reset"]
+
+
+ClientMessage = (
+    Hello
+    | DriverInput
+    | PressEnable
+    | PressStop
+    | Mode
+    | Profile
+    | AskToDrive
+    | HandOver
+    | Release
+    | TrailClear
+    | RecordEpisode
+    | ResetArm
+    | Train
+    | CancelTraining
+    | PickRun
+    | PersonaliseMessage
+)
+_CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
+    Annotated[ClientMessage, Field(discriminator="type")]
+)
+
+
+@final
+class NamedGoal(_Message):
+    """A goal: its name and where the tool is at it, m."""
+
+    name: str
+    position: Point
+
+
+@final
+class Limits(_Message):
+    """What a page must know of limits."""
+
+    latch_max_s: float
+
+
+@final
+class Welcome(_Message):
+    """What is driven.
+
+    Attributes:
+        id: of this page.
+        dof: joints of the arm.
+        latent_dim: axes of the latent actions; 0 without a run.
+        robot: its name.
+        run: the run's name, or null.
+        profiles: people whose alignment can be chosen.
+        modes: how the arm can be steered.
+        goals: in the order of the belief.
+        end_effector_modes: names of the pairs of axes.
+        limits: see `Limits`.
+    """
+
+    type: Literal["welcome"] = "welcome"
+    version: Literal[1] = 1
+    id: str
+    dof: int
+    latent_dim: int
+    robot: str
+    run: str | None
+    profiles: tuple[str, ...]
+    modes: tuple[ModeName, ...]
+    goals: tuple[NamedGoal, ...]
+    end_effector_modes: tuple[str, ...]
+    limits: Limits
+
+
+@final
+class RecordingState(_Message):
+    """See `latentarm.web.protocol.channel.Recording`."""
+
+    on: bool
+    samples: int
+    episodes: int
+    problem: str | None
+
+
+@final
+class State(_Message):
+    """What the arm does now.
+
+    Attributes:
+        nonce: to be echoed by the next input.
+        tick: grows.
+        phase: see `latentarm.web.protocol.channel.Report`.
+        why: for people, to be announced.
+        mode: how the arm is steered.
+        axes: which pair of the end-effector's.
+        profile: whose alignment.
+        bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
+        tool: m.
+        ghosts: where each direction would take the tool; null where nothing moved by 1 mm since the last.
+        belief: over the goals, or null where there are none.
+        alpha: how much the robot helps, in [0, 1].
+        bound_m: how far from the likeliest goal help lets the tool be, m, to first order; or null.
+        driver: id of the page that drives, or null.
+        driver_name: what its person is called.
+        watchers: how many other pages.
+        asking: id of the page that asks for the wheel, or null.
+        asking_name: what its person is called.
+        recording: null where nothing was ever recorded.
+        trail: counts how often the trail was emptied.
+        late_share: share of the control loop's deadlines that were missed.
+        you: whether this page drives.
+    """
+
+    type: Literal["state"] = "state"
+    nonce: str
+    tick: int
+    phase: Phase
+    why: str
+    mode: ModeName
+    axes: int
+    profile: str | None
+    bodies: tuple[tuple[float, ...], ...]
+    tool: Point
+    ghosts: Ghosts | None
+    belief: tuple[float, ...] | None
+    alpha: float
+    bound_m: float | None
+    driver: str | None
+    driver_name: str | None
+    watchers: int
+    asking: str | None
+    asking_name: str | None
+    recording: RecordingState | None
+    trail: int
+    late_share: float
+    you: bool
+
+
+@final
+class Refused(_Message):
+    """Why the server hangs up."""
+
+    type: Literal["refused"] = "refused"
+    why: str
+
+
+def parse_message(frame: str) -> ClientMessage:
+    """A page's message.
+
+    Raises:
+        ValueError: it is none (pydantic's ``ValidationError`` is one).
+    """
+    return _CLIENT.validate_json(frame)

@@ -1,0 +1,149 @@
+"""What pages and the server say to each other of a person's alignment: asking, trying, keeping."""
+
+from typing import Annotated, Final, Literal, final
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from latentarm.web.protocol.channel import Point
+
+MOST_QUESTIONS: Final = 30
+
+PersonalisePhase = Literal["preparing", "asking", "thinking", "learning", "learned", "kept", "failed"]
+QuestionId = Annotated[int, Field(ge=0, le=2**31)]
+Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
+
+
+class _Message(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+@final
+class BeginPersonalise(_Message):
+    """Ask a person what they mean by their stick; from the page that drives, while the arm is not enabled.
+
+    Attributes:
+        name: theirs, and of their profile.
+        questions: to be answered, at most.
+    """
+
+    type: Literal["personalise"]
+    name: Annotated[str, Field(max_length=200)]
+    questions: Annotated[int, Field(ge=1, le=MOST_QUESTIONS)]
+
+
+@final
+class AnswerQuestion(_Message):
+    """By which input the person would ask for the motion that is shown; from the page that drives.
+
+    Attributes:
+        question: of `Personalise`; an answer to another one is not heard.
+        u: entries in [-1, 1], right and up positive; axes that are not named are zero.
+    """
+
+    type: Literal["answer"]
+    question: QuestionId
+    u: Annotated[tuple[Deflection, ...], Field(min_length=1, max_length=8)]
+
+
+@final
+class SkipQuestion(_Message):
+    """The person would not know; from the page that drives."""
+
+    type: Literal["skip_question"]
+    question: QuestionId
+
+
+@final
+class QuestionBefore(_Message):
+    """Ask the question before once more; from the page that drives."""
+
+    type: Literal["question_before"]
+    question: QuestionId
+
+
+@final
+class CancelPersonalise(_Message):
+    """Ask no more, and forget what was answered; from the page that drives."""
+
+    type: Literal["cancel_personalise"]
+
+
+@final
+class TryAlignment(_Message):
+    """Drive with what was learned; from the page that drives, while the arm is not enabled."""
+
+    type: Literal["try_alignment"]
+
+
+@final
+class KeepAlignment(_Message):
+    """Keep what was learned under the person's name; from the page that drives."""
+
+    type: Literal["keep_alignment"]
+
+
+@final
+class DiscardAlignment(_Message):
+    """Forget what was learned, and drive as before; from the page that drives."""
+
+    type: Literal["discard_alignment"]
+
+
+PersonaliseMessage = (
+    BeginPersonalise
+    | AnswerQuestion
+    | SkipQuestion
+    | QuestionBefore
+    | CancelPersonalise
+    | TryAlignment
+    | KeepAlignment
+    | DiscardAlignment
+)
+
+
+@final
+class ShownMotion(_Message):
+    """A motion that a person is asked about.
+
+    Attributes:
+        duration_s: how long the arm takes for it.
+        frames: the poses of all bodies along it, each as in `State`, evenly in time.
+        tools: the ways of the tools that move, m.
+    """
+
+    duration_s: float
+    frames: tuple[tuple[tuple[float, ...], ...], ...]
+    tools: tuple[tuple[Point, ...], ...]
+
+
+@final
+class Personalise(_Message):
+    """A person's alignment as far as it is.
+
+    Attributes:
+        phase: ``thinking`` is between two questions.
+        name: the person's.
+        question: which one is asked, for answers to name.
+        number: how many answers there will be with this one.
+        of: how many there may be.
+        back: whether there is a question before.
+        motion: what is asked about; null while nothing is.
+        share: how much of the thinking or learning is done, from 0 to 1.
+        answers: how many it was learned from.
+        error: relative alignment error about the answers themselves, as learned.
+        error_without: the same with z = u.
+        why: why something could not be done, or null.
+    """
+
+    phase: PersonalisePhase
+    name: str
+    question: int = 0
+    number: int = 0
+    of: int = 0
+    back: bool = False
+    motion: ShownMotion | None = None
+    share: float = 0.0
+    answers: int = 0
+    error: float | None = None
+    error_without: float | None = None
+    why: str | None = None

@@ -1,0 +1,119 @@
+"""Where a page is served, and under which names."""
+
+import ipaddress
+import socket
+import ssl
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, final
+
+from latentarm.errors import UserError
+from latentarm.web.arm_process.drive_setup import Spec
+
+_BACKLOG: Final = 2048
+"""Connections that the system keeps until they are accepted: a crowd of them shall not be turned away."""
+
+_OWN_PORTS: Final = {"http": 80, "https": 443}
+
+
+@final
+@dataclass(frozen=True)
+class TeleopConfig:
+    """What `latentarm teleop` was asked for; its ``--help`` says the same of each field.
+
+    Attributes:
+        spec: what is driven.
+        host: the address that people open, by name or number.
+        port: 0 takes any free one.
+        certfile: for TLS, PEM.
+        keyfile: its private key, PEM.
+
+    Raises:
+        UserError: the address cannot be one that people open, or only one file for TLS is named.
+    """
+
+    spec: Spec
+    host: str = "127.0.0.1"
+    port: int = 8460
+    certfile: Path | None = None
+    keyfile: Path | None = None
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.port <= 65535:
+            raise UserError(f"The port is {self.port}: it must be from 0 to 65535.")
+        if (self.certfile is None) != (self.keyfile is None):
+            raise UserError("TLS needs a certificate and its key: name both --certfile and --keyfile.")
+        if _is_anywhere(self.host):
+            raise UserError(
+                f"The page must know the address that people open, and {self.host} is none: name this"
+                " machine's own address or name with --host."
+            )
+
+    @property
+    def scheme(self) -> str:
+        """``http``, or ``https`` with a certificate."""
+        return "http" if self.certfile is None else "https"
+
+    @property
+    def loopback(self) -> bool:
+        """Whether only this machine can reach the page."""
+        try:
+            return ipaddress.ip_address(self.host).is_loopback
+        except ValueError:
+            return self.host == "localhost"
+
+
+def listen(config: TeleopConfig) -> socket.socket:
+    """A socket on the address, before anything else is started.
+
+    Raises:
+        UserError: the address is taken, or not this machine's.
+    """
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            config.host, config.port, type=socket.SOCK_STREAM
+        )[0]
+        listening = socket.socket(family, kind, protocol)
+    except OSError as error:
+        raise UserError(f"{config.host} is no address of this machine: {error.strerror or error}.") from error
+    try:
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind(address)
+        listening.listen(_BACKLOG)
+    except OSError as error:
+        listening.close()
+        raise UserError(
+            f"{config.host} port {config.port} cannot be used ({error.strerror or error}): choose another"
+            " with --host or --port."
+        ) from error
+    return listening
+
+
+def check_certificate(config: TeleopConfig) -> None:
+    """See that the files for TLS can be used.
+
+    Raises:
+        UserError: they cannot.
+    """
+    if config.certfile is None or config.keyfile is None:
+        return
+    try:
+        ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(config.certfile, config.keyfile)
+    except (OSError, ssl.SSLError) as error:
+        raise UserError(
+            f"{config.certfile} and {config.keyfile} are no certificate and key for TLS"
+            f" ({error.strerror or error})."
+        ) from error
+
+
+def origin(scheme: str, host: str, port: int) -> str:
+    """What a browser calls the page's origin."""
+    name = f"[{host}]" if ":" in host else host.lower()
+    return f"{scheme}://{name}" if port == _OWN_PORTS[scheme] else f"{scheme}://{name}:{port}"
+
+
+def _is_anywhere(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_unspecified
+    except ValueError:
+        return host == ""

@@ -1,0 +1,244 @@
+"""`latentarm teleop`: the page, its server, and the control process behind it."""
+
+import asyncio
+import socket
+from collections.abc import AsyncGenerator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any, Final
+
+import uvicorn
+from fastapi import FastAPI
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.staticfiles import StaticFiles
+from starlette.types import ASGIApp
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from latentarm.robots.notices import notices
+from latentarm.web.arm_process.drive_setup import Setting, load_setting
+from latentarm.web.server.addresses import TeleopConfig, check_certificate, listen, origin
+from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
+from latentarm.web.server.control_process import ControlProcess
+from latentarm.web.server.drive_socket import DriveSocket
+from latentarm.web.server.frames import MeteredSocket
+from latentarm.web.server.learning import Bench
+from latentarm.web.server.loaded_run import Stage
+from latentarm.web.server.logs import LOGGING
+from latentarm.web.server.run_list import Shelf
+from latentarm.web.server.security import DRIVE, ENTRY, Gate, Keys
+from latentarm.web.server.sessions import Sessions
+from latentarm.web.server.states import States
+
+_PAGES: Final = Path(__file__).parent.parent / "pages"
+_FRAMEWORK_FRAME_LIMIT: Final = 1 << 16
+"""NiceGUI's own socket carries forms; the one that drives is held to `messages.FRAME_LIMIT`."""
+
+STOPPED_BY_POST: Final = "Somebody pressed Stop."
+
+_STARTED_S: Final = 0.01
+"""How often is looked whether uvicorn has started, s."""
+
+
+def serve(
+    config: TeleopConfig, say: Callable[[str], None], ready: Callable[[str], None] = lambda address: None
+) -> None:
+    """Serve the page until Ctrl-C.
+
+    Args:
+        config: what was asked for.
+        say: tells the person who started it.
+        ready: called once with the address to open first: the page's, or a link that works once.
+
+    Raises:
+        UserError: the run or profile is not to be had, the address is taken, or a file for TLS is broken.
+    """
+    check_certificate(config)
+    setting = load_setting(config.spec)
+    listening = listen(config)
+    port = int(listening.getsockname()[1])
+    base = origin(config.scheme, config.host, port)
+    keys = None if config.loopback else Keys()
+
+    def link() -> str:
+        return f"{base}/" if keys is None else f"{base}{ENTRY}?key={keys.new_link()}"
+
+    def invite() -> None:
+        say(f"For the next person, a link that works once: {link()}")
+
+    for sentence in notices(setting.task.robot):
+        say(sentence)
+    control = ControlProcess(config.spec)
+    try:
+        app = build_app(setting, control)
+        _add_pages(app)
+        gate = gated(app, control, config, port, keys, invite)
+        first = link()
+        say(f"The page is at {first} (end with Ctrl-C).")
+        if keys is not None:
+            say("This link works once; when it is used the next one is printed.")
+            if config.scheme == "http":
+                say("Without --certfile and --keyfile the network can read and change what is sent.")
+        ready(first)
+        if config.spec.run is None:
+            say(
+                "Without a run the page has end-effector control alone; `latentarm demo` or `latentarm train`"
+                " makes one, and `latentarm teleop RUN` drives it."
+            )
+        server = uvicorn.Server(server_config(gate, config, LOGGING))
+        with asyncio.Runner(loop_factory=server.config.get_loop_factory()) as runner:
+            runner.run(serve_on(listening, server, limits_here()))
+    except KeyboardInterrupt:
+        say("The page is closed.")
+    finally:
+        control.end()
+        listening.close()
+
+
+def build_app(setting: Setting, control: ControlProcess) -> FastAPI:
+    """The application without its pages: the socket that drives, scene, and static files.
+
+    Args:
+        setting: what is driven.
+        control: drives it.
+    """
+    sessions = Sessions()
+    spec = setting.spec
+    shelf = Shelf(spec.out, spec.run)
+    states = States(Stage(setting, shelf.name_of(spec.run)), control, sessions, shelf)
+    bench = Bench(control, states, shelf, spec.out)
+    drive = DriveSocket(control, states, sessions, bench)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
+        following = [asyncio.create_task(one.follow()) for one in (states, bench)]
+        try:
+            yield
+        finally:
+            for task in following:
+                task.cancel()
+            await bench.close()
+
+    app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
+
+    async def describe(_: Request) -> Response:
+        return JSONResponse(states.stage.scene.description)
+
+    async def mesh(request: Request) -> Response:
+        # Compared as text: a number in a path may have any length.
+        named = {str(number): content for number, content in states.stage.scene.meshes.items()}
+        content = named.get(request.path_params["number"])
+        if content is None:
+            return JSONResponse({"detail": "There is no such mesh."}, 404)
+        return Response(content, media_type="application/octet-stream")
+
+    app.add_api_websocket_route(DRIVE, drive)
+    app.add_route("/scene.json", describe)
+    app.add_route("/mesh/{number}", mesh)
+    app.mount("/static", StaticFiles(directory=_PAGES))
+    return app
+
+
+def gated(
+    app: ASGIApp,
+    control: ControlProcess,
+    config: TeleopConfig,
+    port: int,
+    keys: Keys | None,
+    entered: Callable[[], None],
+) -> Gate:
+    """The application behind its gate.
+
+    Args:
+        app: from `build_app`.
+        control: stops the arm on a POST to `STOP`.
+        config: says by which names the page is reached.
+        port: that it listens on.
+        keys: None on the loopback.
+        entered: see `Gate`.
+    """
+    names = ["127.0.0.1", "localhost", config.host] if config.loopback else [config.host]
+    origins = frozenset(origin(config.scheme, name, port) for name in names)
+    hosts = frozenset(origin.split("//")[1] for origin in origins)
+    return Gate(
+        app,
+        hosts,
+        origins,
+        keys,
+        secure=config.scheme == "https",
+        stop=lambda: control.stop(STOPPED_BY_POST),
+        entered=entered,
+    )
+
+
+def server_config(
+    app: ASGIApp, config: TeleopConfig, log_config: dict[str, Any] | None = None
+) -> uvicorn.Config:
+    """How the application is served: everything bounded, nothing compressed, no proxy believed.
+
+    Args:
+        app: from `gated`.
+        config: says where it is served.
+        log_config: how what happens is logged; None leaves it as it is.
+    """
+    return uvicorn.Config(
+        app,
+        log_config=log_config,
+        access_log=False,
+        server_header=False,
+        proxy_headers=False,
+        http="h11",
+        h11_max_incomplete_event_size=HEAD_LIMIT,
+        ws=MeteredSocket,
+        ws_max_size=_FRAMEWORK_FRAME_LIMIT,
+        ws_ping_interval=5.0,
+        ws_ping_timeout=10.0,
+        ws_per_message_deflate=False,
+        timeout_graceful_shutdown=1,
+        ssl_certfile=config.certfile,
+        ssl_keyfile=config.keyfile,
+    )
+
+
+async def serve_on(listening: socket.socket, server: uvicorn.Server, limits: ConnectionLimits) -> None:
+    """Serve until the server is told to exit.
+
+    Args:
+        listening: where connections come in.
+        server: of `server_config`.
+        limits: for connections.
+
+    Raises:
+        OSError: no connections can be accepted any more.
+    """
+
+    async def accept() -> None:
+        while not server.started:
+            await asyncio.sleep(_STARTED_S)
+
+        def protocol() -> H11Protocol:
+            return H11Protocol(server.config, server.server_state, server.lifespan.state)
+
+        await Connections(listening, protocol, server.config.ssl, limits).accept()
+
+    def exit_too(_: asyncio.Task[None]) -> None:
+        server.should_exit = True
+
+    accepting = asyncio.create_task(accept())
+    accepting.add_done_callback(exit_too)
+    try:
+        await server.serve(sockets=[])
+    finally:
+        accepting.cancel()
+    if accepting.done() and not accepting.cancelled():
+        accepting.result()
+
+
+def _add_pages(app: FastAPI) -> None:
+    # NiceGUI takes a second to load, and only a server that shows pages needs it.
+    from nicegui import ui
+
+    from latentarm.web.server.pages import add_pages
+
+    add_pages()
+    ui.run_with(app, title="latentarm", tailwind=False, show_welcome_message=False)

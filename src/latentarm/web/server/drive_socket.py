@@ -1,0 +1,248 @@
+"""The socket that pages drive through, and what they all see."""
+
+import asyncio
+from contextlib import suppress
+from typing import Final, final
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from latentarm.web.protocol.channel import ChooseMode, ChooseProfile, Enable, Given, Record, Reset
+from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
+from latentarm.web.protocol.messages import (
+    FRAME_LIMIT,
+    AskToDrive,
+    ClientMessage,
+    DriverInput,
+    HandOver,
+    Hello,
+    Mode,
+    PressEnable,
+    PressStop,
+    Profile,
+    RecordEpisode,
+    Refused,
+    Release,
+    ResetArm,
+    TrailClear,
+    parse_message,
+)
+from latentarm.web.protocol.personalise_messages import AnswerQuestion, PersonaliseMessage
+from latentarm.web.server.control_process import ControlProcess
+from latentarm.web.server.frames import TOO_MANY
+from latentarm.web.server.learning import Bench
+from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
+from latentarm.web.server.sessions import MOST, Page, Sessions
+from latentarm.web.server.states import GhostMemory, States
+
+HELLO_WITHIN_S: Final = 5.0
+HANG_UP_WITHIN_S: Final = 1.0
+
+DRIVER_PERIOD_S: Final = 0.02
+WATCHER_PERIOD_S: Final = 0.033
+"""How often a page is sent a state, save that it hears at once when the arm sets off. The driver's is also
+what makes the next input fresh."""
+
+_PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)
+"""Codes with which the server below us hangs up: no frame, no text, too many frames, or one far too long."""
+
+_EXPIRED_DRIVER: Final = "The access of the person who drove has expired: the arm was stopped."
+_BROKEN: Final = "A page sent what is no message: the arm was stopped."
+
+
+class _ViolationError(Exception):
+    """A page has sent what it must not."""
+
+
+class _ExpiredError(Exception):
+    """A page's cookie has expired."""
+
+
+async def _hang_up(socket: WebSocket, code: int, why: str) -> None:
+    """Say why, and close; a page that takes nothing any more is not waited for."""
+    with suppress(RuntimeError, WebSocketDisconnect, TimeoutError):
+        async with asyncio.timeout(HANG_UP_WITHIN_S):
+            await socket.send_text(Refused(why=why).model_dump_json())
+            await socket.close(code, why)
+
+
+@final
+class DriveSocket:
+    """The endpoint of ``/drive``.
+
+    Args:
+        control: the control process.
+        states: what pages see.
+        sessions: who is there.
+        bench: what is recorded, trained and chosen.
+    """
+
+    def __init__(self, control: ControlProcess, states: States, sessions: Sessions, bench: Bench) -> None:
+        self._control = control
+        self._states = states
+        self._sessions = sessions
+        self._bench = bench
+        self._open = 0
+
+    async def __call__(self, socket: WebSocket) -> None:
+        """Serve one page until it goes."""
+        if self._open >= MOST:
+            await socket.close(1013)
+            return
+        self._open += 1
+        try:
+            await socket.accept()
+            await self._serve(socket)
+        finally:
+            self._open -= 1
+
+    def stop(self, who: str) -> None:
+        """Stop the arm, for somebody."""
+        self._control.stop(f"{who} pressed Stop.")
+
+    async def _serve(self, socket: WebSocket) -> None:
+        page: Page | None = None
+        sender: asyncio.Task[None] | None = None
+        try:
+            async with asyncio.timeout(HELLO_WITHIN_S):
+                hello = await _receive(socket)
+            if not isinstance(hello, Hello) or (page := self._sessions.join(hello.name)) is None:
+                raise _ViolationError
+            sender = asyncio.create_task(self._send_states(socket, page))
+            while True:
+                self._take(page, await _receive(socket))
+        except _ViolationError:
+            self._control.stop(_BROKEN)
+            await _hang_up(socket, 1008, "This is not what a page may send.")
+        except TimeoutError:
+            # It is nobody yet: a slow network or a silent stranger is no reason to stop the arm.
+            await _hang_up(socket, 1008, "The page did not introduce itself.")
+        except _ExpiredError:
+            if page is not None and self._sessions.drives(page):
+                self._control.stop(_EXPIRED_DRIVER)
+            await _hang_up(socket, EXPIRED, EXPIRED_WHY)
+        except WebSocketDisconnect:
+            pass
+        finally:
+            if sender is not None:
+                sender.cancel()
+            if page is not None and self._sessions.leave(page):
+                self._wheel_changed("The page of the person who drove has gone.")
+
+    async def _send_states(self, socket: WebSocket, page: Page) -> None:
+        """States as fast as the page takes them, always the newest: nothing queues up.
+
+        Before them what is driven, and what there is in the workshop; again when it has changed.
+        """
+        ghosts = GhostMemory()
+        stage = None
+        tick = bench = -1
+        with suppress(RuntimeError, WebSocketDisconnect):
+            while True:
+                if stage is not self._states.stage:
+                    stage = self._states.stage
+                    ghosts = GhostMemory()
+                    await socket.send_text(stage.welcome(page.id).model_dump_json())
+                if bench != self._bench.number:
+                    bench = self._bench.number
+                    await socket.send_text(self._bench.text)
+                tick = await self._states.after(tick)
+                if stage is not self._states.stage:
+                    continue
+                await socket.send_text(self._states.text(page, ghosts))
+                drives = self._sessions.drives(page)
+                await self._states.pause(DRIVER_PERIOD_S if drives else WATCHER_PERIOD_S)
+
+    def _take(self, page: Page, message: ClientMessage) -> None:
+        """Do what a page asks for; what only the driver may ask for is not heard from others."""
+        if isinstance(message, Hello) or not self._suits(message):
+            raise _ViolationError
+        if isinstance(message, PressStop):
+            self.stop(page.name)
+        elif isinstance(message, AskToDrive):
+            self._sessions.ask(page)
+        elif isinstance(message, TrailClear):
+            self._states.clear_trail()
+        elif self._sessions.drives(page):
+            self._take_from_driver(page, message)
+
+    def _suits(self, message: ClientMessage) -> bool:
+        """Whether an input or an answer has no more axes than what is driven."""
+        return (
+            not isinstance(message, DriverInput | AnswerQuestion)
+            or len(message.u) <= self._states.stage.input_dim
+        )
+
+    def _take_from_driver(self, page: Page, message: ClientMessage) -> None:
+        match message:
+            case DriverInput():
+                self._give(message)
+            case PressEnable() if self._states.loading or self._bench.personalising.standstill:
+                pass
+            case PressEnable():
+                self._control.order(Enable(driver=self._sessions.turn, stops=self._control.stops))
+            case Mode(mode=mode, axes=axes):
+                self._control.order(ChooseMode(mode=mode, axes=axes))
+            case Profile(name=name):
+                self._control.order(ChooseProfile(name=name))
+            case RecordEpisode(on=on, task=task):
+                self._control.order(Record(on=on, task=task, person=page.name))
+            case ResetArm():
+                self._control.order(Reset())
+            case Train():
+                self._bench.train(message)
+            case CancelTraining():
+                self._bench.cancel()
+            case PickRun(run=run):
+                self._bench.choose_run(run)
+            case HandOver(to=to):
+                if self._sessions.hand_over(page, to):
+                    self._wheel_changed("The wheel was handed over.")
+            case Release():
+                if self._sessions.release(page):
+                    self._wheel_changed("The driver has given up the wheel.")
+            case _ if isinstance(message, PersonaliseMessage):
+                self._bench.personalising.take(message)
+            case _:
+                pass
+
+    def _wheel_changed(self, why: str) -> None:
+        """The arm stops for it, and an episode is one driver's."""
+        self._control.stop(why)
+        self._control.order(Record(on=False, task=""))
+
+    def _give(self, message: DriverInput) -> None:
+        padded = message.u + (0.0,) * (self._states.stage.input_dim - len(message.u))
+        self._control.give(
+            Given(
+                driver=self._sessions.turn,
+                seq=message.seq,
+                nonce=message.nonce,
+                u=padded,
+                latched=message.latched,
+                source=message.source,
+            )
+        )
+
+
+async def _receive(socket: WebSocket) -> ClientMessage:
+    """The next message.
+
+    Raises:
+        _ViolationError: it is none, or one too many.
+        _ExpiredError: the page may not be here any longer.
+        WebSocketDisconnect: the page has gone.
+    """
+    event = await socket.receive()
+    if event["type"] == "websocket.disconnect":
+        if event.get("code") in _PROTOCOL_BROKEN:
+            raise _ViolationError
+        if event.get("code") == EXPIRED:
+            raise _ExpiredError
+        raise WebSocketDisconnect
+    text = event.get("text")
+    if text is None or len(text) > FRAME_LIMIT or len(text.encode()) > FRAME_LIMIT:
+        raise _ViolationError
+    try:
+        return parse_message(text)
+    except ValueError as error:
+        raise _ViolationError from error

@@ -1,0 +1,140 @@
+"""WebSocket frames of every kind count against what a page may send: text, fragments, pings and pongs.
+
+uvicorn answers pings itself and joins fragments, so that the application sees neither. They are counted here,
+on the bytes as they arrive.
+"""
+
+import asyncio
+import struct
+from typing import Any, Final, final
+
+from uvicorn.config import Config
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from uvicorn.server import ServerState
+
+from latentarm.web.server.allowance import Allowance
+
+TOO_MANY: Final = 1008
+"""The code that a connection with too many frames is closed with; RFC 6455 calls it a policy violation."""
+
+_BAD_REQUEST: Final = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
+
+_MASK_BYTES: Final = 4
+_LENGTH_BYTES: Final = {126: 2, 127: 8}
+_REASON: Final = b"too many frames"
+_CLOSE: Final = b"\x88" + bytes([0x80 | 2 + len(_REASON)]) + bytes(_MASK_BYTES)
+_CLOSE_FOR_TOO_MANY: Final = _CLOSE + struct.pack("!H", TOO_MANY) + _REASON
+"""A close frame with a mask of zeros, as the page might have sent it."""
+
+
+@final
+class FrameMeter:
+    """Finds where frames begin in a stream of bytes, and spends an allowance on each (RFC 6455, section 5.2).
+
+    Args:
+        allowance: of the page.
+    """
+
+    def __init__(self, allowance: Allowance) -> None:
+        self._allowance = allowance
+        self._head = bytearray()
+        self._left = 0
+
+    def pass_on(self, data: bytes) -> tuple[bytes, bool]:
+        """What of some bytes may be passed on.
+
+        Args:
+            data: that arrived, cut anywhere.
+
+        Returns:
+            The bytes up to the first frame that is one too many, and whether there was none such. A frame's
+            head is held back until it is whole, so that what was passed on never ends inside of one.
+        """
+        passed = bytearray()
+        at = 0
+        while at < len(data):
+            if self._left:
+                taken = min(self._left, len(data) - at)
+                passed += data[at : at + taken]
+                self._left -= taken
+                at += taken
+                continue
+            self._head.append(data[at])
+            at += 1
+            length = _frame_length(self._head)
+            if length is None:
+                continue
+            if not self._allowance.spend():
+                return bytes(passed), False
+            passed += self._head
+            self._left = length
+            self._head.clear()
+        return bytes(passed), True
+
+
+def _frame_length(head: bytearray) -> int | None:
+    """Bytes of a frame after its head, or None while the head is not whole; frames of pages are masked."""
+    if len(head) < 2:
+        return None
+    short = head[1] & 0x7F
+    extended = _LENGTH_BYTES.get(short, 0)
+    mask = _MASK_BYTES if head[1] & 0x80 else 0
+    if len(head) < 2 + extended + mask:
+        return None
+    return int.from_bytes(head[2 : 2 + extended], "big") if extended else short
+
+
+@final
+class MeteredSocket(asyncio.Protocol):
+    """uvicorn's WebSocket, behind a `FrameMeter`.
+
+    To uvicorn and the application it looks as if a page that sends too many frames had closed its connection
+    with `TOO_MANY`; uvicorn answers the page with the same code.
+
+    Args:
+        config: uvicorn's.
+        server_state: uvicorn's.
+        app_state: uvicorn's.
+    """
+
+    def __init__(self, config: Config, server_state: ServerState, app_state: dict[str, Any]) -> None:
+        self._inner = WebSocketsSansIOProtocol(config, server_state, app_state)
+        self._meter = FrameMeter(Allowance())
+        self._greeted = False
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """See the base class."""
+        self._inner.connection_made(transport)
+
+    def data_received(self, data: bytes) -> None:
+        """See the base class."""
+        if not self._greeted:
+            # uvicorn hands over the request for the socket, whole, before any frame.
+            self._greeted = True
+            self._inner.data_received(data)
+            if not self._inner.handshake_initiated:
+                # The websockets library has found it faulty, and uvicorn would wait for ever.
+                self._inner.transport.write(_BAD_REQUEST)
+                self._inner.transport.close()
+            return
+        passed, good = self._meter.pass_on(data)
+        if passed:
+            self._inner.data_received(passed)
+        if not good:
+            self._inner.data_received(_CLOSE_FOR_TOO_MANY)
+
+    def eof_received(self) -> bool | None:
+        """See the base class."""
+        return self._inner.eof_received()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """See the base class."""
+        self._inner.connection_lost(exc)
+
+    def pause_writing(self) -> None:
+        """See the base class."""
+        self._inner.pause_writing()
+
+    def resume_writing(self) -> None:
+        """See the base class."""
+        self._inner.resume_writing()

@@ -1,0 +1,184 @@
+"""What the server knows of recordings, trainings and runs, and tells the pages."""
+
+import asyncio
+from pathlib import Path
+from typing import Final, final
+
+from latentarm.control.journal import list_journal
+from latentarm.errors import UserError
+from latentarm.runs.folder import read_run
+from latentarm.web.jobs.training import TrainingJob, TrainingPlan
+from latentarm.web.protocol.channel import ChooseRun
+from latentarm.web.protocol.learning_messages import Recorded, Train, Training, Workshop
+from latentarm.web.server.control_process import ControlProcess
+from latentarm.web.server.personalising import Driven, Personalising
+from latentarm.web.server.run_check import WITHIN_S, Trial
+from latentarm.web.server.run_list import Shelf
+from latentarm.web.server.states import States
+
+LOOK_S: Final = 0.2
+"""How often the jobs and the recordings are looked at, s."""
+
+_NOTHING: Final = "Nothing is recorded yet: record episodes on the Drive page first."
+
+
+@final
+class Bench:
+    """Recordings, trainings, runs, and people's alignments.
+
+    Args:
+        control: the control process, which records and drives.
+        states: says what is recorded and what is loaded.
+        shelf: the runs.
+        out: folder that holds ``datasets`` and ``runs``.
+    """
+
+    def __init__(self, control: ControlProcess, states: States, shelf: Shelf, out: Path) -> None:
+        self._control = control
+        self._states = states
+        self._shelf = shelf
+        self._out = out
+        self._job: TrainingJob | None = None
+        self._training: Training | None = None
+        self._recordings: tuple[Recorded, ...] = ()
+        self._listed: tuple[str, int] | None = None
+        self._cancelling: asyncio.Task[None] | None = None
+        self._choosing: asyncio.Task[None] | None = None
+        self.personalising = Personalising(self._driven, control)
+        self._text = ""
+        self._number = 0
+        self._tell(shelf.runs())
+
+    @property
+    def number(self) -> int:
+        """Changes with every change of `text`."""
+        return self._number
+
+    @property
+    def text(self) -> str:
+        """All of it as JSON, for a page."""
+        return self._text
+
+    async def follow(self) -> None:
+        """Keep it up to date until cancelled."""
+        while True:
+            await self._list_recordings()
+            if self._job is not None:
+                self._training = self._job.look()
+            self._states.standstill = self.personalising.standstill
+            self._tell(await asyncio.to_thread(self._shelf.runs))
+            await asyncio.sleep(LOOK_S)
+
+    def train(self, wish: Train) -> None:
+        """Begin a training, or say why not; while one is under way nothing is heard."""
+        if self._job is not None and self._job.under_way:
+            return
+        report = self._states.report
+        journal = None if report is None or report.recording is None else Path(report.recording.journal)
+        try:
+            if journal is None:
+                raise UserError(_NOTHING)
+            name = wish.name.strip()
+            plan = TrainingPlan(
+                journal=journal,
+                episodes=wish.episodes,
+                name=name,
+                model=wish.model,
+                latent_dim=wish.latent_dim,
+                out=self._out,
+                end_effector=self._end_effector(),
+            )
+            self._job = TrainingJob(plan)
+            self._training = self._job.look()
+        except UserError as error:
+            self._job = None
+            self._training = Training(phase="failed", run=wish.name.strip()[:80], why=str(error))
+
+    def cancel(self) -> None:
+        """End the training under way."""
+        if self._job is not None and self._job.under_way and self._cancelling is None:
+            self._cancelling = asyncio.create_task(self._cancel(self._job))
+
+    def choose_run(self, name: str) -> None:
+        """Try another run, then drive it. Names that are not in the list are ignored."""
+        run = self._shelf.runs().get(name)
+        report = self._states.report
+        if run is None:
+            return
+        if report is not None and report.phase in ("ready", "moving", "stopping"):
+            self._states.say("Stop the arm first.")
+            return
+        if self._choosing is not None:
+            self._choosing.cancel()
+        self._choosing = asyncio.create_task(self._try_run(name, run.resolve()))
+
+    async def close(self) -> None:
+        """End what is under way."""
+        if self._choosing is not None:
+            self._choosing.cancel()
+        await self.personalising.close()
+        if self._job is not None:
+            await asyncio.to_thread(self._job.cancel)
+
+    async def _try_run(self, name: str, run: Path) -> None:
+        """Have a run driven once a child process has loaded it; until then driving goes on as it was."""
+        trial = Trial(self._states.stage.spec, run, name)
+        try:
+            self._states.say(f"Checking the run {name}.", WITHIN_S)
+            failure = await trial.failure()
+        finally:
+            asyncio.get_running_loop().run_in_executor(None, trial.end)
+        if failure is None:
+            self._states.say("")
+            self._control.order(ChooseRun(run=str(run)))
+        else:
+            self._states.say(failure)
+
+    async def _cancel(self, job: TrainingJob) -> None:
+        await asyncio.to_thread(job.cancel)
+        self._cancelling = None
+
+    def _driven(self) -> Driven:
+        stage = self._states.stage
+        return Driven(stage.spec.run, stage.latent_dim, self._states.report)
+
+    def _end_effector(self) -> str | None:
+        """That of the arm, where a run says it.
+
+        Raises:
+            UserError: the run has gone.
+        """
+        run = self._states.stage.spec.run
+        return None if run is None else read_run(run).end_effector
+
+    async def _list_recordings(self) -> None:
+        report = self._states.report
+        recording = None if report is None else report.recording
+        if recording is None or recording.episodes == 0:
+            return
+        listed = (recording.journal, recording.episodes)
+        if listed == self._listed:
+            return
+        try:
+            entries = await asyncio.to_thread(list_journal, Path(recording.journal))
+        except UserError:
+            return  # it is being written: soon again
+        self._listed = listed
+        self._recordings = tuple(
+            Recorded(number=entry.number, task=entry.header.task, seconds=round(entry.duration_s, 1))
+            for entry in entries
+            if entry.complete
+        )
+
+    def _tell(self, runs: dict[str, Path]) -> None:
+        text = Workshop(
+            training=self._training,
+            personalise=self.personalising.look(),
+            recordings=self._recordings,
+            runs=tuple(runs),
+            run=self._states.stage.name,
+            profiles=self._states.stage.profiles,
+        ).model_dump_json()
+        if text != self._text:
+            self._text = text
+            self._number += 1

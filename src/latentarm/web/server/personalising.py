@@ -1,0 +1,236 @@
+"""A person's alignment from the first question to the profile that is kept or not."""
+
+import asyncio
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, final
+
+from latentarm.alignment.profile import TRIAL, discard_trial, keep_trial, profile_folder, trial_folder
+from latentarm.errors import UserError
+from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
+from latentarm.web.protocol.channel import ChooseProfile, Report
+from latentarm.web.protocol.personalise_messages import (
+    AnswerQuestion,
+    BeginPersonalise,
+    CancelPersonalise,
+    DiscardAlignment,
+    KeepAlignment,
+    Personalise,
+    PersonaliseMessage,
+    QuestionBefore,
+    SkipQuestion,
+    TryAlignment,
+)
+from latentarm.web.server.control_process import ControlProcess
+
+STICK_AXES: Final = 2
+"""A page's stick cannot answer for more."""
+
+_STOP_FIRST: Final = "Stop the arm first."
+_ASKING: Final = "{name} is being asked: the arm stands still until that is done."
+
+
+@final
+@dataclass(frozen=True)
+class Driven:
+    """What Personalise must know of what is driven.
+
+    Attributes:
+        run: its folder, or None.
+        latent_dim: d; 0 without a run.
+        report: the newest of it, or None before the first.
+    """
+
+    run: Path | None
+    latent_dim: int
+    report: Report | None
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the arm stands disengaged."""
+        return self.report is not None and self.report.phase in ("disengaged", "neutral_needed")
+
+    @property
+    def profile(self) -> str | None:
+        """Whose alignment is used."""
+        return None if self.report is None else self.report.profile
+
+
+@final
+class Personalising:
+    """At most one person is asked at a time; what was learned of them can be tried before it is kept.
+
+    Args:
+        driven: says what is driven now.
+        control: the control process.
+    """
+
+    def __init__(self, driven: Callable[[], Driven], control: ControlProcess) -> None:
+        self._driven = driven
+        self._control = control
+        self._run: Path | None = None
+        self._job: PersonaliseJob | None = None
+        self._ending: asyncio.Task[None] | None = None
+        self._state: Personalise | None = None
+        self._tried = False
+        self._before: str | None = None
+
+    @property
+    def standstill(self) -> str | None:
+        """Why the arm may not be enabled, in a sentence for people; None where it may."""
+        if self._state is None or not self._under_way:
+            return None
+        return _ASKING.format(name=self._state.name)
+
+    def look(self) -> Personalise | None:
+        """How far it is; None where there is nothing of it."""
+        if self._run is not None and self._driven().run != self._run:
+            # Another run is driven: what was asked or learned is of no use for it.
+            self._forget()
+        if self._job is not None and self._under_way:
+            self._state = self._job.look()
+        return self._state
+
+    def take(self, message: PersonaliseMessage) -> None:
+        """Do what the page that drives asks for, or say in `look` why it cannot be done."""
+        try:
+            self._obey(message)
+        except UserError as error:
+            self._why(str(error))
+
+    async def close(self) -> None:
+        """End what is under way, and remove what was not kept."""
+        self._forget()
+        if self._ending is not None:
+            await self._ending
+
+    @property
+    def _under_way(self) -> bool:
+        return self._job is not None and self._job.under_way
+
+    def _obey(self, message: PersonaliseMessage) -> None:
+        match message:
+            case BeginPersonalise(name=name, questions=questions):
+                self._begin(name.strip(), questions)
+            case AnswerQuestion(question=question, u=u):
+                if self._job is not None:
+                    self._job.answer(question, u)
+            case SkipQuestion(question=question):
+                if self._job is not None:
+                    self._job.skip(question)
+            case QuestionBefore(question=question):
+                if self._job is not None:
+                    self._job.back(question)
+            case CancelPersonalise():
+                if self._state is None or self._state.phase != "learned":
+                    self._forget()
+            case TryAlignment():
+                self._try()
+            case KeepAlignment():
+                self._keep()
+            case DiscardAlignment():
+                self._discard()
+
+    def _begin(self, name: str, questions: int) -> None:
+        if self._under_way or (self._ending is not None and not self._ending.done()):
+            raise UserError("Somebody is being asked already: wait for it, or cancel it.")
+        driven = self._driven()
+        try:
+            run = _alignable(driven)
+            if profile_folder(run, name).exists():
+                raise UserError(f"There is an alignment of {name} already: choose another name.")
+            self._give_back(driven)
+        except UserError as error:
+            if self._state is not None and self._state.phase == "learned":
+                raise
+            self._state = Personalise(phase="failed", name=name, of=questions, why=str(error))
+            return
+        # An Enable from before that has not been carried out counts for nothing after a stop.
+        self._control.stop("A person is asked what they mean by the stick.")
+        self._run = run
+        self._job = PersonaliseJob(PersonalisePlan(run, name, questions, trial_folder(run)))
+        self._state = self._job.look()
+
+    def _try(self) -> None:
+        driven = self._driven()
+        if self._state is None or self._state.phase != "learned":
+            return
+        _check_at_rest(driven)
+        if not self._tried:
+            self._before = driven.profile
+        self._tried = self._control.order(ChooseProfile(name=TRIAL)) or self._tried
+        self._why(None)
+
+    def _keep(self) -> None:
+        if self._run is None or self._state is None or self._state.phase != "learned":
+            return
+        if self._tried:
+            _check_at_rest(self._driven())
+        keep_trial(self._run, self._state.name)
+        if self._tried:
+            self._control.order(ChooseProfile(name=self._state.name))
+        self._tried = False
+        self._job = self._run = None
+        self._state = self._state.model_copy(update={"phase": "kept", "why": None})
+
+    def _discard(self) -> None:
+        if self._state is None or self._state.phase != "learned":
+            return
+        self._give_back(self._driven())
+        self._job = self._run = self._state = None
+
+    def _give_back(self, driven: Driven) -> None:
+        """The alignment from before the trial, and nothing of what was tried.
+
+        Raises:
+            UserError: the arm must be stopped first, or files cannot be deleted.
+        """
+        if self._tried:
+            _check_at_rest(driven)
+            self._control.order(ChooseProfile(name=self._before))
+            self._tried = False
+        if driven.run is not None:
+            discard_trial(driven.run)
+
+    def _forget(self) -> None:
+        """Whatever there is of it."""
+        job, run = self._job, self._run
+        self._job = self._run = self._state = None
+        self._tried = False
+        if run is not None:
+            self._ending = asyncio.create_task(asyncio.to_thread(_clean, job, run))
+
+    def _why(self, why: str | None) -> None:
+        if self._state is not None:
+            self._state = self._state.model_copy(update={"why": why})
+
+
+def _alignable(driven: Driven) -> Path:
+    """The run.
+
+    Raises:
+        UserError: nobody can be asked about what is driven, or not now.
+    """
+    if driven.run is None:
+        raise UserError("No run is loaded: choose one on the Teach page, or start with one.")
+    if driven.latent_dim > STICK_AXES:
+        raise UserError(
+            f"This run has {driven.latent_dim} latent actions, and the page's stick has two axes."
+        )
+    _check_at_rest(driven)
+    return driven.run
+
+
+def _check_at_rest(driven: Driven) -> None:
+    if not driven.at_rest:
+        raise UserError(_STOP_FIRST)
+
+
+def _clean(job: PersonaliseJob | None, run: Path) -> None:
+    """End a job, and remove what it has learned."""
+    if job is not None:
+        job.end()
+    with suppress(UserError):  # what cannot be deleted is replaced by the next
+        discard_trial(run)

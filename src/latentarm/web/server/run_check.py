@@ -1,0 +1,73 @@
+"""Loading a run first in a child process, so that a broken one costs neither the arm nor the server.
+
+What a run names is read by libraries in C (Parquet, meshes), which a file made for it could keep busy for
+ever or crash. The child may: only what it has loaded within its time is then loaded by those who matter.
+"""
+
+import asyncio
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Final, final
+
+from pydantic import TypeAdapter
+
+from latentarm.errors import UserError
+from latentarm.untrusted.memory import bounded_memory
+from latentarm.web.arm_process.drive_setup import Spec, load_setting
+from latentarm.web.jobs.job import Job, JobMessage, Wire
+from latentarm.web.server.loaded_run import Stage
+
+WITHIN_S: Final = 30.0
+"""A run that takes longer to load is refused, s."""
+
+_LOOK_S: Final = 0.05
+_SIZE: Final = 16 << 20
+"""Bytes that a run with its dataset and robot is taken to have; see `bounded_memory`."""
+
+
+@final
+class Trial:
+    """A run being loaded in a child process.
+
+    Args:
+        spec: what is driven now.
+        run: the run to try instead.
+        name: what pages call it.
+    """
+
+    def __init__(self, spec: Spec, run: Path, name: str) -> None:
+        self._name = name
+        arguments = (replace(spec, run=run, profile=None), name)
+        self._job = Job(try_to_load, arguments, TypeAdapter(JobMessage), f"Loading the run {name}")
+        self._until_s = time.monotonic() + WITHIN_S
+
+    async def failure(self) -> str | None:
+        """Why the run cannot be driven, in one sentence; None where it can."""
+        while self._job.alive:
+            if time.monotonic() > self._until_s:
+                await asyncio.to_thread(self._job.end)
+                return f"The run {self._name} takes more than {WITHIN_S:.0f} s to load: choose another one."
+            await asyncio.sleep(_LOOK_S)
+        return self._job.failure
+
+    def end(self) -> None:
+        """End it, wherever it stands; takes up to two seconds."""
+        self._job.end()
+
+
+def try_to_load(wire: Wire, spec: Spec, name: str) -> None:
+    """What the child does: load all that the control process and the server will load.
+
+    Raises:
+        UserError: see `load_setting`.
+    """
+    try:
+        with bounded_memory(f"The run {name}", _SIZE):
+            setting = load_setting(spec)
+            setting.step()
+            Stage(setting, name)
+    except UserError:
+        raise
+    except Exception as error:
+        raise UserError(f"The run {name} cannot be loaded ({error!r}): choose another one.") from error

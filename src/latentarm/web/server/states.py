@@ -1,0 +1,266 @@
+"""What the pages are told of the arm: the newest report, made into one message for all."""
+
+import asyncio
+import json
+import math
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.types import FloatArray
+from latentarm.untrusted.terminal import one_line
+from latentarm.web.protocol.channel import Ghosts, Report
+from latentarm.web.protocol.messages import RecordingState, State
+from latentarm.web.protocol.scene import pose_of
+from latentarm.web.server.control_process import ControlProcess
+from latentarm.web.server.loaded_run import Stage, load_stage
+from latentarm.web.server.run_list import Shelf
+from latentarm.web.server.sessions import Page, Sessions
+
+POLL_S: Final = 0.0025
+"""How often the control process's slot is looked at, s."""
+
+SILENT_S: Final = 0.5
+"""A control process that says nothing for so long is out of order."""
+
+NOTE_S: Final = 6.0
+"""For how long a refusal is shown, s."""
+
+LOADING_S: Final = 0.2
+"""How often pages hear that something is still being loaded, s."""
+
+_SAME_M: Final = 1e-3
+_LOADING: Final = "Loading the run: the arm stands still."
+_DEAD: Final = "The arm's control process has ended: start latentarm teleop again."
+_SILENT: Final = "The arm's control process does not answer: the arm has stopped by itself."
+
+
+@final
+class GhostMemory:
+    """What a page was shown last of the ghosts, so that it is told only of changes."""
+
+    def __init__(self) -> None:
+        self._shown: FloatArray | None = None
+
+    def differs(self, ghosts: Ghosts) -> bool:
+        """Whether any point has moved by more than 1 mm; if so it is remembered as shown."""
+        points = np.array([ghosts.up, ghosts.down, ghosts.left, ghosts.right])
+        if self._shown is not None and np.abs(points - self._shown).max() < _SAME_M:
+            return False
+        self._shown = points
+        return True
+
+
+@final
+class States:
+    """The newest state of the arm, for pages to wait for and to be sent.
+
+    Args:
+        stage: what is driven at first.
+        control: the control process.
+        sessions: who is there.
+        shelf: knows what runs are called.
+
+    Attributes:
+        standstill: why the arm may not be enabled, for people; None where it may.
+    """
+
+    def __init__(self, stage: Stage, control: ControlProcess, sessions: Sessions, shelf: Shelf) -> None:
+        self._stage = stage
+        self._control = control
+        self._sessions = sessions
+        self.standstill: str | None = None
+        self._shelf = shelf
+        self._loading = False
+        self._failed: tuple[str | None, str] | None = None
+        self._changing: asyncio.Task[None] | None = None
+        self._report: Report | None = None
+        self._heard_s = time.monotonic()
+        self._trail = 0
+        self._changed = asyncio.Event()
+        self._set_off = asyncio.Event()
+        self._note = ""
+        self._note_until_s = -math.inf
+        self._moves = False
+        self._number = 0
+        self._cache: tuple[int, dict[bool, str]] = (-1, {})
+
+    async def follow(self) -> None:
+        """Look for new reports until cancelled; wakes those that wait in `after`."""
+        told_silence = False
+        told_s = -math.inf
+        while True:
+            report = self._control.newest()
+            now_s = time.monotonic()
+            if report is not None:
+                self._heard_s = now_s
+                self._take(report)
+                told_silence = False
+            if self._loading and self._control.alive:
+                if now_s - told_s > LOADING_S:
+                    told_s = now_s
+                    self._wake()
+            elif report is not None:
+                self._wake()
+            elif now_s - self._heard_s > SILENT_S and not told_silence:
+                told_silence = True
+                self._wake()
+            await asyncio.sleep(POLL_S)
+
+    async def after(self, number: int) -> int:
+        """Wait for a state that is newer than the one with this number.
+
+        Returns:
+            The newest one's number.
+        """
+        while self._number <= number or self._report is None:
+            await self._changed.wait()
+        return self._number
+
+    async def pause(self, span_s: float) -> None:
+        """Wait for so long, s, or only until the arm sets off: nobody shall wait to see what a press does."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(span_s):
+                await self._set_off.wait()
+
+    def say(self, note: str, for_s: float = NOTE_S) -> None:
+        """Show every page a sentence for so long, s, instead of what the arm does; "" takes it back."""
+        self._note = one_line(note)
+        self._note_until_s = time.monotonic() + for_s if note else -math.inf
+
+    def clear_trail(self) -> None:
+        """Tell every page to empty its trail."""
+        self._trail += 1
+
+    @property
+    def report(self) -> Report | None:
+        """The newest report of what `stage` shows."""
+        return self._report
+
+    @property
+    def stage(self) -> Stage:
+        """What is driven."""
+        return self._stage
+
+    @property
+    def loading(self) -> bool:
+        """Whether something else to drive is being loaded, here or in the control process."""
+        return self._loading
+
+    def text(self, page: Page, shown: GhostMemory) -> str:
+        """The newest state as JSON, for a page."""
+        report = self._report
+        if report is None:
+            raise RuntimeError("there is no report yet")
+        ghosts = report.ghosts is not None and shown.differs(report.ghosts)
+        drives = self._sessions.drives(page)
+        number, texts = self._cache
+        if number != self._number:
+            texts = {}
+            self._cache = (self._number, texts)
+        if ghosts not in texts:
+            texts[ghosts] = self._state(report, ghosts=ghosts).model_dump_json(exclude={"you"})[:-1]
+        return f'{texts[ghosts]},"you":{json.dumps(drives)}}}'
+
+    def _take(self, report: Report) -> None:
+        """Keep a report, or where it is of another run, first load that one here too."""
+        if self._stage.shows(report):
+            moved = self._report is not None and _rounded(report.tool) != _rounded(self._report.tool)
+            if moved and not self._moves:
+                self._set_off.set()
+                self._set_off.clear()
+            self._moves = moved
+            self._report = report
+            self._loading = report.loading
+            self._failed = None
+        elif self._changing is None and (self._failed is None or self._failed[0] != report.run):
+            self._failed = None
+            self._loading = True
+            self._changing = asyncio.create_task(self._change(report))
+
+    async def _change(self, report: Report) -> None:
+        name = self._shelf.name_of(None if report.run is None else Path(report.run))
+        try:
+            self._stage = await asyncio.to_thread(load_stage, self._stage.spec, report, name)
+            self._report = report
+        except UserError as error:
+            self._failed = report.run, one_line(str(error))
+        except Exception as error:  # noqa: BLE001 - or pages would wait for ever; the arm cannot be enabled
+            self._failed = report.run, one_line(f"The run cannot be shown ({error!r}): choose another one.")
+        finally:
+            self._changing = None
+
+    def _wake(self) -> None:
+        self._number += 1
+        self._changed.set()
+        self._changed.clear()
+
+    def _state(self, report: Report, *, ghosts: bool) -> State:
+        driver, asking = self._sessions.driver, self._sessions.asking
+        recording = report.recording
+        away = self._loading or time.monotonic() - self._heard_s > SILENT_S
+        return State(
+            nonce=report.nonce,
+            tick=report.tick,
+            phase="disengaged" if away else report.phase,
+            why=self._why_away() if away else self._why(report),
+            mode=report.mode,
+            axes=report.axes,
+            profile=report.profile,
+            bodies=self._bodies(report),
+            tool=_rounded(report.tool),
+            ghosts=report.ghosts if ghosts else None,
+            belief=tuple(round(share, 4) for share in report.belief) or None,
+            alpha=round(report.alpha, 3),
+            bound_m=self._bound_m(report),
+            driver=None if driver is None else driver.id,
+            driver_name=None if driver is None else driver.name,
+            watchers=self._sessions.count - (driver is not None),
+            asking=None if asking is None else asking.id,
+            asking_name=None if asking is None else asking.name,
+            recording=recording
+            and RecordingState(
+                on=recording.on,
+                samples=recording.samples,
+                episodes=recording.episodes,
+                problem=recording.problem,
+            ),
+            trail=self._trail,
+            late_share=round(report.late_share, 5),
+            you=False,
+        )
+
+    def _why(self, report: Report) -> str:
+        if time.monotonic() < self._note_until_s and report.phase != "stopping":
+            return self._note
+        disengaged = report.phase in ("disengaged", "neutral_needed")
+        return self.standstill if disengaged and self.standstill is not None else report.why
+
+    def _why_away(self) -> str:
+        """Why the newest report says nothing of now."""
+        if not self._control.alive:
+            return _DEAD
+        if not self._loading:
+            return _SILENT
+        return _LOADING if self._failed is None else self._failed[1]
+
+    def _bodies(self, report: Report) -> tuple[tuple[float, ...], ...]:
+        links = self._stage.chain.link_transforms(np.array(report.q))
+        frames = np.concatenate([np.eye(4)[None], links])
+        return tuple(tuple(round(value, 4) for value in pose) for pose in pose_of(frames).tolist())
+
+    def _bound_m(self, report: Report) -> float | None:
+        """The bound about the likeliest goal as the tool's distance, by the Jacobian at the goal."""
+        if report.bound_rad is None or not report.belief:
+            return None
+        likeliest = int(np.argmax(report.belief))
+        return round(report.bound_rad * self._stage.goals_m_per_rad[likeliest], 4)
+
+
+def _rounded(point: tuple[float, float, float]) -> tuple[float, float, float]:
+    x, y, z = point
+    return round(x, 4), round(y, 4), round(z, 4)
