@@ -8,48 +8,83 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
+from importlib import import_module
 
 import tyro
 from tyro.extras import SubcommandApp
 
 from latentarm import __version__
-from latentarm.commands.align import align
-from latentarm.commands.bench import bench
-from latentarm.commands.compare import compare
 from latentarm.commands.configuration import Command, configurable, file_named_in, read_options
-from latentarm.commands.demo import demo
-from latentarm.commands.drive import drive
-from latentarm.commands.evaluate import evaluate
-from latentarm.commands.export import export
-from latentarm.commands.import_demonstrations import import_demonstrations
-from latentarm.commands.inspect import inspect
-from latentarm.commands.reproduce_alignment import alignment
-from latentarm.commands.reproduce_properties import properties
-from latentarm.commands.reproduce_shared_autonomy import shared_autonomy
-from latentarm.commands.robots import robots
-from latentarm.commands.teleop import teleop
-from latentarm.commands.train import train
 from latentarm.errors import UserError
 from latentarm.untrusted.terminal import one_line
 
-COMMANDS: dict[str, Command] = {
-    "demo": demo,
-    "import": import_demonstrations,
-    "inspect": inspect,
-    "train": train,
-    "evaluate": evaluate,
-    "compare": compare,
-    "align": align,
-    "drive": drive,
-    "teleop": teleop,
-    "export": export,
-    "reproduce properties": properties,
-    "reproduce shared-autonomy": shared_autonomy,
-    "reproduce alignment": alignment,
-    "bench": bench,
-    "robots": robots,
+COMMANDS: dict[str, tuple[str, str]] = {
+    "demo": (
+        "demo:demo",
+        "Learn latent actions and drive a 7-DoF Panda to three goals, against mode switching.",
+    ),
+    "import": (
+        "import_demonstrations:import_demonstrations",
+        "Turn recorded demonstrations into a native dataset (LeRobotDataset v3.0).",
+    ),
+    "inspect": (
+        "inspect:inspect",
+        "Show a dataset: episodes, rates, ranges, and a figure of the joints.",
+    ),
+    "train": (
+        "train:train",
+        "Learn a latent action model from a dataset.",
+    ),
+    "evaluate": (
+        "evaluate:evaluate",
+        "Measure a trained model on held-out episodes: four properties, drift, reversal, and a verdict.",
+    ),
+    "compare": (
+        "compare:compare",
+        "Compare all models on recorded demonstrations, with every episode held out once.",
+    ),
+    "align": (
+        "align:align",
+        "Ask what a person means by their input, and keep it as their profile (section 6 of the paper).",
+    ),
+    "drive": (
+        "drive:drive",
+        "Drive an arm in simulation with a simulated operator, through Algorithm 1 and its safety filters.",
+    ),
+    "teleop": (
+        "teleop:teleop",
+        "Drive a simulated arm from a web page: stick, buttons, keyboard, gamepad or switches.",
+    ),
+    "export": (
+        "export:export",
+        "List what was recorded, and export it to a native dataset (LeRobotDataset v3.0).",
+    ),
+    "reproduce properties": (
+        "reproduce_properties:properties",
+        "Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.",
+    ),
+    "reproduce shared-autonomy": (
+        "reproduce_shared_autonomy:shared_autonomy",
+        "Let simulated people reach and change goals with help and without (section 8.2).",
+    ),
+    "reproduce alignment": (
+        "reproduce_alignment:alignment",
+        "Learn from few answers what simulated people mean by their stick (section 8.3).",
+    ),
+    "bench": (
+        "bench:bench",
+        "Time the online step, and training ten seeds in one fit and one after the other.",
+    ),
+    "robots": (
+        "robots:robots",
+        "List the robots, or show one: joints, limits and end-effector.",
+    ),
 }
-"""Every command by the words that run it, in the order of the help."""
+"""Every command by the words that run it, in the order of the help.
+
+Its module and function in `latentarm.commands`, and the first line of its own help; only the module of the
+command that runs is imported.
+"""
 
 GROUPS = {"reproduce": "Reproduce a study of the paper; `reproduce --help` lists them."}
 """Words that have commands under them, and their help."""
@@ -103,14 +138,30 @@ def _app(words: Sequence[str]) -> SubcommandApp:
     """
     app = SubcommandApp()
     groups: dict[str, SubcommandApp] = {}
-    for name, command in COMMANDS.items():
+    for name, (place, summary) in COMMANDS.items():
         group, _, last = name.rpartition(" ")
         if group and group not in groups:
             groups[group] = app.command(SubcommandApp(), name=group, help=GROUPS[group])
-        file = file_named_in(words) if list(words[: len(name.split())]) == name.split() else None
-        defaults = {} if file is None else read_options(file, command, name)
-        (groups[group] if group else app).command(name=last)(configurable(command, name, defaults))
+        add = (groups[group] if group else app).command
+        if list(words[: len(name.split())]) == name.split():
+            command = _load(place)
+            file = file_named_in(words)
+            defaults = {} if file is None else read_options(file, command, name)
+            add(name=last)(configurable(command, name, defaults))
+        else:
+            add(name=last, help=summary)(_never_run)
     return app
+
+
+def _load(place: str) -> Command:
+    """The function of a command, from ``module:function``."""
+    module, _, function = place.partition(":")
+    return getattr(import_module(f"latentarm.commands.{module}"), function)
+
+
+def _never_run() -> int:
+    """Stands for a command that the words do not name."""
+    raise AssertionError("a command ran that was not named")
 
 
 def _refuse(sentence: str) -> int:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.commands import aligning_body as aligning
+from latentarm.commands import align as aligning
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.metrics.results import read_results
 from latentarm.tasks.table_top import TableTop

@@ -1,6 +1,6 @@
 """The bench measures what it says; how long things take is for people to read, not for a test."""
 
-from latentarm.commands.bench_body import run_bench
+from latentarm.commands.bench import run_bench
 
 
 def test_bench_gives_every_figure_and_equal_losses() -> None:

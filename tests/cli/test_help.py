@@ -2,12 +2,14 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable, Iterable
+from importlib import import_module
 from importlib.metadata import entry_points, version
 
 import pytest
 
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
+from latentarm.cli import COMMANDS as PLACES
 from latentarm.cli import main
 from latentarm.parallel.backends import BACKENDS
 from latentarm.studies.alignment import preset as alignment_preset
@@ -52,6 +54,14 @@ def test_the_list_of_commands(run: Run) -> None:
     code, out, _ = run("--help")
     assert code == 0
     assert "{" + ",".join(COMMANDS) + "}" in out
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_the_list_says_of_a_command_what_its_own_help_says(name: str) -> None:
+    place, summary = PLACES[name]
+    module, _, function = place.partition(":")
+    command = getattr(import_module(f"latentarm.commands.{module}"), function)
+    assert command.__doc__.splitlines()[0] == summary
 
 
 def test_the_version(run: Run) -> None:

@@ -106,8 +106,8 @@ def test_the_same_seed_gives_the_same_figures(run: Run, workplace: Path, recordi
 
 
 def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from latentarm.commands import demo_body as demo
-    from latentarm.commands.demo_body import DemoConfig, run_demo
+    from latentarm.commands import demo
+    from latentarm.commands.demo import DemoConfig, run_demo
 
     monkeypatch.setattr(demo, "TIME_LIMIT_S", 3.0)  # models of one epoch drive until the time is over
     config = DemoConfig(Path("demo"), drives=1, jobs=1, quiet=True, episodes=9, seeds=1, epochs=1)

@@ -41,7 +41,7 @@ def compare(
     backend: Backend = "joblib",
     json: Json = False,
 ) -> int:
-    """Compare all models on recorded demonstrations: every episode held out once, one table for each dataset.
+    """Compare all models on recorded demonstrations, with every episode held out once.
 
     For example: latentarm compare --demonstrations pour pick --noise 0.01 0.1
     """

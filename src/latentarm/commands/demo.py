@@ -1,15 +1,217 @@
 """`latentarm demo`: the main job on embedded defaults."""
 
+import shutil
 import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 from tyro.conf import arg
 
+from latentarm.alignment.profile import profile_names
+from latentarm.assistance.blending import Arbitration, FixedAlpha
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import say, show
 from latentarm.commands.teleop import teleop
+from latentarm.control.controller import Controller
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.latent import LatentController
+from latentarm.demonstrations.dataset import write_dataset
+from latentarm.errors import UserError
+from latentarm.files import write_text
+from latentarm.metrics.comparison_figure import comparison_figure
+from latentarm.metrics.drives import drive_rows
+from latentarm.metrics.results import write_results
+from latentarm.metrics.summary import Subject, headline
+from latentarm.metrics.table import markdown_table
+from latentarm.models.decoder import load_decoder
+from latentarm.models.training import epoch_bar
+from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.runs.checks import check_count, check_seed
+from latentarm.runs.evaluating import evaluate_run
+from latentarm.runs.results_folder import Study, vacant_name
+from latentarm.runs.training import TrainConfig, train_run
+from latentarm.simulation.arm_figure import draw_task
+from latentarm.simulation.drive import STATE_NOISE_RAD, Setup, Trace
+from latentarm.simulation.drive_figures import draw_drives, draw_inputs
+from latentarm.simulation.drives import drive_all
+from latentarm.style import save_figure
+from latentarm.tasks.table_top import TableTop
+from latentarm.types import Row
+from latentarm.untrusted.console import VisibleConsole
+
+MODELS = ("cvae", "scl")
+TIME_LIMIT_S = 60.0
+
+MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png", "task.png")
+"""Every file of the folder, apart from what was asked for, the dataset and the runs."""
+
+
+@dataclass(frozen=True)
+class DemoConfig:
+    """What `latentarm demo` was asked for.
+
+    Attributes:
+        out: a new folder for everything that the demo writes.
+        drives: simulated drives for each goal and condition.
+        seed: of everything random.
+        jobs: processes that drive side by side; -1 is one per core.
+        quiet: say nothing while working.
+        bars: show how far training and driving are.
+        episodes: demonstrations.
+        seeds: models of each kind, trained at once; they take turns to be driven.
+        epochs: passes over the training pairs, at most.
+    """
+
+    out: Path
+    drives: int = 20
+    seed: int = 0
+    jobs: int = -1
+    quiet: bool = False
+    bars: bool = False
+    episodes: int = 60
+    seeds: int = 3
+    epochs: int = 16
+
+    def __post_init__(self) -> None:
+        check_seed(self.seed)
+        check_count("drives for each goal", self.drives)
+
+
+def run_demo(config: DemoConfig) -> list[Row]:
+    """Run the whole demo and write what it made to ``config.out``.
+
+    Returns:
+        Figures of the drives: mean and SD over all goals.
+
+    Raises:
+        UserError: the folder holds something else, or cannot be written.
+    """
+    _claim(config)
+    console = VisibleConsole(stderr=True, quiet=config.quiet)
+    task = TableTop()
+    console.print(f"1/3  A simulated person demonstrates eating {config.episodes} times.")
+    demonstrations = task.demonstrate(config.episodes, np.random.default_rng(config.seed))
+    write_dataset(demonstrations, config.out / "demonstrations")
+    draw_task(task, demonstrations, config.out / "task.png")
+    properties: list[Row] = []
+    for model in MODELS:
+        console.print(f"2/3  {model}: learning 2-D latent actions, {config.seeds} seeds at once.")
+        properties += _train(config, model)
+    conditions = _conditions(task, config)
+    traces: dict[str, list[Trace]] = {}
+    rows: list[Row] = []
+    for number, (subject, setups) in enumerate(conditions, start=1):
+        drives = config.drives * len(task.goals)
+        name = " ".join(part for part in (subject.model, subject.condition) if part)
+        console.print(
+            f"3/3  {number} of {len(conditions)}: a simulated operator drives {drives} times, {name}."
+        )
+        driven = drive_all(setups, config.drives, config.seed, config.jobs, bars=config.bars)
+        rows += drive_rows(subject, [trace.figures for trace in driven])
+        if subject.model in (MODELS[0], None):
+            traces[str(subject.condition)] = driven
+    _write(config, task, rows, properties, traces)
+    return rows
+
+
+def _train(config: DemoConfig, model: str) -> list[Row]:
+    run = config.out / "runs" / model
+    chosen = TrainConfig(
+        demonstrations=config.out / "demonstrations",
+        model=model,
+        out=run,
+        seeds=config.seeds,
+        seed=config.seed,
+        state_noise_rad=STATE_NOISE_RAD,
+        epochs=config.epochs,
+    )
+    with epoch_bar(config.bars) as report:
+        train_run(chosen, report)
+    return evaluate_run(run, run, config.seed, folds=0).rows
+
+
+def _conditions(task: TableTop, config: DemoConfig) -> list[tuple[Subject, list[Setup]]]:
+    """Latent actions of each model (all its seeds in turn), alone and assisted, and mode switching."""
+    conditions: list[tuple[Subject, list[Setup]]] = []
+
+    def add(
+        model: str | None, condition: str, controllers: Sequence[Controller], arbitration: Arbitration | None
+    ) -> None:
+        setups = [Setup(task, one, arbitration, BoltzmannConfig(), TIME_LIMIT_S) for one in controllers]
+        conditions.append((Subject("demo", task=task.name, model=model, condition=condition), setups))
+
+    for model in MODELS:
+        run = config.out / "runs" / model
+        controllers = [LatentController(load_decoder(run, seed)) for seed in range(config.seeds)]
+        add(model, "latent", controllers, None)
+        add(model, "latent_assist", controllers, FixedAlpha())
+    add(None, "end_effector", [EndEffectorController(task.robot)], None)
+    return conditions
+
+
+def _write(
+    config: DemoConfig,
+    task: TableTop,
+    rows: Sequence[Row],
+    properties: Sequence[Row],
+    traces: dict[str, list[Trace]],
+) -> None:
+    out = config.out
+    write_results(out / "results.json", [*rows, *properties], _about(config))
+    draw_drives(traces, task, out / "paths.png")
+    save_figure(comparison_figure(headline(properties)), out / "properties.png")
+    draw_inputs(traces, out / "inputs.png")
+    count = config.drives * len(task.goals)
+    write_text(
+        out / "results.md",
+        "# What the demo measured\n\n"
+        f"A simulated operator drove a simulated Panda {count} times per column ({config.drives} to each of"
+        f" {len(task.goals)} goals; the {config.seeds} trained models of a kind take turns),"
+        f" seed {config.seed}; mean ± SD over the drives, failed ones included"
+        f" (they end after {TIME_LIMIT_S:g} s). No person took part.\n\n"
+        f"{markdown_table(rows)}\n"
+        f"The figures show the {MODELS[0]}. ![Paths of the tool](paths.png)\n\n"
+        "![Inputs over time](inputs.png)\n\n"
+        "## The latent spaces, on held-out episodes\n\n"
+        f"Mean ± SD over {config.seeds} seeds.\n\n{markdown_table(properties)}\n"
+        "![The properties of the latent spaces](properties.png)\n\n"
+        "![The task](task.png)\n",
+    )
+
+
+def _about(config: DemoConfig) -> dict[str, object]:
+    """What the figures depend on."""
+    return {
+        "study": "demo",
+        "seed": config.seed,
+        "drives_per_goal": config.drives,
+        "operator": "simulated",
+        "episodes": config.episodes,
+        "seeds": config.seeds,
+        "epochs": config.epochs,
+    }
+
+
+def _claim(config: DemoConfig) -> None:
+    """Make room for a new demo: one that asked for the same is replaced, anything else is left alone.
+
+    Raises:
+        UserError: the folder holds something else, or profiles of people.
+    """
+    runs = [config.out / "runs" / model for model in MODELS]
+    for run in runs:
+        if profile_names(run):
+            raise UserError(
+                f"{run} holds the profiles of people ({', '.join(profile_names(run))}), and the demo would"
+                f" train it anew: choose another folder with --out, such as {vacant_name(config.out)}."
+            )
+    Study("demo", MADE).claim(config.out, _about(config))
+    for made in (config.out / "demonstrations", *runs):
+        shutil.rmtree(made, ignore_errors=True)
 
 
 def demo(
@@ -25,8 +227,6 @@ def demo(
 
     In a terminal it ends with the page of `latentarm teleop`. For example: latentarm demo --out demo
     """
-    from latentarm.commands.demo_body import DemoConfig, run_demo
-
     bars = not json and sys.stderr.isatty()
     rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars))
     write_options(out, "demo")

@@ -2,17 +2,66 @@
 
 import json as json_format
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
+from rich.box import SIMPLE_HEAD
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Jobs, Json, MovedDataset, Seed
 from latentarm.commands.output import print_renderables, say
+from latentarm.metrics.measures import ARROWS, AT_REST, PROPERTIES, RECONSTRUCTION, label_of, measure_of
+from latentarm.metrics.table import format_figure, measure_name
+from latentarm.runs.evaluating import OVER_FOLDS, Evaluation, evaluate_run, findings_row
+from latentarm.types import Row
 
-if TYPE_CHECKING:
-    from latentarm.runs.evaluating import Evaluation
+GROUPS = ("", RECONSTRUCTION, PROPERTIES, AT_REST)
+"""Headings in the order of the table."""
+
+
+def evaluation_table(evaluation: Evaluation) -> RenderableType:
+    """Measures down, in groups; the run's own split and, where there are some, the folds across."""
+    own = [row for row in evaluation.rows if row.condition is None]
+    own.sort(key=lambda row: GROUPS.index(measure.group) if (measure := measure_of(row.measure)) else -1)
+    folds = {row.measure: row for row in evaluation.rows if row.condition == OVER_FOLDS}
+    table = Table(title=f"{own[0].model} on {own[0].task}", title_justify="left", box=SIMPLE_HEAD)
+    table.add_column("mean ± SD")
+    table.add_column("better")
+    table.add_column(f"own split, over {own[0].n} seed{'s' if own[0].n != 1 else ''}", justify="right")
+    if folds:
+        table.add_column(f"over {folds[own[0].measure].n} folds", justify="right")
+    group = ""
+    for row in own:
+        measure = measure_of(row.measure)
+        if measure is not None and measure.group != group:
+            group = measure.group
+            table.add_section()
+            table.add_row(Text(group, style="bold"))
+        cells = [
+            measure_name(row),
+            ARROWS[measure.better] if measure else "",
+            format_figure(row.mean, row.sd),
+        ]
+        other = folds.get(row.measure)
+        if other is not None:
+            cells.append(format_figure(other.mean, other.sd))
+        table.add_row(*map(Text, cells))
+    return table
+
+
+def definitions(rows: Sequence[Row]) -> RenderableType:
+    """One sentence on each measure; those of single axes are those of the measure."""
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    for name in dict.fromkeys(row.measure.rpartition("_axis_")[0] or row.measure for row in rows):
+        measure = measure_of(name)
+        if measure is not None:
+            table.add_row(Text(label_of(name)), Text(f"{measure.definition}."))
+    return table
 
 
 def evaluate(
@@ -33,12 +82,10 @@ def evaluate(
     jobs: Jobs = -1,
     json: Json = False,
 ) -> int:
-    """Measure a trained model on held-out episodes: the four properties, drift and reversal, and a verdict.
+    """Measure a trained model on held-out episodes: four properties, drift, reversal, and a verdict.
 
     For example: latentarm evaluate runs/pour-cae
     """
-    from latentarm.runs.evaluating import evaluate_run
-
     folder = out or run
     bars = not json and sys.stderr.isatty()
     evaluation = evaluate_run(run, folder, seed, demonstrations, folds=folds, jobs=jobs, bars=bars)
@@ -46,8 +93,6 @@ def evaluate(
     if json:
         _print_json(evaluation)
     else:
-        from latentarm.commands.evaluation_tables_body import definitions, evaluation_table
-
         print_renderables(evaluation_table(evaluation))
         if explain:
             print_renderables(definitions(evaluation.rows))
@@ -59,11 +104,8 @@ def evaluate(
     return 0
 
 
-def _print_json(evaluation: "Evaluation") -> None:
+def _print_json(evaluation: Evaluation) -> None:
     """Rows with what their measures mean; the last one holds the verdict."""
-    from latentarm.metrics.measures import label_of, measure_of
-    from latentarm.runs.evaluating import findings_row
-
     document: list[dict[str, object]] = []
     said = {one.measure: one.said for one in evaluation.found}
     for row in [*evaluation.rows, findings_row(evaluation)]:

@@ -56,7 +56,7 @@ def import_demonstrations(
 
     For example: latentarm import panda_pour_coffee.npz pour
     """
-    from latentarm.commands.inspection_body import import_table, summary
+    from latentarm.commands.inspect import import_table, summary
     from latentarm.demonstrations.importing import import_to
     from latentarm.robots.catalogue import load_robot
     from latentarm.robots.limits_file import read_limits

@@ -1,13 +1,116 @@
 """`latentarm inspect`: what a dataset holds."""
 
+from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+from rich.text import Text
 from tyro.conf import Positional, arg
 
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json
 from latentarm.commands.output import note, say, show
+from latentarm.demonstrations.dataset import read_dataset
+from latentarm.demonstrations.figure import draw_trajectories
+from latentarm.demonstrations.summary import Summary, summarise
+from latentarm.errors import UserError
+from latentarm.robots.catalogue import load_recorded_robot
+from latentarm.robots.robot import Robot
+from latentarm.types import Demonstrations, Provenance
+from latentarm.untrusted.terminal import visible
+
+_FINGERPRINT_LENGTH: Final = 64
+"""Digits of a SHA-256."""
+
+
+def known_robot(demonstrations: Demonstrations) -> Robot | None:
+    """The robot that a dataset names, or None where it names none or that one is not to be had here."""
+    try:
+        return load_recorded_robot(demonstrations) if demonstrations.robot else None
+    except UserError:
+        return None
+
+
+def why_unknown(demonstrations: Demonstrations, dataset: str) -> str | None:
+    """Why the robot that a dataset names cannot be loaded; None where it can, or where it names none."""
+    try:
+        if demonstrations.robot:
+            load_recorded_robot(demonstrations, dataset)
+    except UserError as error:
+        return f"Limits and the tool's path are not known. {error}"
+    return None
+
+
+def summary(demonstrations: Demonstrations) -> Summary:
+    """The dataset in figures, with the limits of its robot where that is known."""
+    return summarise(demonstrations, known_robot(demonstrations))
+
+
+def summary_tables(demonstrations: Demonstrations) -> list[Table]:
+    """Episodes and joints as tables for the terminal."""
+    tables: list[Table] = []
+    for plain in summary(demonstrations).tables():
+        table = Table(title=plain.title, title_justify="left", box=SIMPLE_HEAD, padding=0)
+        for index, heading in enumerate(plain.columns):
+            # One word a line: the table then fits 80 columns.
+            heading = heading.replace(" ", "\n")
+            table.add_column(heading, justify="left" if index == 0 else "right", no_wrap=True)
+        for row in plain.rows:
+            table.add_row(*(Text(visible(text)) for text in row))
+        tables.append(table)
+    return [*_origin_tables(demonstrations), *tables]
+
+
+def import_table(record: Mapping[str, str]) -> Table:
+    """What importing decided, subject by subject."""
+    table = Table(title="Import", title_justify="left", box=SIMPLE_HEAD, padding=0, show_header=False)
+    for subject, decision in record.items():
+        table.add_row(Text(visible(subject)), Text(visible(decision)))
+    return table
+
+
+def _origin_tables(demonstrations: Demonstrations) -> list[Table]:
+    """Where a dataset comes from, as far as it says so."""
+    tables: list[Table] = []
+    if demonstrations.import_record:
+        tables.append(import_table(demonstrations.import_record))
+    recorded = [episode.provenance for episode in demonstrations.episodes]
+    if any(recorded):
+        names = [field.name for field in fields(Provenance)]
+        table = Table("episode", title="Recorded", title_justify="left", box=SIMPLE_HEAD, padding=0)
+        for name in names:
+            table.add_column(name.replace("_", "\n"))
+        for index, one in enumerate(recorded):
+            told = ["" if one is None else getattr(one, name) for name in names]
+            table.add_row(str(index), *(Text(_told(value)) for value in told))
+        tables.append(table)
+    return tables
+
+
+def _told(value: object) -> str:
+    """A value of a `Provenance` for a table; of a fingerprint its beginning is enough."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    text = visible(str(value)) or "–"
+    return text if len(text) < _FINGERPRINT_LENGTH else f"{text[:8]}…"
+
+
+def draw(demonstrations: Demonstrations, folder: Path) -> Path:
+    """Draw the joints over time.
+
+    Returns:
+        The figure's path.
+
+    Raises:
+        UserError: the folder cannot be written.
+    """
+    robot = known_robot(demonstrations)
+    path = folder / "joints.png"
+    draw_trajectories(demonstrations, path, robot.limits if robot else None)
+    return path
 
 
 def inspect(
@@ -21,9 +124,6 @@ def inspect(
 
     For example: latentarm inspect pour
     """
-    from latentarm.commands.inspection_body import draw, summary, summary_tables, why_unknown
-    from latentarm.demonstrations.dataset import read_dataset
-
     demonstrations = read_dataset(dataset)
     unknown = why_unknown(demonstrations, str(dataset))
     if unknown:

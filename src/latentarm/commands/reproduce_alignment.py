@@ -25,7 +25,7 @@ def alignment(
     backend: Backend = "joblib",
     json: Json = False,
 ) -> int:
-    """Learn from few answers what simulated people mean by their stick (section 8.3), on a simulated Panda.
+    """Learn from few answers what simulated people mean by their stick (section 8.3).
 
     For example: latentarm reproduce alignment --preset smoke --task plane
     """

@@ -1,12 +1,136 @@
 """`latentarm robots`: what is known of a robot."""
 
 import json as json_format
+from pathlib import Path
 from typing import Annotated
 
+from rich.table import Table
 from tyro.conf import Positional, arg
 
 from latentarm.commands.options import EndEffector, Json, LimitsFile
 from latentarm.commands.output import print_renderables
+from latentarm.errors import UserError
+from latentarm.robots.catalogue import ROBOTS, load_robot
+from latentarm.robots.limits import QUANTITIES, Quantity, Source
+from latentarm.robots.limits_file import read_limits
+from latentarm.robots.notices import notices
+from latentarm.robots.robot import Robot
+from latentarm.types import FloatArray
+
+_SOURCES: dict[Source, str] = {
+    "model": "from the model",
+    "manufacturer": "from the manufacturer",
+    "limits_file": "from the limits file",
+    "assumed": "assumed",
+}
+
+
+def describe(
+    name: str | None, end_effector: str | None = None, limits: Path | None = None
+) -> list[dict[str, object]]:
+    """Robots as plain data.
+
+    Args:
+        name: a robot's name or model file, or None for all built-in ones.
+        end_effector: site, body or link of the model file that is the end-effector.
+        limits: a limits file.
+
+    Raises:
+        UserError: no such robot, or its model cannot be used.
+    """
+    return [_facts(robot) for robot in _robots(name, end_effector, limits)]
+
+
+def sheets(name: str | None, end_effector: str | None = None, limits: Path | None = None) -> list[Table]:
+    """Robots as tables, see `describe`."""
+    robots = _robots(name, end_effector, limits)
+    if name is None:
+        table = Table("robot", "joints", "arms", "joint speed limits, rad/s", title="Built-in robots")
+        for robot in robots:
+            low, high = robot.limits.velocity.min(), robot.limits.velocity.max()
+            table.add_row(robot.name, str(robot.dof), str(len(robot.chain.tools)), f"{low:.3g} to {high:.3g}")
+        table.caption = "Any MJCF or URDF file works too: latentarm robots PATH --end-effector NAME"
+        return [table]
+    return [_sheet(robot) for robot in robots]
+
+
+def _robots(name: str | None, end_effector: str | None, limits: Path | None) -> list[Robot]:
+    if name is None and (end_effector or limits):
+        raise UserError(
+            "An end-effector and limits belong to one robot: name it, as in `latentarm robots PATH`."
+        )
+    stated = None if limits is None else read_limits(limits)
+    return [
+        load_robot(known, end_effector, stated) for known in ([name] if name is not None else list(ROBOTS))
+    ]
+
+
+def _facts(robot: Robot) -> dict[str, object]:
+    limits = robot.limits
+    return {
+        "name": robot.name,
+        "end_effectors": [tool.name for tool in robot.chain.tools],
+        "tool_speed_limit_m_per_s": robot.tool_speed_limit,
+        "tool_speed_source": robot.tool_speed_source,
+        "still_joints": list(robot.still_joints),
+        "joints": [
+            {
+                "name": joint,
+                "prismatic": bool(robot.chain.slide[index]),
+                "lower": float(limits.lower[index]),
+                "upper": float(limits.upper[index]),
+                "velocity": float(limits.velocity[index]),
+                "acceleration": float(limits.acceleration[index]),
+                "jerk": float(limits.jerk[index]),
+                "home": float(robot.home[index]),
+                "source": {quantity: limits.sources.of(quantity)[index] for quantity in QUANTITIES},
+            }
+            for index, joint in enumerate(robot.joint_names)
+        ],
+        "capsules": len(robot.capsules.name),
+        "self_pairs": len(robot.self_pairs),
+        "notices": notices(robot),
+    }
+
+
+def _sheet(robot: Robot) -> Table:
+
+    table = Table(title=robot.name)
+    for heading in ("joint", "lower", "upper", "home", "velocity", "acceleration", "jerk"):
+        table.add_column(heading, justify="left" if heading == "joint" else "right")
+    limits = robot.limits
+    figures: tuple[tuple[FloatArray, Quantity | None], ...] = (
+        (limits.lower, "position"),
+        (limits.upper, "position"),
+        (robot.home, None),
+        (limits.velocity, "velocity"),
+        (limits.acceleration, "acceleration"),
+        (limits.jerk, "jerk"),
+    )
+    for index, joint in enumerate(robot.joint_names):
+        cells: list[str] = []
+        for figure, quantity in figures:
+            assumed = quantity is not None and limits.sources.of(quantity)[index] == "assumed"
+            cells.append(f"{figure[index]:.4g}{' assumed' if assumed else ''}")
+        table.add_row(joint, *cells)
+    tools = ", ".join(tool.name for tool in robot.chain.tools)
+    assumed = " (assumed)" if robot.tool_speed_source == "assumed" else ""
+    table.caption = (
+        f"end-effector: {tools}; limits in rad, rad/s, rad/s², rad/s³ (m for a sliding joint);"
+        f" {_known_from(robot)}; tool at most {robot.tool_speed_limit:g} m/s{assumed};"
+        f" {len(robot.capsules.name)} capsules, {len(robot.self_pairs)} pairs of them watched"
+        + "".join(f"\n{sentence}" for sentence in notices(robot))
+    )
+    return table
+
+
+def _known_from(robot: Robot) -> str:
+    """How the limits are known, such as "position: from the model; jerk: assumed"."""
+    texts: dict[str, list[str]] = {}
+    for quantity in QUANTITIES:
+        sources = dict.fromkeys(robot.limits.sources.of(quantity))
+        texts.setdefault(" or ".join(_SOURCES[source] for source in sources), []).append(quantity)
+    return "; ".join(f"{', '.join(quantities)}: {text}" for text, quantities in texts.items())
 
 
 def robots(
@@ -22,8 +146,6 @@ def robots(
 
     For example: latentarm robots panda
     """
-    from latentarm.commands.robot_sheet_body import describe, sheets
-
     if json:
         print(json_format.dumps(describe(robot, end_effector, limits), indent=2))
     else:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from latentarm.commands.drive import DriveConfig, drive_run
 from latentarm.errors import UserError
 from latentarm.operators.catalogue import PLANNING, usual_operator
 from latentarm.simulation.drive_table import COLUMNS, endings_in_words
-from latentarm.simulation.drives import DriveConfig, drive_run
 
 
 def config(out: Path, **others: object) -> DriveConfig:
