@@ -6,26 +6,29 @@ BIN := $(VENV)/bin
 # build brings gigabytes of CUDA: `make LOCK= TORCH=torch==2.13.0 ...` keeps the small one where that is the index's.
 LOCK ?= constraints.txt
 TORCH ?=
-# The environment variable reaches the isolated build of this package too; the option would not.
-PIP := $(if $(LOCK),PIP_CONSTRAINT=$(abspath $(LOCK))) $(BIN)/pip install --quiet --disable-pip-version-check $(TORCH)
+CONSTRAIN := $(if $(LOCK),PIP_CONSTRAINT=$(abspath $(LOCK)))
+# uv installs several times faster than pip; scripts/uv.py gives it the package indexes that pip is configured with.
+UV := $(CONSTRAIN) $(BIN)/python scripts/uv.py
+INSTALL := $(UV) pip install --quiet --python $(BIN)/python $(TORCH)
 WORKERS ?= $(shell env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)
 # One thread for each worker, and a test file stays with one worker, so that what it trains is trained once.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
 PARALLEL := --numprocesses $(WORKERS) --dist loadfile
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-thorough check format bench docs lock arms clean
+.PHONY: help demo test test-all test-thorough check format bench docs dist lock arms clean
 
 help: ## Show what can be made.
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 $(VENV)/installed: pyproject.toml $(LOCK)
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) --editable .
+	$(CONSTRAIN) $(BIN)/pip install --quiet --disable-pip-version-check uv
+	$(INSTALL) --editable .
 	@touch $@
 
 $(VENV)/installed-dev: $(VENV)/installed
-	$(PIP) --editable '.[dev]'
+	$(INSTALL) --editable '.[dev]'
 	@touch $@
 
 # Node comes with the dev extra, TypeScript from npm: both check the page's JavaScript, and neither reaches the browser.
@@ -64,15 +67,18 @@ bench: $(VENV)/installed ## The online step and the batched fit, as ratios in on
 	$(BIN)/latentarm bench
 
 docs: $(VENV)/installed ## The documentation as a site, in site/; any warning is an error.
-	$(PIP) --editable '.[docs]'
+	$(INSTALL) --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --site-dir site
 
-lock: ## Pin the newest version of every package, direct or not, in constraints.txt.
-	$(PYTHON) -m venv .lock
-	.lock/bin/pip install --quiet --disable-pip-version-check $$(sed -n 's/^torch==/&/p' constraints.txt) hatchling --editable '.[dev,docs]'
-	{ grep '^#' constraints.txt; .lock/bin/pip freeze --exclude-editable | sed 's/+[a-z0-9.]*$$//'; } > .lock/constraints.txt
-	mv .lock/constraints.txt constraints.txt
-	rm -rf .lock
+lock: $(VENV)/installed ## Pin the newest version of every package, direct or not, in constraints.txt.
+	sed -n '/^torch==/p' constraints.txt > .torch
+	$(BIN)/python scripts/uv.py pip compile --quiet --upgrade --no-annotate --no-header --all-extras \
+		--constraint .torch --output-file .lock pyproject.toml
+	{ grep '^#' constraints.txt; sed 's/+[a-z0-9.]*$$//' .lock; } > .torch && mv .torch constraints.txt && rm .lock
+
+dist: $(VENV)/installed-dev ## Build the wheel and the sdist in dist/.
+	rm -rf dist
+	$(UV) build --quiet --python $(BIN)/python --out-dir dist
 
 format: $(VENV)/installed-dev ## Format and fix what can be fixed by machine.
 	$(BIN)/ruff check --fix .
