@@ -16,11 +16,12 @@ settings.load_profile("latentarm")
 def well_drawn() -> Iterator[None]:
     """No test saves a figure with one of the faults that `figure_faults` looks for."""
 
-    def look_and_save(figure: Figure, *where: object, **how: object) -> None:
-        assert faults(figure) == []
-        save(figure, *where, **how)
+    def save_and_look(figure: Figure, *where: object, **how: object) -> None:
+        # Saved in the figure's own resolution, it is laid out once for both.
+        save(figure, *where, **{**how, "dpi": figure.dpi})
+        assert faults(figure, drawn=True) == []
 
     save = Figure.savefig
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Figure, "savefig", look_and_save)
+        patch.setattr(Figure, "savefig", save_and_look)
         yield

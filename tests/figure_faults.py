@@ -18,8 +18,10 @@ ROUNDING = 1e-9
 PIXEL = 1.5
 
 
-def faults(figure: Figure) -> list[str]:
-    """What is wrong with a figure, in words."""
+def faults(figure: Figure, *, drawn: bool = False) -> list[str]:
+    """What is wrong with a figure, in words; one that has been ``drawn`` is not drawn again."""
+    if not drawn:
+        figure.draw_without_rendering()
     return [
         *_cut_off(figure),
         *_bars_on_logarithms(figure),
@@ -30,7 +32,6 @@ def faults(figure: Figure) -> list[str]:
 
 def _cut_off(figure: Figure) -> Iterator[str]:
     renderer = FigureCanvasAgg(figure).get_renderer()
-    figure.draw(renderer)
     canvas = figure.bbox.padded(PIXEL)
     for legend in figure.findobj(Legend):
         if not _within(legend.get_window_extent(renderer), canvas):
