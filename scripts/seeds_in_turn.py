@@ -30,19 +30,19 @@ def main(task: str, kind: str) -> None:
         batch_size=preset.batch_size,
         patience=preset.epochs,
     )
-    held_out = range(preset.episodes * 4 // 5, preset.episodes)
+    validation = range(preset.episodes * 4 // 5, preset.episodes)
     at_once, in_turn = [], []
     for _ in range(REPEATS):
         began = perf_counter()
-        together = replace(model).fit(shown, held_out=held_out)
+        together = replace(model).fit(shown, validation=validation)
         at_once.append(perf_counter() - began)
         began = perf_counter()
         losses = [
-            replace(model, seeds=1, seed=seed).fit(shown, held_out=held_out).held_out_loss_[0]
+            replace(model, seeds=1, seed=seed).fit(shown, validation=validation).validation_loss_[0]
             for seed in range(preset.seeds)
         ]
         in_turn.append(perf_counter() - began)
-    apart = np.abs(np.array(losses) / together.held_out_loss_ - 1).max()
+    apart = np.abs(np.array(losses) / together.validation_loss_ - 1).max()
     print(f"{task}, {kind}, {preset.seeds} seeds, {preset.epochs} epochs, median of {REPEATS}:")
     print(f"in one fit {median(at_once):.1f} s, one after the other {median(in_turn):.1f} s")
     print(

@@ -31,7 +31,7 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
     command = ("train", "--demonstrations", "eat", "--model", "cae", "--seeds", 2, "--epochs", 2)
     code, out, err = run(*command, "--json")
     assert code == 0
-    assert figures(out)["held_out_loss"] is not None
+    assert figures(out)["validation_loss"] is not None
     assert "latentarm evaluate runs/eat-cae" in err
 
     code, out, _ = run("evaluate", "runs/eat-cae", "--json", "--folds", 0)

@@ -17,18 +17,18 @@ def some(episodes: int) -> Demonstrations:
 def test_every_episode_is_on_one_side_and_neither_side_is_empty(
     count: int, fraction: float, seed: int
 ) -> None:
-    train, held_out = split_episodes(some(count), fraction, np.random.default_rng(seed))
-    assert sorted([*train, *held_out]) == list(range(count))
+    train, kept = split_episodes(some(count), fraction, np.random.default_rng(seed))
+    assert sorted([*train, *kept]) == list(range(count))
     assert len(train) > 0
-    assert len(held_out) > 0
-    assert abs(len(held_out) - fraction * count) <= 1
+    assert len(kept) > 0
+    assert abs(len(kept) - fraction * count) <= 1
     again = split_episodes(some(count), fraction, np.random.default_rng(seed))
-    np.testing.assert_array_equal(again[1], held_out)
+    np.testing.assert_array_equal(again[1], kept)
 
 
 @pytest.mark.parametrize("fraction", [0.0, 1.0, -0.5, float("nan"), 7.0])
 def test_a_fraction_that_is_none_is_refused(fraction: float) -> None:
-    with pytest.raises(UserError, match="held-out fraction"):
+    with pytest.raises(UserError, match="share of episodes to keep back"):
         split_episodes(some(4), fraction, np.random.default_rng(0))
 
 

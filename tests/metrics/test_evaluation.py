@@ -151,7 +151,7 @@ def test_real_demonstrations_show_what_the_models_are_known_for(tmp_path):
     figures = {}
     for name, epochs in (("pca", 1), ("scl", 6), ("cae", 6)):
         model = MODELS[name](latent_dim=2, seeds=2, epochs=epochs, state_noise_rad=0.01)
-        model.fit(demonstrations, held_out=[12, 13, 14])
+        model.fit(demonstrations, validation=[12, 13, 14])
         rows = evaluate(
             model,
             demonstrations,

@@ -99,7 +99,7 @@ def test_shapes(model, samples):
     assert model.decode(z, context).shape == (2, 30, 4)
     assert model.decode(np.stack([z, -z]), context).shape == (2, 30, 4)
     assert model.collapsed_.shape == (2, 2)
-    assert model.held_out_loss_.shape == (2,)
+    assert model.validation_loss_.shape == (2,)
     assert model.history_.shape[1] == 2
 
 
@@ -127,7 +127,7 @@ def test_saved_and_loaded_is_the_same(name, model, samples, tmp_path):
         loaded.encode(context, z @ np.ones((2, 4))), model.encode(context, z @ np.ones((2, 4)))
     )
     np.testing.assert_array_equal(loaded.history_, model.history_)
-    assert loaded.held_out_episodes_ == model.held_out_episodes_
+    assert loaded.validation_episodes_ == model.validation_episodes_
 
 
 def test_the_numpy_runtime_equals_the_model(model, samples, tmp_path):
@@ -211,7 +211,7 @@ def test_unit_inputs_span_what_was_demonstrated(name, model, demonstrations):
     from latentarm.demonstrations.pairs import make_pairs
 
     pairs = make_pairs(demonstrations, 2, 0.0, "state", np.random.default_rng(0))
-    trained_on = ~np.isin(pairs.episode, model.held_out_episodes_)
+    trained_on = ~np.isin(pairs.episode, model.validation_episodes_)
     used = np.abs(model.encode(pairs.context[trained_on], pairs.action[trained_on]))
     if name in ("isometric", "homogeneous"):
         # The same in every direction: the longest latent action, not each axis, reaches 1.
@@ -287,7 +287,7 @@ def test_the_context_may_hold_a_belief(name, demonstrations, tmp_path):
         ("learning_rate", float("nan")),
         ("learning_rate", 0.0),
         ("state_noise_rad", -1.0),
-        ("held_out_fraction", 1.0),
+        ("validation_fraction", 1.0),
         ("hidden", (0,)),
         ("hidden", [8]),
         ("context", "goal"),
@@ -301,14 +301,14 @@ def test_parameters_that_make_no_sense_are_refused(name, demonstrations, wrong, 
 
 
 @pytest.mark.parametrize(
-    ("held_out", "message"), [([12], "Episode 12"), ([], "0 of 12"), (list(range(12)), "12 of 12")]
+    ("validation", "message"), [([12], "Episode 12"), ([], "0 of 12"), (list(range(12)), "12 of 12")]
 )
-def test_held_out_episodes_must_leave_some_on_both_sides(name, demonstrations, held_out, message):
+def test_validation_episodes_must_leave_some_on_both_sides(name, demonstrations, validation, message):
     with pytest.raises(UserError, match=message):
-        MODELS[name](**SMALL).fit(demonstrations, held_out=held_out)
+        MODELS[name](**SMALL).fit(demonstrations, validation=validation)
 
 
-def test_held_out_episodes_may_come_as_an_array(name, demonstrations, tmp_path):
-    model = MODELS[name](**SMALL).fit(demonstrations, held_out=np.array([2, 5]))
+def test_validation_episodes_may_come_as_an_array(name, demonstrations, tmp_path):
+    model = MODELS[name](**SMALL).fit(demonstrations, validation=np.array([2, 5]))
     model.save(tmp_path)
-    assert load_model(tmp_path).held_out_episodes_ == (2, 5)
+    assert load_model(tmp_path).validation_episodes_ == (2, 5)

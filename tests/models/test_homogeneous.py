@@ -156,8 +156,8 @@ def test_a_price_on_change_makes_the_opposite_push_undo_more(model, demonstratio
     """Of the motions that were demonstrated: the price is paid there, and nowhere else."""
     free = Homogeneous(**SMALL, smoothness_weight=0.0).fit(demonstrations)
     pairs = make_pairs(demonstrations, SMALL["window"], 0.0, "state", np.random.default_rng(0))
-    held_out = np.isin(pairs.episode, model.held_out_episodes_)
-    context, action = pairs.context[held_out], pairs.action[held_out]
+    validation = np.isin(pairs.episode, model.validation_episodes_)
+    context, action = pairs.context[validation], pairs.action[validation]
 
     def left_over(fitted, seed):
         """What is left of a motion after the opposite push, as a share of it."""

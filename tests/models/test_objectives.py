@@ -51,15 +51,15 @@ def test_samples_have_the_mean_and_spread_asked_for():
 
 @pytest.mark.parametrize("name", list(MODELS))
 def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
-    """The held-out loss, computed again from what the model encodes and decodes."""
+    """The validation loss, computed again from what the model encodes and decodes."""
     unseen = {  # prices of what is not to be seen from outside
         "isometric": {"bend_weight": 0.0},
         "homogeneous": {"smoothness_weight": 0.0},
     }
     model = MODELS[name](seeds=2, epochs=3, hidden=(8,), window=2, **unseen.get(name, {})).fit(demonstrations)
     pairs = make_pairs(demonstrations, 2, 0.0, "state", np.random.default_rng(0))
-    held_out = np.isin(pairs.episode, model.held_out_episodes_)
-    context, action = pairs.context[held_out], pairs.action[held_out]
+    validation = np.isin(pairs.episode, model.validation_episodes_)
+    context, action = pairs.context[validation], pairs.action[validation]
     tensors = model.trained_.tensors
     speed = tensors["action.scale"]
 
@@ -81,7 +81,7 @@ def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
     if name == "cae_zero":
         at_rest = model.decode(np.zeros((len(context), 2)), context)
         loss = loss + model.zero_weight * error(0.0, at_rest)
-    np.testing.assert_allclose(model.held_out_loss_, loss, rtol=1e-4)
+    np.testing.assert_allclose(model.validation_loss_, loss, rtol=1e-4)
 
 
 def test_a_gaussian_dimension_that_says_nothing_is_dead_however_much_it_would_move():

@@ -18,17 +18,19 @@ from latentarm.models.scaling import CollapseWarning
 from latentarm.types import Demonstrations, Episode
 
 TRAINED = {"seeds": 2, "epochs": 25, "hidden": (24, 24), "window": 2}
-HELD_OUT = [1, 6, 9]
+VALIDATION = [1, 6, 9]
 
 
 @pytest.fixture(scope="module")
 def trained(demonstrations):
-    return {name: model(**TRAINED).fit(demonstrations, held_out=HELD_OUT) for name, model in MODELS.items()}
+    return {
+        name: model(**TRAINED).fit(demonstrations, validation=VALIDATION) for name, model in MODELS.items()
+    }
 
 
 @pytest.fixture(scope="module")
 def unseen(demonstrations):
-    return make_pairs(select_episodes(demonstrations, HELD_OUT), 2, 0.0, "state", np.random.default_rng(0))
+    return make_pairs(select_episodes(demonstrations, VALIDATION), 2, 0.0, "state", np.random.default_rng(0))
 
 
 def relative_error(model, pairs):
@@ -43,7 +45,7 @@ def test_conditioned_models_rebuild_unseen_actions_far_better_than_pca(trained, 
 
 
 def test_pca_is_scikit_learns(trained, demonstrations, unseen):
-    kept = [index for index in range(12) if index not in HELD_OUT]
+    kept = [index for index in range(12) if index not in VALIDATION]
     seen = make_pairs(select_episodes(demonstrations, kept), 2, 0.0, "state", np.random.default_rng(0))
     reference = decomposition.PCA(n_components=2).fit(seen.action)
     expected = reference.inverse_transform(reference.transform(unseen.action))
@@ -105,7 +107,7 @@ def test_models_without_conditioning_ignore_the_context(trained, samples, name):
 
 
 def test_state_noise_reaches_the_context_and_never_the_action(demonstrations, trained, unseen):
-    noisy = MODELS["pca"](window=2, state_noise_rad=0.3).fit(demonstrations, held_out=HELD_OUT)
+    noisy = MODELS["pca"](window=2, state_noise_rad=0.3).fit(demonstrations, validation=VALIDATION)
     np.testing.assert_allclose(
         noisy.decode(np.ones((1, 2)), unseen.context[:1]),
         trained["pca"].decode(np.ones((1, 2)), unseen.context[:1])[:1],
@@ -189,7 +191,7 @@ def test_fit_leaves_the_demonstrations_as_they_were(demonstrations):
 
 @pytest.mark.parametrize("name", ["ae", "vae", "cae", "cvae"])
 def test_an_input_at_rest_is_the_mean_latent_action_where_rest_has_no_latent_of_its_own(name, demonstrations):
-    model = MODELS[name](epochs=1, hidden=(8,), window=1, seeds=2).fit(demonstrations, held_out=[0])
+    model = MODELS[name](epochs=1, hidden=(8,), window=1, seeds=2).fit(demonstrations, validation=[0])
     trained_on = replace(demonstrations, episodes=demonstrations.episodes[1:])
     pairs = make_pairs(trained_on, 1, 0.0, "state", np.random.default_rng(0))
     z = model.encode(pairs.context, pairs.action)

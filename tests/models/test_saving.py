@@ -110,7 +110,7 @@ FAULTS = {
         "'hidden' must be a list",
     ),
     "loss is NaN": (
-        lambda folder: change_config(folder, put_in("training", "held_out_loss", [float("nan"), 1.0])),
+        lambda folder: change_config(folder, put_in("training", "validation_loss", [float("nan"), 1.0])),
         "holds NaN",
     ),
     "collapsed has another shape": (
@@ -181,6 +181,24 @@ def test_a_missing_parameter_is_refused(folder):
         load_model(folder)
 
 
+def test_a_model_of_schema_2_loads(folder, fitted, samples):
+    """It called the validation episodes held-out ones."""
+
+    def age(model):
+        model["schema"] = 2
+        model["parameters"]["held_out_fraction"] = model["parameters"].pop("validation_fraction")
+        for new in ("validation_episodes", "validation_loss"):
+            model["training"][new.replace("validation", "held_out")] = model["training"].pop(new)
+
+    change_config(folder, age)
+    context, z = samples
+    loaded = load_model(folder)
+    np.testing.assert_array_equal(loaded.decode(z, context), fitted.decode(z, context))
+    assert loaded.get_params() == fitted.get_params()
+    assert loaded.validation_episodes_ == fitted.validation_episodes_
+    np.testing.assert_array_equal(loaded.validation_loss_, fitted.validation_loss_)
+
+
 def test_the_config_says_what_was_done(folder, fitted):
     config = json.loads((folder / CONFIG).read_text())
     assert config["dataset"] == "ring"
@@ -188,7 +206,7 @@ def test_the_config_says_what_was_done(folder, fitted):
     assert model["kind"] == "cvae"
     assert model["seeds"] == [0, 1]
     assert model["parameters"]["kl_weight"] == fitted.kl_weight
-    assert model["training"]["held_out_episodes"] == list(fitted.held_out_episodes_)
+    assert model["training"]["validation_episodes"] == list(fitted.validation_episodes_)
     assert model["sha256"] == hashlib.sha256((folder / WEIGHTS).read_bytes()).hexdigest()
     assert set(model["versions"]) >= {"latentarm", "torch", "numpy", "python", "safetensors"}
     assert {name: tuple(entry["shape"]) for name, entry in model["tensors"].items()} == {

@@ -32,7 +32,7 @@ def test_a_seeds_result_does_not_depend_on_the_seeds_beside_it(name, demonstrati
     together = MODELS[name](seeds=5, seed=10, **SMALL).fit(demonstrations)
     alone = MODELS[name](seeds=1, seed=13, **SMALL).fit(demonstrations)
     np.testing.assert_allclose(alone.decode(z, context)[0], together.decode(z, context)[3], rtol=0, atol=1e-9)
-    np.testing.assert_allclose(alone.held_out_loss_[0], together.held_out_loss_[3], rtol=1e-6)
+    np.testing.assert_allclose(alone.validation_loss_[0], together.validation_loss_[3], rtol=1e-6)
 
 
 def test_a_seed_that_stalls_early_is_not_changed_by_those_that_go_on(demonstrations, samples):
@@ -52,23 +52,28 @@ def test_a_seed_that_stalls_early_is_not_changed_by_those_that_go_on(demonstrati
 
 def test_training_lowers_the_loss_and_keeps_the_best_epoch(demonstrations):
     model = MODELS["cvae"](seeds=3, epochs=15, hidden=(16, 16), window=2).fit(demonstrations)
-    np.testing.assert_array_equal(model.held_out_loss_, model.history_.min(axis=0))
+    np.testing.assert_array_equal(model.validation_loss_, model.history_.min(axis=0))
     np.testing.assert_array_equal(model.trained_.summary.best_epoch, model.history_.argmin(axis=0) + 1)
-    assert (model.held_out_loss_ < 0.7 * model.history_[0]).all()
+    assert (model.validation_loss_ < 0.7 * model.history_[0]).all()
 
 
-def test_held_out_episodes_leave_the_weights_alone(demonstrations, samples):
-    """What the held-out episodes hold decides when to stop, never where to step."""
+@pytest.mark.parametrize("name", MODELS)
+def test_validation_episodes_leave_the_weights_alone(name, demonstrations, samples):
+    """What they hold decides when to stop; weights, normalisers and scaling never see it."""
     context, z = samples
     settings = {**SMALL, "epochs": 1}
-    plain = MODELS["cae"](**settings).fit(demonstrations, held_out=[0, 1])
     altered = list(demonstrations.episodes)
-    altered[0], altered[1] = altered[1], altered[0]
-    changed = MODELS["cae"](**settings).fit(
-        type(demonstrations)(tuple(altered), demonstrations.rate_hz, demonstrations.joint_names),
-        held_out=[0, 1],
+    for index in (0, 11):
+        state = 3.0 - 7.0 * altered[index].state[::-1]
+        altered[index] = replace(altered[index], state=state)
+    plain, changed = (
+        MODELS[name](**settings).fit(replace(demonstrations, episodes=tuple(episodes)), validation=[0, 11])
+        for episodes in (demonstrations.episodes, altered)
     )
-    np.testing.assert_array_equal(plain.decode(z, context), changed.decode(z, context))
+    for tensor, values in plain.trained_.tensors.items():
+        np.testing.assert_array_equal(changed.trained_.tensors[tensor], values, err_msg=tensor)
+    np.testing.assert_array_equal(changed.decode(z, context), plain.decode(z, context))
+    assert (changed.validation_loss_ != plain.validation_loss_).all()
 
 
 class KilledError(Exception):
@@ -105,7 +110,7 @@ def test_a_finished_training_is_not_run_again(demonstrations, tmp_path, monkeypa
     first = MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
     monkeypatch.setattr(FlatAdam, "step", lambda *_: pytest.fail("stepped"))
     again = MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
-    np.testing.assert_array_equal(first.held_out_loss_, again.held_out_loss_)
+    np.testing.assert_array_equal(first.validation_loss_, again.validation_loss_)
 
 
 KILLED_SCRIPT = """
@@ -198,7 +203,7 @@ def test_the_progress_bar_stays_off_standard_output(demonstrations, capsys):
 def test_every_epoch_is_reported(demonstrations):
     heard = []
     model = MODELS["cae"](**SMALL).fit(demonstrations, report=lambda *said: heard.append(said))
-    epochs, best = len(model.trained_.summary.history), model.held_out_loss_.mean()
+    epochs, best = len(model.trained_.summary.history), model.validation_loss_.mean()
     assert [epoch for epoch, _, _ in heard] == list(range(epochs + 1))
     assert {most for _, most, _ in heard} == {model.epochs}
     assert heard[0][2] == math.inf

@@ -162,7 +162,7 @@ def wrong_values(path: Path, rng: Rng) -> None:
                 "context_dim",
                 "training",
                 "collapsed",
-                "held_out_loss",
+                "validation_loss",
             ):
                 places.append((section, key))
             if isinstance(value, dict) and key != "parameters":  # which no reader uses whole

@@ -208,12 +208,12 @@ def _time_fits(demonstrations: Demonstrations, seed: int, progress: bool) -> tup
     sequential_s += sum(_fit_s(model, demonstrations, progress) for model in alone[SEEDS // 2 :])
     batched_s.append(_fit_s(together[2], demonstrations, progress))
     batched = statistics.median(batched_s)
-    loss = np.concatenate([model.held_out_loss_ for model in alone])
+    loss = np.concatenate([model.validation_loss_ for model in alone])
     rows = [
         _row("batched_fit_s", "s", batched, len(batched_s)),
         _row("sequential_fit_s", "s", sequential_s, 1),
         _row("sequential_over_batched", "1", sequential_s / batched, 1),
-        _loss_row("batched_fit_loss", together[0].held_out_loss_),
+        _loss_row("batched_fit_loss", together[0].validation_loss_),
         _loss_row("sequential_fit_loss", loss),
     ]
     return rows, together[0]
@@ -234,12 +234,12 @@ def _model(seeds: int, seed: int) -> CVAE:
 
 def _about(demonstrations: Demonstrations, count: int) -> Demonstrations:
     """Whole episodes with about so many context-action pairs left for training."""
-    held_out = CVAE.held_out_fraction
+    validation = CVAE.validation_fraction
     per_sample = 2 * CVAE.window
     kept: list[Episode] = []
     for episode in demonstrations.episodes:
         kept.append(episode)
-        if len(kept) > 1 and sum(len(one.state) for one in kept) * per_sample * (1 - held_out) >= count:
+        if len(kept) > 1 and sum(len(one.state) for one in kept) * per_sample * (1 - validation) >= count:
             break
     return replace(demonstrations, episodes=tuple(kept))
 

@@ -1,4 +1,4 @@
-"""Which episodes train, stop the training early, and are held out."""
+"""Which episodes train, which validate (stop the training early), and which are held out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.errors import UserError
 
 FEW: Final = 3
-"""From so many training demonstrations on, one of them stops the training early, ..."""
+"""From so many training demonstrations on, one of them is for validation, ..."""
 
 MANY: Final = 8
 """... and from so many on two."""
@@ -30,8 +30,8 @@ class Fold:
     others: tuple[int, ...]
 
     @property
-    def stopping(self) -> tuple[int, ...]:
-        """Episodes that stop the training early.
+    def validation(self) -> tuple[int, ...]:
+        """Validation episodes, which stop the training early.
 
         With fewer than `FEW` there is none to spare: the training stops where its own loss falls no further.
         """
@@ -42,10 +42,10 @@ class Fold:
     @property
     def training(self) -> tuple[int, ...]:
         """Episodes that the weights are fitted to."""
-        return self.others if len(self.others) < FEW else self.others[len(self.stopping) :]
+        return self.others if len(self.others) < FEW else self.others[len(self.validation) :]
 
     def with_only(self, demonstrations: int) -> "Fold":
-        """The same fold with only the first of the others, those that stop the training among them."""
+        """The same fold with only the first of the others, the validation episodes among them."""
         return replace(self, others=self.others[:demonstrations])
 
 

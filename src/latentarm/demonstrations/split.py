@@ -1,4 +1,4 @@
-"""Holding out episodes: always whole ones, so that no motion is on both sides."""
+"""Splitting a dataset by whole episodes, so that no motion is on both sides."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,30 +10,30 @@ from latentarm.types import Demonstrations, IntArray
 
 
 def split_episodes(
-    demonstrations: Demonstrations, held_out_fraction: float, rng: np.random.Generator
+    demonstrations: Demonstrations, fraction: float, rng: np.random.Generator
 ) -> tuple[IntArray, IntArray]:
-    """Choose at random which episodes to train on and which to hold out.
+    """Choose at random which episodes to train on and which to keep for evaluation or validation.
 
     Args:
         demonstrations: at least two episodes.
-        held_out_fraction: share of the episodes to hold out, within (0, 1); at least one episode
+        fraction: share of the episodes to keep back, within (0, 1); at least one episode
             ends up on each side.
         rng: decides which; the same generator state gives the same split.
 
     Returns:
-        Indices (E_train,) and (E_held_out,) into ``demonstrations.episodes``, each rising.
+        Indices (E_train,) and (E_kept,) into ``demonstrations.episodes``, each rising.
 
     Raises:
         UserError: there are fewer than two episodes, or the fraction is not within (0, 1).
     """
     episodes = len(demonstrations.episodes)
-    if not 0 < held_out_fraction < 1:
-        raise UserError(f"The held-out fraction is {held_out_fraction:g}; it must lie between 0 and 1.")
+    if not 0 < fraction < 1:
+        raise UserError(f"The share of episodes to keep back is {fraction:g}; it must lie between 0 and 1.")
     if episodes < 2:
-        raise UserError(f"Holding out episodes needs at least two of them, and there is {episodes}.")
-    held_out = min(max(round(held_out_fraction * episodes), 1), episodes - 1)
+        raise UserError(f"Keeping episodes back needs at least two of them, and there is {episodes}.")
+    kept = min(max(round(fraction * episodes), 1), episodes - 1)
     order = rng.permutation(episodes).astype(np.int64)
-    return np.sort(order[held_out:]), np.sort(order[:held_out])
+    return np.sort(order[kept:]), np.sort(order[:kept])
 
 
 def select_episodes(demonstrations: Demonstrations, episodes: Sequence[int] | IntArray) -> Demonstrations:

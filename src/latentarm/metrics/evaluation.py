@@ -142,7 +142,7 @@ def measure(
     Args:
         model: a fitted model of S seeds.
         demonstrations: the dataset that it was trained on; PCA is fitted to all of it that is not held out,
-            so also to episodes that stopped the training early.
+            so also to validation episodes.
         held_out: indices of the episodes that it has not seen.
         robot: the arm that it moves.
         rng: for the noise on held-out states.

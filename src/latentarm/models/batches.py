@@ -46,21 +46,21 @@ class TrainingData:
     Attributes:
         context: (N, c), training pairs.
         action: (N, m).
-        held_out_context: (H, c), pairs of the held-out episodes.
-        held_out_action: (H, m).
+        validation_context: (H, c), pairs of the validation episodes.
+        validation_action: (H, m).
         elsewhere: (M, c), contexts without demonstrated actions; none where no term asks for them.
         later: (N, c), contexts to which the training pairs' actions lead, for models that look there;
             otherwise (N, 0).
-        held_out_later: (H, c) or (H, 0), the same of the held-out pairs.
+        validation_later: (H, c) or (H, 0), the same of the validation pairs.
     """
 
     context: FloatArray
     action: FloatArray
-    held_out_context: FloatArray
-    held_out_action: FloatArray
+    validation_context: FloatArray
+    validation_action: FloatArray
     elsewhere: FloatArray
     later: FloatArray
-    held_out_later: FloatArray
+    validation_later: FloatArray
 
 
 def seed_generator(seed: int, stream: int) -> torch.Generator:
@@ -75,11 +75,11 @@ def seed_generator(seed: int, stream: int) -> torch.Generator:
 
 @final
 class Batches:
-    """Shuffled training batches and the held-out pairs, on the device.
+    """Shuffled training batches and the validation pairs, on the device.
 
     Attributes:
         size: B, pairs per step and seed.
-        held_out: all held-out pairs as one batch.
+        validation: all validation pairs as one batch.
     """
 
     def __init__(
@@ -94,13 +94,13 @@ class Batches:
         self._elsewhere, self._later = tensor(data.elsewhere), tensor(data.later)
         self._rows = min(ELSEWHERE, len(data.elsewhere))
         self.size = max(1, min(batch_size, self._pairs // FEWEST_STEPS))
-        many, held_out = len(seeds), len(data.held_out_context)
-        self.held_out = Batch(
-            context=tensor(data.held_out_context).expand(many, -1, -1).contiguous(),
-            action=tensor(data.held_out_action).expand(many, -1, -1).contiguous(),
-            noise=torch.zeros(many, held_out, noise_dim, device=device),
+        many, validation = len(seeds), len(data.validation_context)
+        self.validation = Batch(
+            context=tensor(data.validation_context).expand(many, -1, -1).contiguous(),
+            action=tensor(data.validation_action).expand(many, -1, -1).contiguous(),
+            noise=torch.zeros(many, validation, noise_dim, device=device),
             elsewhere=self._elsewhere[:ELSEWHERE_JUDGED].expand(many, -1, -1).contiguous(),
-            later=tensor(data.held_out_later).expand(many, -1, -1).contiguous(),
+            later=tensor(data.validation_later).expand(many, -1, -1).contiguous(),
         )
 
     def epoch(self, epoch: int) -> Iterator[Batch]:

@@ -35,11 +35,11 @@ class TrainingState:
         first: (S, P), Adam's running mean of the gradient; its own buffer.
         second: (S, P), Adam's running mean of the squared gradient; its own buffer.
         best: (S, P), each seed's weights at its best epoch.
-        best_loss: (S,), held-out loss there; infinite before the first epoch.
+        best_loss: (S,), validation loss there; infinite before the first epoch.
         best_epoch: (S,), counted from 1.
         epoch: epochs done.
         steps: optimiser steps done.
-        history: held-out loss (S,) after each epoch.
+        history: validation loss (S,) after each epoch.
     """
 
     values: Tensor
@@ -69,7 +69,7 @@ class TrainingState:
         return self.epoch - self.best_epoch >= patience
 
     def record(self, loss: FloatArray, steps: int, patience: int) -> None:
-        """Take in the held-out loss (S,) after one more epoch.
+        """Take in the validation loss (S,) after one more epoch.
 
         A seed that has stalled stays at its best even if it would improve later: alone, its training
         would have ended there.

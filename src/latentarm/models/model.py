@@ -21,7 +21,7 @@ from latentarm.models.decoder import Decoder
 from latentarm.models.layout import LAYOUTS, Dimensions
 from latentarm.models.networks import Networks
 from latentarm.models.normaliser import Normaliser, action_normaliser, context_normaliser
-from latentarm.models.parameters import check_held_out, check_parameters, check_rows
+from latentarm.models.parameters import check_parameters, check_rows, check_validation
 from latentarm.models.saving import write_model
 from latentarm.models.scaling import (
     EFFECT_SAMPLES,
@@ -68,15 +68,16 @@ class LatentActionModel(BaseEstimator, ABC):
         actions: where actions come from: ``displacement`` between states, or ``recorded``.
         window: samples that a displacement may reach ahead and back.
         state_noise_rad: standard deviation of the noise on training states, rad.
-        held_out_fraction: share of the episodes held out, where `fit` is not told which.
-        data_seed: draws the held-out episodes and the state noise, the same for every seed.
+        validation_fraction: share of the episodes that decide when training stops, where `fit` is not
+            told which.
+        data_seed: draws the validation episodes and the state noise, the same for every seed.
         seeds: S, models trained side by side.
         seed: the first of S consecutive seeds.
         hidden: units of each hidden layer, of encoder and decoder.
         learning_rate: of Adam, at the start.
         epochs: passes over the training pairs, at most.
         batch_size: pairs per step, at most.
-        patience: epochs without improvement on the held-out episodes after which a seed stops.
+        patience: epochs without improvement on the validation episodes after which a seed stops.
         device: ``cpu``, ``cuda``, or ``auto`` for CUDA where there is one.
         checkpoint_interval_s: shortest time between two checkpoints of a training, s.
         trained_: what `fit` learned.
@@ -100,7 +101,7 @@ class LatentActionModel(BaseEstimator, ABC):
     actions: Literal["displacement", "recorded"] = "displacement"
     window: int = 5
     state_noise_rad: float = 0.0
-    held_out_fraction: float = 0.2
+    validation_fraction: float = 0.2
     data_seed: int = 0
     seeds: int = 1
     seed: int = 0
@@ -140,7 +141,7 @@ class LatentActionModel(BaseEstimator, ABC):
         self,
         demonstrations: Demonstrations,
         *,
-        held_out: Sequence[int] | None = None,
+        validation: Sequence[int] | None = None,
         chain: Chain | None = None,
         term: LossTerm | None = None,
         checkpoint: Path | None = None,
@@ -150,8 +151,8 @@ class LatentActionModel(BaseEstimator, ABC):
 
         Args:
             demonstrations: at least two episodes.
-            held_out: indices of the episodes that the weights are not fitted to; the loss on them
-                says when to stop. Drawn by ``data_seed`` where None.
+            validation: indices of the episodes that neither the weights nor the normalisers are fitted
+                to; the loss on them says when to stop. Drawn by ``data_seed`` where None.
             chain: the arm's kinematics, for models that look at the tools; where None, those of the
                 robot that the demonstrations name.
             term: what is to be minimised beside the model's own loss, where inputs matter that nobody
@@ -172,18 +173,18 @@ class LatentActionModel(BaseEstimator, ABC):
             CollapseWarning: a latent dimension moves nothing; ``collapsed_`` says which.
         """
         check_parameters(self.get_params(deep=False))
-        if held_out is None:
+        if validation is None:
             rng = np.random.default_rng([self.data_seed, 0])
-            held_out = [
-                int(index) for index in split_episodes(demonstrations, self.held_out_fraction, rng)[1]
+            validation = [
+                int(index) for index in split_episodes(demonstrations, self.validation_fraction, rng)[1]
             ]
-        check_held_out(held_out, len(demonstrations.episodes))
+        check_validation(validation, len(demonstrations.episodes))
         rng = np.random.default_rng([self.data_seed, 1])
         pairs = make_pairs(
             demonstrations, self.window, self.state_noise_rad, self.context, rng, actions=self.actions
         )
         arm = self._arm(demonstrations, chain) if self.sees_tools else None
-        chosen = tuple(int(index) for index in held_out)
+        chosen = tuple(int(index) for index in validation)
         self.trained_ = self._fit_pairs(pairs, chosen, arm, term, checkpoint, report)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds
@@ -275,18 +276,18 @@ class LatentActionModel(BaseEstimator, ABC):
         return self._fitted().summary.collapsed
 
     @property
-    def held_out_episodes_(self) -> tuple[int, ...]:
-        """Indices of the episodes that the weights were not fitted to."""
-        return self._fitted().summary.held_out_episodes
+    def validation_episodes_(self) -> tuple[int, ...]:
+        """Indices of the episodes that decided when training stopped; nothing else was fitted to them."""
+        return self._fitted().summary.validation_episodes
 
     @property
-    def held_out_loss_(self) -> FloatArray:
+    def validation_loss_(self) -> FloatArray:
         """Loss on their pairs (S,), in normalised units."""
-        return self._fitted().summary.held_out_loss
+        return self._fitted().summary.validation_loss
 
     @property
     def history_(self) -> FloatArray:
-        """Held-out loss after each epoch, (E, S)."""
+        """Validation loss after each epoch, (E, S)."""
         return self._fitted().summary.history
 
     def _arm(self, demonstrations: Demonstrations, chain: Chain | None) -> Chain:
@@ -309,16 +310,16 @@ class LatentActionModel(BaseEstimator, ABC):
     def _fit_pairs(
         self,
         pairs: Pairs,
-        held_out: tuple[int, ...],
+        validation: tuple[int, ...],
         arm: Chain | None,
         term: LossTerm | None,
         checkpoint: Path | None,
         report: Report | None,
     ) -> TrainedModel:
-        outside = np.isin(pairs.episode, held_out)
+        outside = np.isin(pairs.episode, validation)
         if outside.all() or not outside.any():
             raise UserError(
-                "The arm moves in none of the training episodes, or in none of the held-out ones."
+                "The arm moves in none of the training episodes, or in none of the validation episodes."
             )
         context, action = pairs.context[~outside], pairs.action[~outside]
         if not action.any():
@@ -341,11 +342,11 @@ class LatentActionModel(BaseEstimator, ABC):
         data = TrainingData(
             context=shown,
             action=actions.apply(action),
-            held_out_context=contexts.apply(pairs.context[outside]),
-            held_out_action=actions.apply(pairs.action[outside]),
+            validation_context=contexts.apply(pairs.context[outside]),
+            validation_action=actions.apply(pairs.action[outside]),
             elsewhere=elsewhere,
             later=self._later(contexts, context, action),
-            held_out_later=self._later(contexts, pairs.context[outside], pairs.action[outside]),
+            validation_later=self._later(contexts, pairs.context[outside], pairs.action[outside]),
         )
         scaled = term and ScaledTerm(
             term,
@@ -380,8 +381,8 @@ class LatentActionModel(BaseEstimator, ABC):
             },
             summary=TrainingSummary(
                 seeds=self.seed_numbers,
-                held_out_episodes=held_out,
-                held_out_loss=learned.held_out_loss,
+                validation_episodes=validation,
+                validation_loss=learned.validation_loss,
                 best_epoch=learned.best_epoch,
                 history=learned.history,
                 collapsed=find_collapsed(effect, latents, LAYOUTS[self.kind]),

@@ -71,7 +71,7 @@ def _problem(name: str, value: object) -> str:
         return "" if 0 <= number < math.inf else "a finite number, zero or more"
     if name in CHOICES:
         return "" if value in CHOICES[name] else f"one of {', '.join(CHOICES[name])}"
-    if name == "held_out_fraction":
+    if name == "validation_fraction":
         return "" if 0 < number < 1 else "a number between 0 and 1"
     if name == "hidden":
         fits = isinstance(value, tuple) and all(
@@ -81,21 +81,23 @@ def _problem(name: str, value: object) -> str:
     return "absent: no such parameter is known"
 
 
-def check_held_out(held_out: Sequence[int], episodes: int) -> None:
-    """Check that the held-out indices name some of the episodes and leave others to train on.
+def check_validation(validation: Sequence[int], episodes: int) -> None:
+    """Check that the indices of validation episodes name some of the episodes and leave others to train on.
 
     Raises:
         UserError: they do not.
     """
-    for index in held_out:
+    for index in validation:
         if not 0 <= index < episodes:
             raise UserError(
-                f"Episode {index} is to be held out, but the dataset's {episodes} end at {episodes - 1}."
+                f"Episode {index} is to be a validation episode, but the dataset's {episodes} end at"
+                f" {episodes - 1}."
             )
-    held = len(set(held_out))
+    held = len(set(validation))
     if not 0 < held < episodes:
         raise UserError(
-            f"{held} of {episodes} episodes are held out: at least one must be, and one must be left."
+            f"{held} of {episodes} episodes are for validation: at least one must be, and one must be left to"
+            " train on."
         )
 
 

@@ -46,16 +46,16 @@ class PCA(LatentActionModel):
                 " demonstrate more, or widen the window."
             )
         components = decomposition.PCA(n_components=dimensions.latent, svd_solver="full").fit(data.action)
-        held_out = data.held_out_action
-        rebuilt = components.inverse_transform(components.transform(held_out))
-        loss = np.square(held_out - rebuilt).sum(axis=1).mean()
+        validation = data.validation_action
+        rebuilt = components.inverse_transform(components.transform(validation))
+        loss = np.square(validation - rebuilt).sum(axis=1).mean()
         principal, seeds = np.asarray(components.components_), dimensions.seeds
         return TrainingResult(
             weights={
                 "decoder.0.weight": np.repeat(principal[None], seeds, axis=0),
                 "decoder.0.bias": np.repeat(data.action.mean(axis=0)[None, None], seeds, axis=0),
             },
-            held_out_loss=np.full(seeds, loss),
+            validation_loss=np.full(seeds, loss),
             best_epoch=np.zeros(seeds, dtype=np.int64),
             history=np.empty((0, seeds)),
         )

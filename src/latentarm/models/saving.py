@@ -27,7 +27,13 @@ from latentarm.untrusted.opening import read_bytes
 
 CONFIG_NAME: Final = "config.json"
 WEIGHTS_NAME: Final = "model.safetensors"
-SCHEMA: Final = 2
+SCHEMA: Final = 3
+OLD_NAMES: Final = {
+    "held_out_fraction": "validation_fraction",
+    "held_out_episodes": "validation_episodes",
+    "held_out_loss": "validation_loss",
+}
+"""What schema 2 called the validation episodes."""
 CONFIG_LIMIT: Final = 16 * 2**20
 """Bytes; a config with the training curves of a hundred seeds stays far below."""
 MOST_LAYERS: Final = 64
@@ -66,8 +72,8 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
         },
         "seeds": list(summary.seeds),
         "training": {
-            "held_out_episodes": list(summary.held_out_episodes),
-            "held_out_loss": summary.held_out_loss.tolist(),
+            "validation_episodes": list(summary.validation_episodes),
+            "validation_loss": summary.validation_loss.tolist(),
             "best_epoch": summary.best_epoch.tolist(),
             "history": [
                 [loss if math.isfinite(loss) else None for loss in epoch]
@@ -93,9 +99,10 @@ def read_model(folder: Path) -> TrainedModel:
     path = folder / CONFIG_NAME
     section = Section.of_file(path, CONFIG_LIMIT).section("model")
     schema = section.integer("schema", 0)
-    if schema != SCHEMA:
+    if schema not in (2, SCHEMA):
         raise UserError(
-            f"{path} has schema {schema} and this version reads schema {SCHEMA}: train the model again."
+            f"{path} has schema {schema} and this version reads schemas 2 and {SCHEMA}: train the model"
+            " again."
         )
     kind = section.text("kind")
     if kind not in LAYOUTS:
@@ -116,20 +123,25 @@ def read_model(folder: Path) -> TrainedModel:
             f"{path}: a model of kind '{kind}' has at least one tool, and the state in its context."
         )
     shapes = tensor_shapes(LAYOUTS[kind], dimensions)
-    parameters = section.section("parameters")
+    parameters = _renamed(section.section("parameters"))
     parameters.choice("context", ("state", "state_belief"))
-    training = section.section("training")
+    training = _renamed(section.section("training"))
     seeds = dimensions.seeds
     summary = TrainingSummary(
         seeds=tuple(section.integers("seeds", 0, length=seeds)),
-        held_out_episodes=tuple(training.integers("held_out_episodes", 0)),
-        held_out_loss=training.array("held_out_loss", (seeds,)),
+        validation_episodes=tuple(training.integers("validation_episodes", 0)),
+        validation_loss=training.array("validation_loss", (seeds,)),
         best_epoch=training.array("best_epoch", (seeds,)).astype(np.int64),
         history=training.array("history", (None, seeds), gaps=True),
         collapsed=section.array("collapsed", (seeds, dimensions.latent)).astype(np.bool_),
     )
     tensors = read_tensors(folder / WEIGHTS_NAME, shapes, section.text("sha256"))
     return TrainedModel(kind, parameters.plain(), dimensions, tensors, summary)
+
+
+def _renamed(section: Section) -> Section:
+    """The section with what schema 2 called otherwise under today's names."""
+    return Section(section.where, {OLD_NAMES.get(key, key): value for key, value in section.values.items()})
 
 
 def read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[str, FloatArray]:

@@ -18,17 +18,17 @@ class TrainingSummary:
 
     Attributes:
         seeds: the S seeds.
-        held_out_episodes: indices of the episodes that training did not see.
-        held_out_loss: (S,), loss on their pairs, in normalised units.
+        validation_episodes: indices of the episodes that decided when training stopped.
+        validation_loss: (S,), loss on their pairs, in normalised units.
         best_epoch: (S,), the epoch whose weights were kept, counted from 1.
-        history: (E, S), held-out loss after each epoch, NaN where it was not a number; E = 0 where
+        history: (E, S), validation loss after each epoch, NaN where it was not a number; E = 0 where
             there were none.
         collapsed: (S, d), latent dimensions that move nothing.
     """
 
     seeds: tuple[int, ...]
-    held_out_episodes: tuple[int, ...]
-    held_out_loss: FloatArray
+    validation_episodes: tuple[int, ...]
+    validation_loss: FloatArray
     best_epoch: IntArray
     history: FloatArray
     collapsed: BoolArray

@@ -23,7 +23,7 @@ from latentarm.types import FloatArray, IntArray
 from latentarm.untrusted.console import VisibleConsole
 
 Report = Callable[[int, int, float], None]
-"""Is told after each epoch: how many are done, how many there are at most, and the held-out loss so far."""
+"""Is told after each epoch: how many are done, how many there are at most, and the validation loss so far."""
 
 THREADED_WORK: Final = 40_000
 """Hidden units computed per layer and step from which a second thread costs less than it saves."""
@@ -37,7 +37,7 @@ class TrainingConfig:
         learning_rate: Adam's, at the start; it falls along half a cosine.
         epochs: passes over the training pairs, at most.
         batch_size: pairs per step and seed, at most.
-        patience: a seed has stalled when its held-out loss has not improved for this many epochs.
+        patience: a seed has stalled when its validation loss has not improved for this many epochs.
         checkpoint_interval_s: shortest time between two checkpoints, s.
     """
 
@@ -54,13 +54,13 @@ class TrainingResult:
 
     Attributes:
         weights: float64 arrays (S, in, out) by name.
-        held_out_loss: (S,), the loss that those weights have on the held-out pairs.
+        validation_loss: (S,), the loss that those weights have on the validation pairs.
         best_epoch: (S,), counted from 1.
-        history: (E, S), held-out loss after each epoch.
+        history: (E, S), validation loss after each epoch.
     """
 
     weights: dict[str, FloatArray]
-    held_out_loss: FloatArray
+    validation_loss: FloatArray
     best_epoch: IntArray
     history: FloatArray
 
@@ -81,14 +81,14 @@ def train(
 ) -> TrainingResult:
     """Train S seeds together; each as it would be alone.
 
-    Per seed, the weights with the least held-out loss are kept. A seed that has stalled is left as
+    Per seed, the weights with the least validation loss are kept. A seed that has stalled is left as
     it is; the loop ends when all have, or after the last epoch.
 
     Args:
         objective: loss (S,) of the networks on a batch, to be minimised for every seed by itself.
         shapes: shape (S, in, out) of each weight by name.
         noise_dim: k, standard normal numbers that the objective takes per pair.
-        data: N training and H held-out pairs.
+        data: N training and H validation pairs.
         seeds: S seeds.
         config: how long and how fast.
         device: where to compute.
@@ -124,7 +124,7 @@ def train(
                 networks.fill_gradient(objective(networks.networks, batch).sum())
                 adam.step(networks.values, networks.gradient, rate)
             with torch.no_grad():
-                loss = objective(networks.networks, batches.held_out).cpu().double().numpy()
+                loss = objective(networks.networks, batches.validation).cpu().double().numpy()
             state.record(loss, adam.steps, config.patience)
             report(state.epoch, config.epochs, float(state.best_loss.mean()))
             if checkpoint is not None and monotonic() - written >= config.checkpoint_interval_s:
@@ -140,7 +140,7 @@ def train(
         )
     return TrainingResult(
         weights=networks.arrays(state.best),
-        held_out_loss=state.best_loss.copy(),
+        validation_loss=state.best_loss.copy(),
         best_epoch=state.best_epoch.copy(),
         history=np.array(state.history),
     )
@@ -176,7 +176,7 @@ def epoch_bar(shown: bool) -> Generator[Report]:
         task = bar.add_task("training", loss="")
 
         def report(epoch: int, epochs: int, loss: float) -> None:
-            said = f"held-out loss {loss:.4f}" if math.isfinite(loss) else ""
+            said = f"validation loss {loss:.4f}" if math.isfinite(loss) else ""
             bar.update(task, total=epochs, completed=epoch, loss=said)
 
         yield report

@@ -1,7 +1,7 @@
 """`latentarm train`: a dataset in, a run folder out.
 
-Three kinds of episodes, always whole ones: most train the model, some stop its training early, and
-some are held out from both, for `latentarm evaluate`.
+Three kinds of episodes, always whole ones: most train the model, the validation episodes stop its training
+early, and the held-out ones do neither: they are for `latentarm evaluate`.
 """
 
 import warnings
@@ -85,7 +85,7 @@ class Training:
     """What came of a training.
 
     Attributes:
-        rows: the normalised loss on the episodes that stopped the training: mean and SD over seeds.
+        rows: the normalised loss on the validation episodes: mean and SD over seeds.
         episodes: of the dataset.
     """
 
@@ -143,9 +143,9 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
     checkpoint.unlink(missing_ok=True)
     for warning in caught:
         warnings.warn(warning.message, stacklevel=2)
-    loss = model.held_out_loss_
+    loss = model.validation_loss_
     spread = float(loss.std(ddof=1)) if len(loss) > 1 else None
-    row = Row("train", "held_out_loss", "1", float(loss.mean()), spread, len(loss), model=config.model)
+    row = Row("train", "validation_loss", "1", float(loss.mean()), spread, len(loss), model=config.model)
     return Training([row], len(demonstrations.episodes))
 
 

@@ -97,10 +97,10 @@ def _fit(cell: DecoderCell, demonstrations: Demonstrations) -> LatentActionModel
         "patience": preset.epochs,
     }
     episodes = len(demonstrations.episodes)
-    held_out = range(episodes - max(1, round(VALIDATION_SHARE * episodes)), episodes)
+    validation = range(episodes - max(1, round(VALIDATION_SHARE * episodes)), episodes)
     with warnings.catch_warnings():
         # A dead latent action shows in every figure.
         warnings.simplefilter("ignore", CollapseWarning)
         return model_class(**parameters).fit(
-            demonstrations, held_out=held_out, chain=POURING_TASKS[cell.task]().robot.chain
+            demonstrations, validation=validation, chain=POURING_TASKS[cell.task]().robot.chain
         )

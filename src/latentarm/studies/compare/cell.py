@@ -37,7 +37,7 @@ class Place:
         noise_rad: SD of the noise on states, in training and in the noisy error, rad.
         model: a name of `MODELS`.
         fold: index of the fold.
-        demonstrations: how many train the model, those that stop the training among them.
+        demonstrations: how many train the model, the validation episodes among them.
     """
 
     dataset: str
@@ -144,12 +144,12 @@ def _fit(cell: Cell, robot: Robot) -> LatentActionModel:
     }
     if preset.epochs is not None:
         parameters["epochs"] = preset.epochs
-    chosen = select_episodes(cell.dataset.demonstrations, (*fold.training, *fold.stopping))
+    chosen = select_episodes(cell.dataset.demonstrations, (*fold.training, *fold.validation))
     with warnings.catch_warnings():
         # The comparison is to show what models fail at; a dead axis shows in every figure.
         warnings.simplefilter("ignore", CollapseWarning)
         return MODELS[cell.model](**parameters).fit(
             chosen,
-            held_out=range(len(fold.training), len(fold.training) + len(fold.stopping)),
+            validation=range(len(fold.training), len(fold.training) + len(fold.validation)),
             chain=robot.chain,
         )

@@ -84,7 +84,8 @@ def _introduction(content: Content) -> str:
 ```
 
 - {preset.folds} folds: every episode is held out exactly once; nothing is fitted to it. Of a fold's other
-  episodes some stop the training early (two of {MANY} or more, one of {FEW} or more), and the rest train. The
+  episodes some are for validation, which stops the training early (two of {MANY} or more, one of {FEW} or
+  more), and the rest train. The
   folds are the same for every model.
 - Models of each kind in each fold: {preset.seeds}; PCA has no seeds. d = 2; batches of {preset.batch_size},
   hidden layers of {" and ".join(map(str, preset.hidden))} units, else every model's own parameters, with
@@ -119,7 +120,7 @@ def _fewer(content: Content) -> str:
     return f"""## With fewer demonstrations
 
 {listed(look_of(name).label for name in content.fewer)} with {listed(map(str, content.counts))} training
-demonstrations, on the same folds; fewer are some of the more. Episodes that stop the training early are
+demonstrations, on the same folds; fewer are some of the more. Validation episodes are
 among them: two of {MANY} or more, one of {FEW} or more. With fewer than that none is held back, and the
 training stops where its own loss falls no further. Percentages are of the same PCA throughout, fitted to all
 that a fold does not hold out.

@@ -144,7 +144,7 @@ def _fit(cell: Cell, kind: str, training: Demonstrations) -> LatentActionModel:
         # The study is to show what models fail at; a dead axis shows in every figure.
         warnings.simplefilter("ignore", CollapseWarning)
         return model_class(**parameters).fit(
-            training, held_out=range(episodes - _validation(training), episodes)
+            training, validation=range(episodes - _validation(training), episodes)
         )
 
 

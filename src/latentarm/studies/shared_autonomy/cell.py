@@ -213,7 +213,7 @@ def _fit(cell: Cell, task: TwoCups, training: Demonstrations) -> LatentActionMod
         warnings.simplefilter("ignore", CollapseWarning)
         return model_class(**parameters).fit(
             training,
-            held_out=range(episodes - _validation(training), episodes),
+            validation=range(episodes - _validation(training), episodes),
             chain=task.robot.chain,
             term=_term(cell.entropy, task),
         )

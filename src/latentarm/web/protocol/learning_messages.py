@@ -74,7 +74,7 @@ class Training(WorkshopMessage):
         run: the run's name.
         epoch: how many passes over the episodes are done.
         epochs: how many there are at most.
-        loss: held-out loss so far, or null.
+        loss: validation loss so far, or null.
         seconds_left: about how long it will take yet, or null.
         why: what people should know: why it failed, or what the model warned of; or null.
     """
