@@ -31,9 +31,7 @@ TINY = Preset(
 PROPERTIES = ("reproduce", "properties", "--preset", "smoke", "--task", "reach", "--jobs", 1)
 
 
-def test_the_properties_for_people(
-    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_properties_for_people(run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PRESETS, "smoke", TINY)
     code, out, err = run(*PROPERTIES)
     assert code == 0
