@@ -6,7 +6,7 @@ import pytest
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.tasks.reach import Reach
-from latentarm.tasks.replay import Replay
+from latentarm.tasks.replay import Replay, routes_of
 from latentarm.tasks.task import check_not_done
 from latentarm.tasks.two_cups import PandaTwoCups, PlanarTwoCups
 
@@ -22,7 +22,8 @@ def task(request):
     table_top = request.getfixturevalue("table_top")
     if request.param == "table_top":
         return table_top
-    return Replay(table_top.robot, table_top.demonstrate(3, np.random.default_rng(0)))
+    shown = table_top.demonstrate(3, np.random.default_rng(0))
+    return Replay(table_top.robot, routes_of(table_top.robot, shown))
 
 
 def test_starts_and_goals_are_within_the_limits(task):
@@ -104,7 +105,6 @@ def test_episodes_in_which_the_tool_goes_nowhere_are_not_followed(table_top):
     first = shown.episodes[0]
     # Joints twitch by more than counts as standing still; the tool stays within 3 cm.
     twitch = replace(first, state=first.state[:1] + 0.02 * np.sin(first.timestamp)[:, None])
-    task = Replay(table_top.robot, replace(shown, episodes=(twitch, shown.episodes[1])))
-    assert len(task.goals) == 1
+    assert len(routes_of(table_top.robot, replace(shown, episodes=(twitch, shown.episodes[1])))) == 1
     with pytest.raises(UserError, match=r"In none of these episodes does tool of panda go anywhere"):
-        Replay(table_top.robot, replace(shown, episodes=(twitch,)))
+        routes_of(table_top.robot, replace(shown, episodes=(twitch,)))

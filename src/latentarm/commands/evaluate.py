@@ -98,6 +98,8 @@ def evaluate(
             print_renderables(definitions(evaluation.rows))
         else:
             say("What each measure says: --explain.", json)
+    if evaluation.missing:
+        say(evaluation.missing, json)
     say(evaluation.verdict, json)
     say(evaluation.advice, json)
     say(f"metrics.json and figures are in {folder}/.", json)

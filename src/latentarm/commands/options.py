@@ -21,7 +21,7 @@ LimitsFile = Annotated[
 ]
 Dataset = Annotated[Path, arg(metavar="DST", help="Folder of a native dataset.")]
 MovedDataset = Annotated[
-    Path | None, arg(metavar="DST", help="Where the run's dataset lies now, if it was moved.")
+    Path | None, arg(metavar="DST", help="Where the run's dataset lies now, if it was moved and is needed.")
 ]
 Jobs = Annotated[int, arg(help="Processes that measure side by side; -1 is one per core.")]
 Backend = Annotated[

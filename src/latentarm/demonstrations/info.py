@@ -155,15 +155,7 @@ def info_json(info: Info) -> str:
             "action": "joint velocity, rad/s",
             "end_effector": info.end_effector,
             "limits": None if info.limits is None else limits_document(info.limits),
-            "goals": [
-                {
-                    "name": goal.name,
-                    "configuration": goal.configuration.tolist(),
-                    "position": goal.pose.position.tolist(),
-                    "rotation": goal.pose.rotation.tolist(),
-                }
-                for goal in info.goals
-            ],
+            "goals": goals_document(info.goals),
             "import": dict(info.import_record),
             "provenance": [None if one is None else provenance_json(one) for one in info.provenance],
         },
@@ -210,7 +202,7 @@ def read_info(root: Path) -> Info:
         rate_hz=float(rate),
         robot=robot if isinstance(robot, str) else "",
         features=features,
-        goals=_read_goals(ours, path),
+        goals=() if not isinstance(ours, dict) else parse_goals(ours.get("goals", []), str(path)),
         end_effector=_read_end_effector(ours, path),
         limits=_read_limits(ours, path),
         version=version,
@@ -220,6 +212,45 @@ def read_info(root: Path) -> Info:
         import_record=_read_import_record(ours, path),
         provenance=_read_provenance(ours, path),
     )
+
+
+def goals_document(goals: Sequence[Goal]) -> list[dict[str, object]]:
+    """What `parse_goals` reads."""
+    return [
+        {
+            "name": goal.name,
+            "configuration": goal.configuration.tolist(),
+            "position": goal.pose.position.tolist(),
+            "rotation": goal.pose.rotation.tolist(),
+        }
+        for goal in goals
+    ]
+
+
+def parse_goals(entries: object, where: str) -> tuple[Goal, ...]:
+    """The goals that a dataset or a run lists.
+
+    Args:
+        entries: as `goals_document` gives them.
+        where: the file, for messages.
+
+    Raises:
+        UserError: an entry is not a goal.
+    """
+    try:
+        return tuple(
+            Goal(
+                name=str(entry["name"]),
+                configuration=np.asarray(entry["configuration"], dtype=np.float64),
+                pose=Pose(
+                    position=np.asarray(entry["position"], dtype=np.float64),
+                    rotation=np.asarray(entry["rotation"], dtype=np.float64),
+                ),
+            )
+            for entry in cast(Sequence[Mapping[str, Any]], entries)
+        )
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise UserError(f"{where}: its goals are damaged.") from error
 
 
 def _field(mapping: Mapping[str, Any], key: str, kind: type[T], path: Path) -> T:
@@ -269,25 +300,6 @@ def _read_end_effector(ours: object, path: Path) -> str | None:
 def _read_limits(ours: object, path: Path) -> StatedLimits | None:
     limits: object = cast(Mapping[str, Any], ours).get("limits") if isinstance(ours, dict) else None
     return None if limits is None else parse_limits(limits, f"{path}, limits")
-
-
-def _read_goals(ours: object, path: Path) -> tuple[Goal, ...]:
-    if not isinstance(ours, dict):
-        return ()
-    try:
-        return tuple(
-            Goal(
-                name=str(entry["name"]),
-                configuration=np.asarray(entry["configuration"], dtype=np.float64),
-                pose=Pose(
-                    position=np.asarray(entry["position"], dtype=np.float64),
-                    rotation=np.asarray(entry["rotation"], dtype=np.float64),
-                ),
-            )
-            for entry in cast(Mapping[str, Any], ours).get("goals", [])
-        )
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise UserError(f"{path}: its goals are damaged.") from error
 
 
 def _read_import_record(ours: object, path: Path) -> Mapping[str, str]:

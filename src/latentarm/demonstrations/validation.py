@@ -59,7 +59,7 @@ def validate(demonstrations: Demonstrations, source: str, limits: JointLimits | 
     if not demonstrations.episodes:
         raise UserError(f"{source}: there are no episodes in it.")
     for index, goal in enumerate(demonstrations.goals):
-        _check_goal(goal, index, demonstrations.dof, source)
+        check_goal(goal, index, demonstrations.dof, source)
     first = demonstrations.episodes[0]
     for index, episode in enumerate(demonstrations.episodes):
         validate_episode(episode, index, names, source, limits)
@@ -212,7 +212,18 @@ def _check_limits(state: FloatArray, joint_names: tuple[str, ...], limits: Joint
         )
 
 
-def _check_goal(goal: Goal, index: int, dof: int, source: str) -> None:
+def check_goal(goal: Goal, index: int, dof: int, source: str) -> None:
+    """Check one goal by itself.
+
+    Args:
+        goal: the goal.
+        index: which of the goals it is, from 0.
+        dof: n.
+        source: the file, for messages.
+
+    Raises:
+        UserError: its sizes are not those of n joints and a pose, or a number is not finite.
+    """
     shapes = (goal.configuration.shape, goal.pose.position.shape, goal.pose.rotation.shape)
     if shapes != ((dof,), (3,), (3, 3)):
         raise UserError(f"{source}: goal {index} must be a configuration of {dof} joints with its pose.")

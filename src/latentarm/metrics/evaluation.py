@@ -1,8 +1,8 @@
 """All measures of a latent action model on held-out episodes, as rows with mean and SD over seeds."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from dataclasses import dataclass, field, replace
+from typing import Literal, Protocol, final
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from latentarm.metrics.effects import axis_effects, axis_grid
 from latentarm.metrics.reversal import reversal
 from latentarm.metrics.samples import (
     ContextKind,
+    StartGoalPairs,
     evenly_spread,
     moving_episodes,
     spread_contexts,
@@ -26,7 +27,7 @@ from latentarm.metrics.samples import (
 )
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, FloatArray, Row
+from latentarm.types import Demonstrations, Episode, FloatArray, Row
 
 
 class TrainedModel(EncodesActions, Protocol):
@@ -152,21 +153,79 @@ def measure(
         UserError: no episode is held out, none is left for PCA, or the contexts lack a belief.
     """
     config = config or EvaluationConfig()
-    step_s = config.step_s or 1.0 / demonstrations.rate_hz
     episodes = moving_episodes(demonstrations, held_out)
     accuracy = _measure_accuracy(model, demonstrations, held_out, rng, config.state_noise_rad)
-    decoders, figures = accuracy.decoders, dict(accuracy.figures)
+    chosen = evenly_spread(config.latents, len(accuracy.context))
+    samples = (accuracy.context[chosen], accuracy.action[chosen])
+    probe = _probe(model.context, episodes, demonstrations.rate_hz, config, *samples)
+    behaviour = measure_behaviour(accuracy.decoders, accuracy.z[:, chosen], probe, robot, config)
+    return replace(behaviour, per_seed={**accuracy.figures, **behaviour.per_seed})
 
-    pairs = start_goal_pairs(
-        episodes, model.context, separation_s=config.reach.separation_s, count=config.reach.pairs
-    )
-    reach = reach_goals(decoders, pairs, robot.chain, step_s, config.reach.solver, (config.tool,))
+
+@final
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """Held-out samples on which a model's behaviour is measured.
+
+    Attributes:
+        pairs: starts and goals for controllability.
+        states: (K, c), contexts for consistency and disentanglement.
+        context: (L, c), contexts for drift and reversal.
+        action: (L, m), the actions there, rad/s.
+        step_s: dt of the transition, s.
+    """
+
+    pairs: StartGoalPairs
+    states: FloatArray
+    context: FloatArray
+    action: FloatArray
+    step_s: float
+
+
+def take_probe(model: TrainedModel, demonstrations: Demonstrations, held_out: Sequence[int]) -> Probe:
+    """The samples that `measure` takes by default, so that a run can keep them.
+
+    Args:
+        model: says how pairs of contexts and actions are made.
+        demonstrations: the dataset.
+        held_out: indices of the episodes that the model has not seen.
+
+    Raises:
+        UserError: no episode is held out, nothing moves in them, or the contexts lack a belief.
+    """
+    config = EvaluationConfig()
+    episodes = moving_episodes(demonstrations, held_out)
+    how = (model.context, np.random.default_rng(0), model.actions)
+    pairs = make_pairs(select_episodes(demonstrations, held_out), model.window, 0.0, *how)
+    chosen = evenly_spread(config.latents, len(pairs.action))
+    samples = (pairs.clean_context[chosen], pairs.action[chosen])
+    return _probe(model.context, episodes, demonstrations.rate_hz, config, *samples)
+
+
+def measure_behaviour(
+    decoders: Sequence[DecodesActions],
+    z: FloatArray,
+    probe: Probe,
+    robot: Robot,
+    config: EvaluationConfig | None = None,
+) -> Figures:
+    """All measures of `measure` but the errors of reconstruction, which need the demonstrations.
+
+    Args:
+        decoders: S decoders.
+        z: (S, L, d), the probe's actions as the model encodes them.
+        probe: what is measured on.
+        robot: the arm.
+        config: how the measures are taken.
+    """
+    config = config or EvaluationConfig()
+    figures: dict[str, FloatArray] = {}
+    reach = reach_goals(decoders, probe.pairs, robot.chain, probe.step_s, config.reach.solver, (config.tool,))
     figures["controllability_m"] = reach.tool_error_m.mean(axis=1)
     figures["controllability_state_error"] = reach.state_error_rad.mean(axis=1)
 
     grid = axis_grid(config.grid)
-    states = spread_contexts(episodes, model.context, config.states)
-    effects = axis_effects(decoders, states, grid, robot.chain, step_s, config.tool)
+    effects = axis_effects(decoders, probe.states, grid, robot.chain, probe.step_s, config.tool)
     for name, per_axis in (
         ("r2", consistency(effects, grid)),
         ("r2_local", local_consistency(effects, grid)),
@@ -174,13 +233,22 @@ def measure(
         figures[name] = per_axis.mean(axis=1)
         figures |= {f"{name}_axis_{axis}": per_axis[:, axis] for axis in range(per_axis.shape[1])}
     figures["disentanglement_deg"] = disentanglement_deg(effects)
-
-    chosen = evenly_spread(config.latents, len(accuracy.context))
-    z, context = accuracy.z[:, chosen], accuracy.context[chosen]
-    figures["drift"] = drift(decoders, z, context)
-    figures["reversal"] = reversal(decoders, z, context, step_s)
-
+    figures["drift"] = drift(decoders, z, probe.context)
+    figures["reversal"] = reversal(decoders, z, probe.context, probe.step_s)
     return Figures(per_seed=figures, start_distance_m=reach.start_distance_m)
+
+
+def _probe(
+    kind: ContextKind,
+    episodes: Sequence[Episode],
+    rate_hz: float,
+    config: EvaluationConfig,
+    context: FloatArray,
+    action: FloatArray,
+) -> Probe:
+    pairs = start_goal_pairs(episodes, kind, separation_s=config.reach.separation_s, count=config.reach.pairs)
+    states = spread_contexts(episodes, kind, config.states)
+    return Probe(pairs, states, context, action, config.step_s or 1.0 / rate_hz)
 
 
 @dataclass(frozen=True)
@@ -192,12 +260,14 @@ class _Accuracy:
         decoders: S decoders.
         z: (S, N, d), held-out actions as the encoder sees them without noise.
         context: (N, c), their contexts.
+        action: (N, m), these actions, rad/s.
     """
 
     figures: Mapping[str, FloatArray]
     decoders: Sequence[DecodesActions]
     z: FloatArray
     context: FloatArray
+    action: FloatArray
 
 
 def _measure_accuracy(
@@ -227,4 +297,4 @@ def _measure_accuracy(
         "error_percent_of_pca": percent_of(baseline, error),
         "noise_free_error_percent_of_pca": percent_of(baseline, clean_error),
     }
-    return _Accuracy(figures=figures, decoders=decoders, z=clean_z, context=pairs.clean_context)
+    return _Accuracy(figures, decoders, clean_z, pairs.clean_context, pairs.action)

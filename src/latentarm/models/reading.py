@@ -70,15 +70,19 @@ class Section:
         self, key: str, least: int, *, length: int | None = None, longest: int | None = None
     ) -> list[int]:
         """The list of whole numbers under a key, of the given length or at most the given one."""
-        value = self._get(key)
-        if not isinstance(value, list):
-            raise self._wrong(key, "a list of whole numbers")
-        entries = cast(list[Any], value)
+        entries = self.entries(key)
         if not all(_is_integer(entry, least) for entry in entries) or length not in (None, len(entries)):
             raise self._wrong(key, f"a list of whole numbers of at least {least}" + _of_length(length))
         if longest is not None and len(entries) > longest:
             raise self._wrong(key, f"a list of at most {longest} whole numbers")
         return entries
+
+    def entries(self, key: str) -> list[Any]:
+        """The list under a key."""
+        value = self._get(key)
+        if not isinstance(value, list):
+            raise self._wrong(key, "a list")
+        return cast(list[Any], value)
 
     def array(self, key: str, shape: tuple[int | None, ...], *, gaps: bool = False) -> FloatArray:
         """The nested list of numbers under a key; None in ``shape`` allows any length.

@@ -31,12 +31,14 @@ MOST_ELEMENTS: Final = 20_000
 MOST_LEVELS: Final = 100
 """Of XML elements in each other, as in MuJoCo's own parser."""
 
-_NESTED: Final = frozenset({"include", "model"})
-_FILE_ATTRIBUTES: Final = frozenset(
-    {"file", "fileup", "filedown", "fileleft", "fileright", "filefront", "fileback"}
+NESTED: Final = frozenset({"include", "model"})
+"""Elements that name another model's file."""
+
+FILE_ATTRIBUTES: Final = frozenset(
+    {"file", "filename", "fileup", "filedown", "fileleft", "fileright", "filefront", "fileback"}
 )
 _COUNTS: Final = frozenset({"count", "nkey", "nuserdata", "njmax", "nconmax", "nstack"})
-_FOLDERS: Final = ("meshdir", "texturedir", "assetdir")
+FOLDERS: Final = ("meshdir", "texturedir", "assetdir")
 
 
 @final
@@ -63,7 +65,7 @@ def read_model_xml(path: Path) -> ModelXml:
         UserError: it or a file that it names is no regular file or too large; it is not XML, declares a
             document type, is nested too deep, repeats an element too often, or contains itself.
     """
-    root, size = _read(path)
+    root, size = read_xml(path)
     if root.tag == "mujoco":
         for found, file in enumerate(_named(path, root, (path.resolve(),))):
             if found >= MOST_FILES:
@@ -72,7 +74,12 @@ def read_model_xml(path: Path) -> ModelXml:
     return ModelXml(root, size)
 
 
-def _read(path: Path) -> tuple[Xml.Element, int]:
+def read_xml(path: Path) -> tuple[Xml.Element, int]:
+    """The outermost element of an XML file, and the file's bytes; files that it names are not looked at.
+
+    Raises:
+        UserError: see `read_model_xml`.
+    """
     text = read_bytes(path, MOST_XML_BYTES)
     root = _tree(path, text)
     _check_copies(path, root)
@@ -139,22 +146,22 @@ def _named(path: Path, root: Xml.Element, above: tuple[Path, ...]) -> Iterator[P
     """Files that an MJCF names, as often as it does; those that it includes are searched too."""
     folders = {above[0].parent}
     for compiler in root.iter("compiler"):
-        folders |= {above[0].parent / compiler.attrib[key] for key in _FOLDERS if key in compiler.attrib}
+        folders |= {above[0].parent / compiler.attrib[key] for key in FOLDERS if key in compiler.attrib}
     for element in root.iter():
         for file in _places(element.attrib, folders):
-            if element.tag not in _NESTED:
+            if element.tag not in NESTED:
                 check_file(file, MOST_FILE_BYTES)
                 yield file
                 continue
             if file.resolve() in above or len(above) > MOST_LEVELS // 10:
                 raise UserError(f"{path} contains itself by way of {file}, or too many files in each other.")
-            inner, _ = _read(file)
+            inner, _ = read_xml(file)
             yield file
             yield from _named(file, inner, (*above, file.resolve()))
 
 
 def _places(attributes: Mapping[str, str], folders: set[Path]) -> Iterator[Path]:
     """Everywhere that MuJoCo may look for an element's files; what is not there it says itself."""
-    for key in _FILE_ATTRIBUTES & attributes.keys():
+    for key in FILE_ATTRIBUTES & attributes.keys():
         name = attributes[key].strip()
         yield from (place for folder in folders if name and not is_missing(place := folder / name))

@@ -20,11 +20,9 @@ from latentarm.models.catalogue import load_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
 from latentarm.runs.questions import ENSEMBLE, Scene, Watch, shown, unwatched
+from latentarm.runs.samples import ALIGN_STREAM, load_samples
 from latentarm.runs.training import prepared
 from latentarm.types import Row
-
-ALIGN_STREAM: Final = 3
-"""Keeps these draws apart from everything else that is drawn from the same seed."""
 
 NO_ALIGN: Final = "no_align"
 PROFILE: Final = "profile"
@@ -82,7 +80,7 @@ def alignable(
         folder: of the run.
         seed_index: which of the run's seeds decodes.
         seed: of everything random.
-        dataset: where the run's dataset lies now, if it was moved.
+        dataset: where the run's dataset lies now, if it was moved; runs of this version do not need it.
         watch: see `Scene`.
 
     Raises:
@@ -96,10 +94,13 @@ def alignable(
     if decoder.action_dim != chain.dof:
         raise UserError(f"{folder} was trained for {decoder.action_dim} joints; its robot has {chain.dof}.")
     rng = np.random.default_rng([ALIGN_STREAM, seed])
-    demonstrations = prepared(run.dataset(dataset), run.context)
-    training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
-    context = "state_belief" if run.context == "state_belief" else "state"
-    motions, unlabelled = shown(select_episodes(demonstrations, training), context, chain, rng)
+    samples = load_samples(folder)
+    if samples is not None and samples.motions is not None:
+        motions, unlabelled = samples.motions, samples.unlabelled
+    else:
+        demonstrations = prepared(run.dataset(dataset, "motions to ask about"), run.context)
+        training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
+        motions, unlabelled = shown(select_episodes(demonstrations, training), model.context, chain, rng)
     scene = Scene(model, seed_index, chain, motions, unlabelled, rng, watch)
     return Alignable(run, fingerprint, scene, seed)
 

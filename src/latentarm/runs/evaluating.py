@@ -4,6 +4,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,14 +15,22 @@ from latentarm.demonstrations.folds import make_folds
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.metrics.effects import axis_effects, axis_grid
-from latentarm.metrics.evaluation import EvaluationConfig, Figures, measure
+from latentarm.metrics.evaluation import (
+    EvaluationConfig,
+    Figures,
+    Probe,
+    measure,
+    measure_behaviour,
+    take_probe,
+)
 from latentarm.metrics.latent_effect_figure import latent_effect_figure
 from latentarm.metrics.properties_figure import properties_figure
 from latentarm.metrics.results import as_document
-from latentarm.metrics.samples import ContextKind, moving_episodes, spread_contexts
+from latentarm.metrics.samples import evenly_spread, moving_episodes, spread_contexts
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.verdict import THRESHOLDS, Finding, findings
 from latentarm.models.catalogue import load_model
+from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.models.scaling import CollapseWarning
 from latentarm.parallel.grid import check_processes, run_grid
@@ -30,9 +39,10 @@ from latentarm.runs.advice import FEW_EPISODES, next_step
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import Run, read_run, robot_of, weights_fingerprint
 from latentarm.runs.results_folder import refuse_other_results, write_json
+from latentarm.runs.samples import load_samples
 from latentarm.runs.training import prepared
 from latentarm.style import save_figure
-from latentarm.types import Demonstrations, Row
+from latentarm.types import Demonstrations, FloatArray, Row
 from latentarm.untrusted.documents import read_object
 from latentarm.untrusted.opening import is_missing
 
@@ -58,15 +68,19 @@ class Evaluation:
             the condition `OVER_FOLDS`: mean over folds of the mean over seeds, and SD over folds.
         found: thresholds that it misses, judged over folds where there are some.
         advice: what to do next.
+        missing: one sentence on what could not be measured; "" where all was.
     """
 
     rows: list[Row]
     found: list[Finding]
     advice: str
+    missing: str = ""
 
     @property
     def verdict(self) -> str:
         """One sentence."""
+        if not self.found and self.missing:
+            return "Verdict: within the thresholds of all that was measured."
         if not self.found:
             return f"Verdict: within all {len(THRESHOLDS) + 1} thresholds."
         return f"Verdict: {'; '.join(one.said for one in self.found)}."
@@ -87,6 +101,8 @@ def evaluate_run(
     With few episodes the split moves the figures more than the seed does, so the model is also refitted with
     other episodes held out, such that each is held out once; the run's own split is one of the folds.
 
+    Without the dataset all is measured but the errors of reconstruction, on the samples that the run keeps.
+
     Args:
         folder: the run.
         out: where to write.
@@ -105,14 +121,27 @@ def evaluate_run(
     check_processes(jobs, "joblib")
     run = read_run(folder)
     model = load_model(folder)
-    demonstrations = prepared(run.dataset(dataset), run.context)
     robot = robot_of(run)
-    if demonstrations.dof != robot.dof:
+    samples = load_samples(folder)
+    probe = None if samples is None else samples.probe
+    missing = ""
+    if probe is not None and dataset is None and is_missing(run.demonstrations) and not folds:
+        demonstrations = None
+        missing = (
+            f"The dataset is not at {run.demonstrations} any more: the errors of reconstruction and the folds"
+            " are left out. Say where it is with --demonstrations."
+        )
+        take = partial(_measure_kept, model, probe, robot)
+    else:
+        demonstrations = prepared(run.dataset(dataset), run.context)
+        take = partial(_measure_all, run, model, demonstrations, robot, seed)
+    dof = model.decoder(0).action_dim if demonstrations is None else demonstrations.dof
+    if dof != robot.dof:
         raise UserError(
-            f"{run.demonstrations} has {demonstrations.dof} joints, but robot {robot.name} has {robot.dof}:"
+            f"{run.demonstrations} has {dof} joints, but robot {robot.name} has {robot.dof}:"
             " train on a dataset of that robot."
         )
-    cells = _folds(run, model, demonstrations, folds, seed)
+    cells = [] if demonstrations is None else _folds(run, model, demonstrations, folds, seed)
     about: dict[str, object] = {
         "run": str(folder.resolve()),
         "model": weights_fingerprint(folder),
@@ -123,26 +152,25 @@ def evaluate_run(
     if not is_missing(out / "metrics.json"):
         earlier = read_object(out / "metrics.json").get("about")
         refuse_other_results(out / "metrics.json", out, earlier if isinstance(earlier, dict) else {}, about)
-    config = EvaluationConfig()
-    own = measure(model, demonstrations, run.held_out, robot, rng=np.random.default_rng(seed), config=config)
+    measured = take()
     subject = Subject("evaluate", task=run.demonstrations.name, model=run.model)
-    rows = _rows(subject, own)
+    rows = _rows(subject, measured.figures)
     judged = rows
     if cells:
         refitted = run_grid(
             _measure_fold, cells, jobs=jobs, backend="joblib", label=_fold_name, bars=bars, unit="folds"
         )
-        judged = _rows_over_folds(replace(subject, condition=OVER_FOLDS), [own, *refitted])
+        judged = _rows_over_folds(replace(subject, condition=OVER_FOLDS), [measured.figures, *refitted])
         rows = [*rows, *judged]
     found = findings(judged)
     missed = frozenset(one.measure for one in found)
-    evaluation = Evaluation(
-        rows, found, next_step(run.model, str(folder), str(dataset or run.demonstrations), missed)
-    )
+    advice = next_step(run.model, str(folder), str(dataset or run.demonstrations), missed)
+    evaluation = Evaluation(rows, found, advice, missing)
     document = as_document([*rows, findings_row(evaluation)], about)
     verdict = {"sentence": evaluation.verdict, "findings": [asdict(one) for one in found]}
-    write_json(out / "metrics.json", document | {"verdict": verdict, "next": evaluation.advice})
-    _draw(run, model, demonstrations, robot, config, out)
+    more = {"verdict": verdict, "next": advice} | ({"missing": missing} if missing else {})
+    write_json(out / "metrics.json", document | more)
+    _draw(run.model, model.decoder(0), measured, robot, out)
     return evaluation
 
 
@@ -152,6 +180,38 @@ def findings_row(evaluation: Evaluation) -> Row:
     return Row(
         "evaluate", "findings", "1", float(len(evaluation.found)), None, 1, task=first.task, model=first.model
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Measured:
+    """A run on its own split, and what is drawn of it.
+
+    Attributes:
+        figures: measured.
+        probe: on what.
+        starts: (N, c), contexts from which the effects of the axes are drawn.
+        path: (T, n), an episode to draw behind them, rad; None where there is none.
+    """
+
+    figures: Figures
+    probe: Probe
+    starts: FloatArray
+    path: FloatArray | None = None
+
+
+def _measure_all(
+    run: Run, model: LatentActionModel, demonstrations: Demonstrations, robot: Robot, seed: int
+) -> _Measured:
+    figures = measure(model, demonstrations, run.held_out, robot, rng=np.random.default_rng(seed))
+    shown = moving_episodes(demonstrations, run.held_out)[:1]
+    starts = spread_contexts(shown, model.context, DRAWN_STATES)
+    return _Measured(figures, take_probe(model, demonstrations, run.held_out), starts, shown[0].state)
+
+
+def _measure_kept(model: LatentActionModel, probe: Probe, robot: Robot) -> _Measured:
+    z = model.encode(probe.context, probe.action)
+    figures = measure_behaviour([model.decoder(index) for index in range(len(z))], z, probe, robot)
+    return _Measured(figures, probe, probe.states[evenly_spread(DRAWN_STATES, len(probe.states))])
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,25 +302,12 @@ def _rows_over_folds(subject: Subject, figures: Sequence[Figures]) -> list[Row]:
     return [summarise(subject, name, [one[name] for one in means]) for name in means[0]]
 
 
-def _draw(
-    run: Run,
-    model: LatentActionModel,
-    demonstrations: Demonstrations,
-    robot: Robot,
-    config: EvaluationConfig,
-    out: Path,
-) -> None:
-    """Figures of the first seed: distance against z, and where each axis leads."""
-    kind: ContextKind = model.context
-    decoder = model.decoder(0)
-    episodes = moving_episodes(demonstrations, run.held_out)
-    step_s = 1.0 / demonstrations.rate_hz
-    grid = axis_grid(config.grid)
-    states = spread_contexts(episodes, kind, config.states)
-    effects = axis_effects([decoder], states, grid, robot.chain, step_s)[0]
-    save_figure(properties_figure(effects, grid, run.model), out / "consistency.png")
-    shown = episodes[:1]
-    path = robot.chain.forward(shown[0].state).position
-    starts = spread_contexts(shown, kind, DRAWN_STATES)
-    figure = latent_effect_figure(decoder, starts, robot.chain, step_s, run.model, path)
+def _draw(name: str, decoder: Decoder, measured: _Measured, robot: Robot, out: Path) -> None:
+    """Figures of one seed: distance against z, and where each axis leads."""
+    chain, step_s = robot.chain, measured.probe.step_s
+    grid = axis_grid(EvaluationConfig.grid)
+    effects = axis_effects([decoder], measured.probe.states, grid, chain, step_s)[0]
+    save_figure(properties_figure(effects, grid, name), out / "consistency.png")
+    behind = None if measured.path is None else chain.forward(measured.path).position
+    figure = latent_effect_figure(decoder, measured.starts, chain, step_s, name, behind)
     save_figure(figure, out / "latent_axes.png")

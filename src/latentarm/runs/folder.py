@@ -1,42 +1,61 @@
-"""What a run folder says of itself: the dataset, the robot, the episodes that the model never saw."""
+"""What a run folder says of itself: its task, its robot, and the dataset that it was trained on.
+
+A run from elsewhere is read with bounded readers. Of what it keeps, nothing outside its folder is opened;
+the dataset that it names is opened for what it does not keep.
+"""
 
 import hashlib
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal, cast, get_args
 
 import numpy as np
 
 from latentarm.demonstrations.dataset import read_dataset
+from latentarm.demonstrations.info import goals_document, parse_goals
+from latentarm.demonstrations.validation import check_goal
 from latentarm.errors import UserError
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, WEIGHTS_NAME
+from latentarm.robots.assemble import restate
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.end_effector import AmbiguousEndEffectorError
 from latentarm.robots.limits_file import limits_document, parse_limits
+from latentarm.robots.model_copy import COPIES, load_copy
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, StatedLimits
+from latentarm.types import Demonstrations, FloatArray, Goal, StatedLimits
 from latentarm.untrusted.opening import is_missing, read_bytes
+
+TaskName = Literal["table_top", "held_out", "reach"]
+
+ROBOT: Final = "robot"
+"""Folder of a run that holds the copy of its robot's model."""
 
 _LARGEST_WEIGHTS: Final = 1 << 30
 """Bytes."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run:
     """A trained run, without its weights.
 
     Attributes:
         folder: the run folder.
-        demonstrations: the dataset that the model was trained on.
+        demonstrations: where the dataset was that the model was trained on.
         held_out: episodes that neither trained nor stopped it.
         model: the model's name.
         context: what its decoder sees, ``state`` or ``state_belief``.
         robot: name or model file of the robot, or "" where it is unknown.
         end_effector: which site, body or link of a model file is the end-effector.
-        limits: what was stated of the robot's limits, or None.
         fingerprint: of the dataset's states, so that another dataset is not taken for it.
+        limits: what was stated of the robot's limits, or None.
+        robot_model: name of the copy of the robot's model file in the folder `ROBOT`; None for a robot of the
+            catalogue, and where no copy was kept.
+        task: the task that it was trained for; None in runs of version 0.1.0 and before, which kept none.
+        goals: of the dataset.
+        routes: the ways of the held-out episodes, see `latentarm.tasks.replay.routes_of`; None where the run
+            does not keep them.
     """
 
     folder: Path
@@ -48,26 +67,35 @@ class Run:
     end_effector: str | None
     fingerprint: str
     limits: StatedLimits | None = None
+    robot_model: str | None = None
+    task: TaskName | None = None
+    goals: tuple[Goal, ...] = ()
+    routes: tuple[FloatArray, ...] | None = None
 
-    def dataset(self, moved_to: Path | None = None) -> Demonstrations:
+    def dataset(self, moved_to: Path | None = None, wanted: str = "", option: bool = True) -> Demonstrations:
         """The dataset that the model was trained on.
 
         Args:
             moved_to: where it lies now, if it was moved.
+            wanted: what the run does not keep and the dataset is needed for, for the message.
+            option: whether the user can say where it lies with ``--demonstrations``.
 
         Raises:
             UserError: it is not there, cannot be read, or is another dataset.
         """
         path = moved_to or self.demonstrations
         if is_missing(path):
-            raise UserError(
-                f"The dataset of {self.folder} is not at {path} any more: say where with --demonstrations."
+            keeps = f"{self.folder} does not keep {wanted}, and its dataset" if wanted else "The dataset"
+            remedy = (
+                "say where with --demonstrations" if option else "put it back there, or train the run again"
             )
+            raise UserError(f"{keeps} is not at {path} any more: {remedy}.")
         demonstrations = read_dataset(path)
         if fingerprint(demonstrations) != self.fingerprint:
+            named = "Name that one with --demonstrations" if option else "Put that one there"
             raise UserError(
-                f"{path} is not the dataset that {self.folder} was trained on: its states differ. Name that"
-                " one with --demonstrations, or train anew."
+                f"{path} is not the dataset that {self.folder} was trained on: its states differ. {named}, or"
+                " train anew."
             )
         return demonstrations
 
@@ -101,6 +129,10 @@ def run_facts(run: Run) -> dict[str, object]:
         "end_effector": run.end_effector,
         "limits": None if run.limits is None else limits_document(run.limits),
         "fingerprint": run.fingerprint,
+        "robot_model": run.robot_model,
+        "task": run.task,
+        "goals": goals_document(run.goals),
+        "routes": None if run.routes is None else [route.tolist() for route in run.routes],
     }
 
 
@@ -114,8 +146,16 @@ def read_run(folder: Path) -> Run:
     if is_missing(path):
         raise UserError(f"{folder} is not a run: it has no config.json (see `latentarm train`).")
     config = Section.of_file(path, CONFIG_LIMIT)
-    # Runs from before limits could be stated have none.
-    limits = config.plain().get("limits")
+    plain = config.plain()
+    limits = plain.get("limits")
+    # Runs of earlier versions lack the last four.
+    kept = {
+        key: plain[key] for key in ("robot_model", "task", "goals", "routes") if plain.get(key) is not None
+    }
+    dof = config.section("model").section("dimensions").integer("action", 1) if kept else 0
+    goals = parse_goals(kept.get("goals", []), str(path))
+    for index, goal in enumerate(goals):
+        check_goal(goal, index, dof, str(path))
     return Run(
         folder=folder,
         demonstrations=Path(config.text("demonstrations")),
@@ -126,15 +166,33 @@ def read_run(folder: Path) -> Run:
         end_effector=None if config.plain().get("end_effector") is None else config.text("end_effector"),
         fingerprint=config.text("fingerprint"),
         limits=None if limits is None else parse_limits(limits, f"{path}, limits"),
+        robot_model=config.choice("robot_model", COPIES) if "robot_model" in kept else None,
+        task=cast(TaskName, config.choice("task", get_args(TaskName))) if "task" in kept else None,
+        goals=goals,
+        routes=_routes(config, dof) if "routes" in kept else None,
     )
+
+
+def _routes(config: Section, dof: int) -> tuple[FloatArray, ...]:
+    """Arrays (K + 1, n), each with a start and at least one waypoint."""
+    routes: list[FloatArray] = []
+    for number, route in enumerate(config.entries("routes")):
+        one = Section(f"{config.where}, 'routes'", {str(number): route}).array(str(number), (None, dof))
+        if len(one) < 2:
+            raise UserError(f"{config.where}: route {number} has no waypoint: the run is damaged.")
+        routes.append(one)
+    return tuple(routes)
 
 
 def robot_of(run: Run) -> Robot:
     """The robot that a run's dataset was recorded on.
 
     Raises:
-        UserError: the dataset did not say, or that robot is not to be had here.
+        UserError: the dataset did not say, or the robot cannot be loaded.
     """
+    if run.robot_model is not None:
+        robot = load_copy(run.folder / ROBOT / run.robot_model, run.end_effector)
+        return robot if run.limits is None else restate(robot, run.limits)
     if not run.robot:
         raise UserError(
             f"{run.demonstrations} does not say which robot it is of: import it again with --robot."

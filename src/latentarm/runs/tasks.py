@@ -1,57 +1,73 @@
 """The task that a run is driven at: the one it was trained for, or another."""
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
+from pathlib import Path
 
 import numpy as np
 
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
-from latentarm.runs.folder import Run, robot_of
+from latentarm.runs.folder import Run, TaskName, robot_of
 from latentarm.tasks.reach import Reach
-from latentarm.tasks.replay import Replay
-from latentarm.tasks.table_top import TableTop
+from latentarm.tasks.replay import Replay, routes_of
+from latentarm.tasks.table_top import ITEMS, TableTop
 from latentarm.tasks.task import Task
-from latentarm.types import Demonstrations, StatedLimits
-
-TaskName = Literal["table_top", "held_out", "reach"]
+from latentarm.types import Goal, StatedLimits
 
 
 def task_of_run(
     run: Run,
-    demonstrations: Demonstrations,
     name: TaskName | None = None,
     robot: str | None = None,
     end_effector: str | None = None,
     limits: StatedLimits | None = None,
+    dataset: Path | None = None,
+    *,
+    option: bool = True,
 ) -> Task:
     """The task that is asked for, or else the one that a run was trained for.
 
+    The dataset is read only for what the run does not keep: of runs of earlier versions the task and the
+    goals, and the held-out episodes where another robot or end-effector is to follow them.
+
     Args:
         run: the run.
-        demonstrations: its dataset.
-        name: the task; by the dataset's goals where None.
+        name: the task; that of the run where None.
         robot: a robot's name or model file; that of the run where None.
         end_effector: site, body or link of a model file; that of the run where None.
         limits: what is stated of the robot's limits; what the run states where None.
+        dataset: where the run's dataset lies now, if it was moved.
+        option: whether the user can say so with ``--demonstrations``, for messages.
 
     Raises:
-        UserError: the robot is not to be had, or the task does not suit it, or has other goals than those
-            that the run's decoder sees a belief over.
+        UserError: the robot or the dataset cannot be loaded, or the task does not suit the robot, or has
+            other goals than those that the run's decoder sees a belief over.
     """
-    chosen = name or _usual_task(demonstrations)
+    if run.task is None:
+        goals = run.dataset(dataset, "its task", option).goals
+        run = replace(run, goals=goals, task=usual_task(goals))
+    chosen = name or run.task
     if chosen == "table_top":
         task: Task = _table_top(robot, end_effector, limits)
     else:
         if robot is None:
-            chosen_tool, stated = end_effector or run.end_effector, limits or run.limits
-            arm = robot_of(replace(run, end_effector=chosen_tool, limits=stated))
+            stated = replace(run, end_effector=end_effector or run.end_effector, limits=limits or run.limits)
+            arm = robot_of(stated)
         else:
             arm = load_robot(robot, end_effector, limits)
-        task = Reach(arm) if chosen == "reach" else Replay(arm, select_episodes(demonstrations, run.held_out))
+        if chosen == "reach":
+            task = Reach(arm)
+        else:
+            own = robot is None and end_effector in (None, run.end_effector)
+            routes = run.routes if own else None
+            if routes is None:
+                demonstrations = run.dataset(dataset, "its held-out episodes", option)
+                routes = routes_of(arm, select_episodes(demonstrations, run.held_out))
+            task = Replay(arm, routes)
     if run.context == "state_belief":
-        _check_goals(run, demonstrations, task)
+        _check_goals(run, task)
     return task
 
 
@@ -90,16 +106,16 @@ def _table_top(robot: str | None, end_effector: str | None, limits: StatedLimits
     return TableTop()
 
 
-def _usual_task(demonstrations: Demonstrations) -> TaskName:
-    goals = {goal.name for goal in demonstrations.goals}
-    return "table_top" if goals == {goal.name for goal in TableTop().goals} else "held_out"
+def usual_task(goals: Sequence[Goal]) -> TaskName:
+    """The task of a dataset with these goals."""
+    return "table_top" if {goal.name for goal in goals} == set(ITEMS) else "held_out"
 
 
-def _check_goals(run: Run, demonstrations: Demonstrations, task: Task) -> None:
+def _check_goals(run: Run, task: Task) -> None:
     """A decoder that sees a belief knows only the goals that it was trained with."""
-    trained = [goal.configuration for goal in demonstrations.goals]
+    trained = [goal.configuration for goal in run.goals]
     here = [goal.configuration for goal in task.goals]
-    if len(trained) != len(here) or not np.allclose(trained, here, atol=1e-6):
+    if np.shape(trained) != np.shape(here) or not np.allclose(trained, here, atol=1e-6):
         raise UserError(
             f"{run.folder} sees a belief over the goals of its dataset, and the task {task.name} has others:"
             " drive it on the task that it was trained for."

@@ -22,11 +22,19 @@ from latentarm.models.model import LatentActionModel
 from latentarm.models.neural import NeuralModel
 from latentarm.models.training import Report
 from latentarm.robots.catalogue import ROBOTS, load_recorded_robot
+from latentarm.robots.model_copy import copy_model
+from latentarm.robots.robot import Robot
 from latentarm.runs.checks import check_seed
-from latentarm.runs.folder import Run, fingerprint, git_commit, run_facts
-from latentarm.types import Demonstrations, Row
+from latentarm.runs.folder import ROBOT, Run, fingerprint, git_commit, run_facts
+from latentarm.runs.samples import ALIGN_STREAM, save_samples, take_samples
+from latentarm.runs.tasks import usual_task
+from latentarm.tasks.replay import routes_of
+from latentarm.types import Demonstrations, FloatArray, Row
 
 CHECKPOINT = "training.safetensors"
+
+MOST_NUMBERS = 200_000
+"""In the routes of a run's ``config.json``."""
 
 HOLD_OUT_STREAM = 1
 """Keeps this choice apart from everything else that is drawn from the same seed."""
@@ -106,12 +114,13 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
     """
     _check_folder(config)
     demonstrations = prepared(read_dataset(config.demonstrations), config.context)
-    chain = None
+    robot = None
     if config.end_effector is not None:
         demonstrations = replace(demonstrations, end_effector=config.end_effector)
     if demonstrations.robot in ROBOTS or Path(demonstrations.robot).is_file():
         # Says now what evaluating would say later.
-        chain = load_recorded_robot(demonstrations, str(config.demonstrations)).chain
+        robot = load_recorded_robot(demonstrations, str(config.demonstrations))
+    chain = None if robot is None else robot.chain
     training, held_out = split_episodes(
         demonstrations, config.held_out, np.random.default_rng([HOLD_OUT_STREAM, config.seed])
     )
@@ -126,6 +135,7 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
             checkpoint=checkpoint,
             report=report,
         )
+    said = [str(warning.message) for warning in caught]
     run = Run(
         folder=config.out,
         demonstrations=config.demonstrations,
@@ -133,12 +143,20 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
         model=config.model,
         context=config.context,
         robot=demonstrations.robot,
-        end_effector=demonstrations.end_effector,
-        limits=demonstrations.limits,
+        end_effector=demonstrations.end_effector if robot is None else robot.end_effector,
         fingerprint=fingerprint(demonstrations),
+        limits=demonstrations.limits,
+        task=usual_task(demonstrations.goals),
+        goals=demonstrations.goals,
     )
-    said = [str(warning.message) for warning in caught]
-    facts = run_facts(run) | {"goal_entropy": config.goal_entropy}
+    facts: dict[str, object] = {"goal_entropy": config.goal_entropy}
+    if robot is not None:
+        rng = np.random.default_rng([ALIGN_STREAM, config.seed])
+        samples = take_samples(model, demonstrations, training, held_out, robot.chain, rng)
+        facts["samples"] = save_samples(config.out, samples)
+        routes = _routes(robot, select_episodes(demonstrations, held_out))
+        run = replace(run, robot_model=_copy_of(robot, config.out), routes=routes)
+    facts |= run_facts(run)
     model.save(config.out, run={**facts, "warnings": said, "git_commit": git_commit()})
     checkpoint.unlink(missing_ok=True)
     for warning in caught:
@@ -196,6 +214,27 @@ def _term(config: TrainConfig, demonstrations: Demonstrations, chain: Chain | No
         )
     goals = np.stack([goal.configuration for goal in demonstrations.goals])
     return GoalEntropy(goals, weight=config.goal_entropy, chain=chain)
+
+
+def _routes(robot: Robot, held_out: Demonstrations) -> tuple[FloatArray, ...] | None:
+    """The ways of the held-out episodes; None where there are none, or more than a document should hold."""
+    try:
+        routes = routes_of(robot, held_out)
+    except UserError:
+        return None
+    return routes if sum(route.size for route in routes) <= MOST_NUMBERS else None
+
+
+def _copy_of(robot: Robot, run: Path) -> str | None:
+    """Copy the robot's model into a run; its name there, None for a robot of the catalogue."""
+    if robot.model_path is None:
+        return None
+    try:
+        return copy_model(robot, run / ROBOT)
+    except UserError as error:
+        message = f"{run} keeps no copy of its robot and needs {robot.model_path}: {error}"
+        warnings.warn(message, stacklevel=3)
+        return None
 
 
 def prepared(demonstrations: Demonstrations, context: str) -> Demonstrations:

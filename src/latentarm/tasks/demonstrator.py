@@ -1,14 +1,16 @@
 """A simulated person who leads an arm by hand along strokes (kinesthetic demonstrations)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
-from latentarm.types import FloatArray
+from latentarm.tasks.task import Task
+from latentarm.types import Demonstrations, Episode, FloatArray
 
 _FINE = 400
 """Samples with which a stroke's timing is integrated before it is sampled at the rate asked for."""
@@ -65,6 +67,41 @@ def demonstrate(
         rest = rng.integers(0, round(hand.pause_s * hand.rate_hz), endpoint=True)
         parts.append(np.concatenate([moved, np.repeat(moved[-1:], rest, axis=0)]))
     return np.concatenate(parts)
+
+
+def demonstrate_goals(
+    task: Task, stroke: Callable[[int], FloatArray], verb: str, episodes: int, rng: np.random.Generator
+) -> Demonstrations:
+    """Demonstrations of a task, each of one stroke to a goal, the goals in turn.
+
+    Args:
+        task: what is demonstrated.
+        stroke: from the index of a goal to the configurations (V, n) to pass on the way to it, rad.
+        verb: what is done at a goal, for the episodes' texts.
+        episodes: how many.
+        rng: source of all variation.
+
+    Raises:
+        UserError: fewer than one episode is asked for.
+    """
+    if episodes < 1:
+        raise UserError(f"Ask for at least one demonstration, not {episodes}.")
+    hand, robot, goals = Hand(), task.robot, task.goals
+    shown: list[Episode] = []
+    for index in range(episodes):
+        goal = index % len(goals)
+        state = demonstrate(robot.chain, task.sample_start(goal, rng), (stroke(goal),), hand, rng)
+        timestamp = np.arange(len(state)) / hand.rate_hz
+        shown.append(Episode(state=state, timestamp=timestamp, task=f"{verb} {goals[goal].name}"))
+    return Demonstrations(
+        episodes=tuple(shown),
+        rate_hz=hand.rate_hz,
+        joint_names=robot.joint_names,
+        robot=robot.name,
+        goals=goals,
+        end_effector=robot.end_effector,
+        limits=robot.stated_limits,
+    )
 
 
 def _stroke(chain: Chain, via: FloatArray, hand: Hand, rng: np.random.Generator) -> FloatArray:

@@ -1,16 +1,15 @@
 """Any arm, reachable poses: the task for a robot of which nothing else is known."""
 
-from functools import cached_property
 from typing import final
 
 import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.tasks.demonstrator import Hand, demonstrate
+from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import Task
 from latentarm.tasks.tolerance import within
-from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Pose
+from latentarm.types import Demonstrations, FloatArray, Goal, Pose
 
 SPREAD = 0.5
 """How far a goal's joints lie from home at most, rad."""
@@ -42,9 +41,8 @@ class Reach(Task):
         if goals < 1:
             raise UserError(f"Reaching needs at least one goal, not {goals}.")
         self._robot = robot
-        self._count = goals
-        self._seed = seed
-        _ = self._goals  # raises now, not in the first drive, if there are no goals
+        rng = np.random.default_rng(seed)
+        self._goals = tuple(self._goal(f"goal {index + 1}", rng) for index in range(goals))
 
     @property
     def name(self) -> str:
@@ -103,29 +101,9 @@ class Reach(Task):
         Raises:
             UserError: fewer than one episode is asked for.
         """
-        if episodes < 1:
-            raise UserError(f"Ask for at least one demonstration, not {episodes}.")
-        hand = Hand()
-        return Demonstrations(
-            episodes=tuple(self._episode(index % self._count, hand, rng) for index in range(episodes)),
-            rate_hz=hand.rate_hz,
-            joint_names=self.robot.joint_names,
-            robot=self.robot.name,
-            goals=self.goals,
-            end_effector=self.robot.end_effector,
-            limits=self.robot.stated_limits,
+        return demonstrate_goals(
+            self, lambda goal: self.goals[goal].configuration[None], "reach", episodes, rng
         )
-
-    def _episode(self, goal: int, hand: Hand, rng: np.random.Generator) -> Episode:
-        stroke = self.goals[goal].configuration[None]
-        state = demonstrate(self.robot.chain, self.sample_start(goal, rng), (stroke,), hand, rng)
-        timestamp = np.arange(len(state)) / hand.rate_hz
-        return Episode(state=state, timestamp=timestamp, task=f"reach {self.goals[goal].name}")
-
-    @cached_property
-    def _goals(self) -> tuple[Goal, ...]:
-        rng = np.random.default_rng(self._seed)
-        return tuple(self._goal(f"goal {index + 1}", rng) for index in range(self._count))
 
     def _goal(self, name: str, rng: np.random.Generator) -> Goal:
         """A goal that is not where the arm stands at home."""

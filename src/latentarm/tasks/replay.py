@@ -1,6 +1,6 @@
 """Where demonstrations began and ended, as a task: to see whether a model can do what people did."""
 
-from dataclasses import replace
+from collections.abc import Sequence
 from typing import final
 
 import numpy as np
@@ -9,6 +9,7 @@ from latentarm.errors import UserError
 from latentarm.kinematics.rotations import angle_between
 from latentarm.kinematics.stillness import moving_range
 from latentarm.robots.robot import Robot
+from latentarm.tasks.demonstrator import demonstrate_goals
 from latentarm.tasks.task import Task
 from latentarm.tasks.tolerance import within
 from latentarm.types import Demonstrations, FloatArray, Goal, Pose
@@ -20,6 +21,30 @@ RADIAN = 0.2
 """What a radian of turning counts as way, m."""
 
 
+def routes_of(robot: Robot, demonstrations: Demonstrations) -> tuple[FloatArray, ...]:
+    """The ways that demonstrations went.
+
+    Args:
+        robot: the arm that was recorded.
+        demonstrations: the episodes to follow; those in which the tool goes nowhere are left out.
+
+    Returns:
+        For each episode its start and then the waypoints along it, the last one its end: (K + 1, n), rad.
+
+    Raises:
+        UserError: the tool goes nowhere in any of them.
+    """
+    moving = [one.state[slice(*moving_range(one.state, one.timestamp))] for one in demonstrations.episodes]
+    routes = tuple(_route(robot, path) for path in moving if len(path) and _leaves(robot, path))
+    if not routes:
+        tool = robot.chain.tools[0].name
+        raise UserError(
+            f"In none of these episodes does {tool} of {robot.name} go anywhere, so there is nothing to"
+            " follow: see whether it is the end-effector that was recorded."
+        )
+    return routes
+
+
 @final
 class Replay(Task):
     """Drive the way that demonstrations went, from where they began, through poses along them.
@@ -29,25 +54,12 @@ class Replay(Task):
 
     Args:
         robot: the arm that was recorded.
-        demonstrations: the episodes to follow; those in which the tool goes nowhere are left out.
-
-    Raises:
-        UserError: the tool goes nowhere in any of them.
+        routes: one or more, see `routes_of`.
     """
 
-    def __init__(self, robot: Robot, demonstrations: Demonstrations) -> None:
+    def __init__(self, robot: Robot, routes: Sequence[FloatArray]) -> None:
         self._robot = robot
-        self._demonstrations = demonstrations
-        moving = [
-            one.state[slice(*moving_range(one.state, one.timestamp))] for one in demonstrations.episodes
-        ]
-        self._paths = tuple(path for path in moving if len(path) and self._leaves(path))
-        if not self._paths:
-            tool = robot.chain.tools[0].name
-            raise UserError(
-                f"In none of these episodes does {tool} of {robot.name} go anywhere, so there is nothing to"
-                " follow: see whether it is the end-effector that was recorded."
-            )
+        self._routes = tuple(routes)
 
     @property
     def name(self) -> str:
@@ -64,8 +76,8 @@ class Replay(Task):
         """Where each episode ended."""
         chain = self._robot.chain
         return tuple(
-            Goal(f"end {index + 1}", path[-1], chain.forward(path[-1]))
-            for index, path in enumerate(self._paths)
+            Goal(f"end {index + 1}", route[-1], chain.forward(route[-1]))
+            for index, route in enumerate(self._routes)
         )
 
     @property
@@ -80,7 +92,7 @@ class Replay(Task):
 
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:
         """Where the goal's episode began, (n,), rad."""
-        return self._path(goal)[0]
+        return self._route(goal)[0]
 
     def waypoints(self, goal: int, manner: str) -> tuple[Pose, ...]:
         """Poses along the goal's episode, the last one its end.
@@ -90,39 +102,39 @@ class Replay(Task):
         """
         if manner not in self.manners:
             raise UserError(f"A demonstration can be followed, not {manner!r}.")
-        path = self._path(goal)
-        poses = self._robot.chain.forward(path)
-        turned = angle_between(poses.rotation[1:], poses.rotation[:-1])
-        way = np.cumsum(np.linalg.norm(np.diff(poses.position, axis=0), axis=1) + RADIAN * turned)
-        count = max(1, round(way[-1] / WAYPOINT_SPACING))
-        at = np.searchsorted(way, way[-1] * np.arange(1, count + 1) / count - 1e-9) + 1
-        return tuple(Pose(poses.position[index], poses.rotation[index]) for index in at)
+        poses = self._robot.chain.forward(self._route(goal)[1:])
+        return tuple(Pose(*pose) for pose in zip(poses.position, poses.rotation, strict=True))
 
     def reached(self, pose: Pose, waypoint: Pose) -> bool:
         """Within 0.03 m and 20 degrees."""
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """The first of the episodes as they are.
+        """Along the routes in turn, as a simulated person would.
 
         Raises:
-            UserError: there are not so many.
+            UserError: fewer than one episode is asked for.
         """
-        if not 1 <= episodes <= len(self._demonstrations.episodes):
-            raise UserError(
-                f"There are {len(self._demonstrations.episodes)} episodes to follow, not {episodes}."
-            )
-        return replace(self._demonstrations, episodes=self._demonstrations.episodes[:episodes])
+        return demonstrate_goals(self, lambda goal: self._route(goal)[1:], "follow", episodes, rng)
 
-    def _leaves(self, path: FloatArray) -> bool:
-        """Whether the tool is ever anywhere but where it began."""
-        poses = self._robot.chain.forward(path)
-        start = Pose(poses.position[0], poses.rotation[0])
-        return not all(
-            self.reached(start, Pose(*pose)) for pose in zip(poses.position, poses.rotation, strict=True)
-        )
+    def _route(self, goal: int) -> FloatArray:
+        if not 0 <= goal < len(self._routes):
+            raise UserError(f"There are episodes 0 to {len(self._routes) - 1} to follow, not {goal}.")
+        return self._routes[goal]
 
-    def _path(self, goal: int) -> FloatArray:
-        if not 0 <= goal < len(self._paths):
-            raise UserError(f"There are episodes 0 to {len(self._paths) - 1} to follow, not {goal}.")
-        return self._paths[goal]
+
+def _route(robot: Robot, path: FloatArray) -> FloatArray:
+    """A start and waypoints (K + 1, n) out of the states (T, n) of an episode."""
+    poses = robot.chain.forward(path)
+    turned = angle_between(poses.rotation[1:], poses.rotation[:-1])
+    way = np.cumsum(np.linalg.norm(np.diff(poses.position, axis=0), axis=1) + RADIAN * turned)
+    count = max(1, round(way[-1] / WAYPOINT_SPACING))
+    at = np.searchsorted(way, way[-1] * np.arange(1, count) / count - 1e-9) + 1
+    return path[[0, *at, -1]]
+
+
+def _leaves(robot: Robot, path: FloatArray) -> bool:
+    """Whether the tool is ever anywhere but where it began."""
+    poses = robot.chain.forward(path)
+    start = Pose(poses.position[0], poses.rotation[0])
+    return not all(within(start, Pose(*pose)) for pose in zip(poses.position, poses.rotation, strict=True))

@@ -30,7 +30,7 @@ from latentarm.studies.compare.cell import CellResult
 from latentarm.studies.compare.datasets import Dataset
 from latentarm.studies.compare.streams import Stream
 from latentarm.studies.streams import sequence
-from latentarm.tasks.replay import Replay
+from latentarm.tasks.replay import Replay, routes_of
 from latentarm.types import Row
 
 BESIDE: Final = "cvae"
@@ -130,7 +130,7 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
     with threadpool_limits(limits=1):
         began = perf_counter()
         robot = load_recorded_robot(cell.dataset.demonstrations)
-        task = Replay(robot, select_episodes(cell.dataset.demonstrations, [cell.episode]))
+        task = Replay(robot, routes_of(robot, select_episodes(cell.dataset.demonstrations, [cell.episode])))
         controller: Controller = (
             EndEffectorController(robot) if cell.decoder is None else LatentController(cell.decoder)
         )

@@ -1,0 +1,158 @@
+"""Samples of the demonstrations that a run keeps: to ask people about, and to measure its model on."""
+
+import hashlib
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, final
+
+import numpy as np
+from safetensors.numpy import save
+
+from latentarm.alignment.answers import Motions
+from latentarm.demonstrations.split import select_episodes
+from latentarm.errors import UserError
+from latentarm.files import written_whole
+from latentarm.kinematics.chain import Chain
+from latentarm.metrics.evaluation import Probe, take_probe
+from latentarm.metrics.samples import StartGoalPairs
+from latentarm.models.model import LatentActionModel
+from latentarm.models.reading import Section
+from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors
+from latentarm.runs.questions import shown
+from latentarm.types import Demonstrations, FloatArray, IntArray
+
+SAMPLES_NAME: Final = "samples.safetensors"
+ALIGN_STREAM: Final = 3
+"""Keeps the draws of what a person is asked about apart from everything else that a seed draws."""
+
+MOST_ROWS: Final = 100_000
+"""Of an array; a run of ours keeps some thousands."""
+
+_WIDTHS: Final = {
+    "unlabelled": "context",
+    "motions.start": "action",
+    "motions.end": "action",
+    "motions.belief": "belief",
+    "probe.start": "context",
+    "probe.goal": "action",
+    "probe.states": "context",
+    "probe.context": "context",
+    "probe.action": "action",
+}
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """What a run keeps of its demonstrations.
+
+    Attributes:
+        motions: that a person may be asked about; None where no demonstration moves for long enough.
+        unlabelled: (M, c), contexts in which the priors of an alignment shall hold.
+        probe: held-out samples for `latentarm evaluate`; None where nothing moves in the held-out episodes.
+    """
+
+    motions: Motions | None
+    unlabelled: FloatArray
+    probe: Probe | None
+
+
+def take_samples(
+    model: LatentActionModel,
+    demonstrations: Demonstrations,
+    training: IntArray,
+    held_out: IntArray,
+    chain: Chain,
+    rng: np.random.Generator,
+) -> Samples:
+    """Choose what a run keeps.
+
+    Args:
+        model: the trained model.
+        demonstrations: the dataset.
+        training: indices of the episodes that a person may be asked about.
+        held_out: indices of the episodes that the model has not seen.
+        chain: the arm.
+        rng: decides which motions.
+    """
+    motions, unlabelled, probe = None, np.empty((0, model.trained_.dimensions.context)), None
+    # What cannot be taken is not kept; `align` and `evaluate` say why once they need it.
+    with suppress(UserError):
+        motions, unlabelled = shown(select_episodes(demonstrations, training), model.context, chain, rng)
+    with suppress(UserError):
+        probe = take_probe(model, demonstrations, held_out.tolist())
+    return Samples(motions, unlabelled, probe)
+
+
+def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
+    """Write samples to a run's folder.
+
+    Returns:
+        What `load_samples` needs, for the key ``samples`` of the run's ``config.json``.
+
+    Raises:
+        UserError: the file cannot be written.
+    """
+    tensors = {"unlabelled": samples.unlabelled}
+    motions, probe = samples.motions, samples.probe
+    if motions is not None:
+        tensors |= {
+            "motions.start": motions.start,
+            "motions.end": motions.end,
+            "motions.belief": motions.belief,
+        }
+    if probe is not None:
+        tensors |= {
+            "probe.start": probe.pairs.start,
+            "probe.goal": probe.pairs.goal,
+            "probe.states": probe.states,
+            "probe.context": probe.context,
+            "probe.action": probe.action,
+        }
+    content = save({name: np.ascontiguousarray(tensors[name]) for name in sorted(tensors)})
+    with written_whole(folder / SAMPLES_NAME) as part:
+        part.write_bytes(content)
+    return {
+        "shapes": {name: list(array.shape) for name, array in tensors.items()},
+        "duration_s": None if motions is None else motions.duration_s,
+        "step_s": None if probe is None else probe.step_s,
+        "sha256": hashlib.sha256(content).hexdigest(),
+    }
+
+
+def load_samples(folder: Path) -> Samples | None:
+    """Read and check what a run keeps; None for a run of version 0.1.0 or before, which kept nothing.
+
+    Raises:
+        UserError: a file is missing or damaged.
+    """
+    config = Section.of_file(folder / CONFIG_NAME, CONFIG_LIMIT)
+    if config.plain().get("samples") is None:
+        return None
+    section = config.section("samples")
+    named = section.section("shapes")
+    sizes = config.section("model").section("dimensions")
+    width = {"context": sizes.integer("context", 1), "action": sizes.integer("action", 1)}
+    width["belief"] = width["context"] - width["action"]
+    shapes: dict[str, tuple[int, ...]] = {}
+    for name in named.values:
+        rows, columns = named.integers(name, 0, length=2)
+        if rows > MOST_ROWS or columns != width.get(_WIDTHS.get(name, "")):
+            raise UserError(f"{named.where}: '{name}' has the shape {rows}, {columns}: the run is damaged.")
+        shapes[name] = (rows, columns)
+    tensors: dict[str, Any] = read_tensors(folder / SAMPLES_NAME, shapes, section.text("sha256"))
+    motions = probe = None
+    try:
+        if section.plain().get("duration_s") is not None:
+            duration_s = float(section.array("duration_s", ()))
+            start, end, belief = (tensors[f"motions.{name}"] for name in ("start", "end", "belief"))
+            motions = Motions(start, end, duration_s, belief)
+        if section.plain().get("step_s") is not None:
+            pairs = StartGoalPairs(tensors["probe.start"], tensors["probe.goal"])
+            states, context, action = (tensors[f"probe.{name}"] for name in ("states", "context", "action"))
+            probe = Probe(pairs, states, context, action, float(section.array("step_s", ())))
+        return Samples(motions, tensors["unlabelled"], probe)
+    except KeyError as error:
+        raise UserError(f"{folder / SAMPLES_NAME} lacks {error}: the run is damaged.") from error
