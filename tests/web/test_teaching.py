@@ -154,7 +154,7 @@ def test_a_name_that_is_taken_and_too_few_episodes_are_refused(tmp_path):
     "frame",
     [
         '{"type":"train","name":"a","model":"pca","latent_dim":3,"episodes":[1]}',
-        '{"type":"train","name":"a","model":"os","latent_dim":2,"episodes":[1]}',
+        '{"type":"train","name":"a","model":"../os","latent_dim":2,"episodes":[1]}',
         '{"type":"train","name":"a","model":"pca","latent_dim":2,"episodes":["1"]}',
         '{"type":"train","name":"a","model":"pca","latent_dim":2,"episodes":[1],"out":"/tmp"}',
         '{"type":"run"}',

@@ -7,6 +7,7 @@ import time
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Annotated, Final, Literal, final
 
@@ -17,7 +18,7 @@ from latentarm.control.journal import read_journal
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations
 from latentarm.web.jobs.job import Job, JobMessage, Wire
-from latentarm.web.protocol.learning_messages import ModelChoice, Training, TrainingPhase
+from latentarm.web.protocol.learning_messages import Training, TrainingPhase
 
 RATE_HZ: Final = 10.0
 """Samples a second of motion that a model is trained on: an action then looks half a second ahead."""
@@ -31,12 +32,20 @@ SHORTEST_S: Final = 1.0
 STATE_NOISE_RAD: Final = 0.01
 """As `latentarm train` has it."""
 
+_OWN_MODELS: Final = ("cvae", "cae", "homogeneous", "pca", "ae", "vae", "cae_zero", "scl", "isometric")
+
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
 _TELL_EVERY_S: Final = 0.1
 _COLLAPSED: Final = (
     "One axis of the stick moves hardly anything, because the episodes differ too little: choose one axis, or"
     " record motions that differ."
 )
+
+
+def model_names() -> tuple[str, ...]:
+    """Names in the catalogue of models, the usual one first. Nothing of a model is loaded for it."""
+    plugins = (entry.name for entry in entry_points(group="latentarm.models"))
+    return tuple(dict.fromkeys((*_OWN_MODELS, *sorted(plugins))))
 
 
 @final
@@ -60,7 +69,7 @@ class TrainingPlan:
     journal: Path
     episodes: tuple[int, ...]
     name: str
-    model: ModelChoice
+    model: str
     latent_dim: int
     out: Path
     end_effector: str | None = None
@@ -73,6 +82,10 @@ class TrainingPlan:
             )
         if self.dataset.exists() or self.run.exists():
             raise UserError(f"There is a run or a dataset named {self.name} already: choose another name.")
+        if self.model not in model_names():
+            raise UserError(
+                f"There is no model named {self.model}: choose one of {', '.join(model_names())}."
+            )
         chosen = len(set(self.episodes))
         if chosen < FEWEST:
             raise UserError(

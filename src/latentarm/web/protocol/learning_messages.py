@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from latentarm.web.protocol.personalise_messages import Personalise
 
 RunName = Annotated[str, Field(min_length=1, max_length=80)]
-ModelChoice = Literal["cvae", "cae", "homogeneous", "pca"]
+ModelName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
 TrainingPhase = Literal["exporting", "training", "done", "failed", "cancelled"]
 
 
@@ -30,7 +30,7 @@ class Train(WorkshopMessage):
 
     type: Literal["train"]
     name: Annotated[str, Field(max_length=200)]
-    model: ModelChoice
+    model: ModelName
     latent_dim: Literal[1, 2]
     episodes: Annotated[tuple[Annotated[int, Field(ge=1, le=2**31)], ...], Field(max_length=300)]
 

@@ -4,20 +4,21 @@ import asyncio
 import socket
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
-from pathlib import Path
 from typing import Any, Final
 
 import uvicorn
 from fastapi import FastAPI
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
-from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from latentarm.robots.notices import notices
 from latentarm.web.arm_process.drive_setup import Setting, load_setting
+from latentarm.web.jobs.training import model_names
+from latentarm.web.protocol.messages import FRAME_LIMIT
 from latentarm.web.server.addresses import TeleopConfig, check_certificate, listen, origin
+from latentarm.web.server.assets import Assets
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
 from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.drive_socket import DriveSocket
@@ -25,14 +26,11 @@ from latentarm.web.server.frames import MeteredSocket
 from latentarm.web.server.learning import Bench
 from latentarm.web.server.loaded_run import Stage
 from latentarm.web.server.logs import LOGGING
+from latentarm.web.server.pages import PAGES, Pages
 from latentarm.web.server.run_list import Shelf
 from latentarm.web.server.security import DRIVE, ENTRY, Gate, Keys
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
-
-_PAGES: Final = Path(__file__).parent.parent / "pages"
-_FRAMEWORK_FRAME_LIMIT: Final = 1 << 16
-"""NiceGUI's own socket carries forms; the one that drives is held to `messages.FRAME_LIMIT`."""
 
 STOPPED_BY_POST: Final = "Somebody pressed Stop."
 
@@ -71,7 +69,6 @@ def serve(
     control = ControlProcess(config.spec)
     try:
         app = build_app(setting, control)
-        _add_pages(app)
         gate = gated(app, control, config, port, keys, invite)
         first = link()
         say(f"The page is at {first} (end with Ctrl-C).")
@@ -96,7 +93,7 @@ def serve(
 
 
 def build_app(setting: Setting, control: ControlProcess) -> FastAPI:
-    """The application without its pages: the socket that drives, scene, and static files.
+    """The application: the pages and what they load, the scene, and the socket that drives.
 
     Args:
         setting: what is driven.
@@ -108,6 +105,9 @@ def build_app(setting: Setting, control: ControlProcess) -> FastAPI:
     states = States(Stage(setting, shelf.name_of(spec.run)), control, sessions, shelf)
     bench = Bench(control, states, shelf, spec.out)
     drive = DriveSocket(control, states, sessions, bench)
+
+    assets = Assets()
+    pages = Pages(assets, model_names())
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
@@ -135,7 +135,9 @@ def build_app(setting: Setting, control: ControlProcess) -> FastAPI:
     app.add_api_websocket_route(DRIVE, drive)
     app.add_route("/scene.json", describe)
     app.add_route("/mesh/{number}", mesh)
-    app.mount("/static", StaticFiles(directory=_PAGES))
+    for page in PAGES:
+        app.add_route(page.path, pages.answer)
+    app.add_route("/static/{version}/{name:path}", assets.answer)
     return app
 
 
@@ -190,7 +192,7 @@ def server_config(
         http="h11",
         h11_max_incomplete_event_size=HEAD_LIMIT,
         ws=MeteredSocket,
-        ws_max_size=_FRAMEWORK_FRAME_LIMIT,
+        ws_max_size=FRAME_LIMIT,
         ws_ping_interval=5.0,
         ws_ping_timeout=10.0,
         ws_per_message_deflate=False,
@@ -232,13 +234,3 @@ async def serve_on(listening: socket.socket, server: uvicorn.Server, limits: Con
         accepting.cancel()
     if accepting.done() and not accepting.cancelled():
         accepting.result()
-
-
-def _add_pages(app: FastAPI) -> None:
-    # NiceGUI takes a second to load, and only a server that shows pages needs it.
-    from nicegui import ui
-
-    from latentarm.web.server.pages import add_pages
-
-    add_pages()
-    ui.run_with(app, title="latentarm", tailwind=False, show_welcome_message=False)

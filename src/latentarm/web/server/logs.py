@@ -7,7 +7,7 @@ from latentarm.untrusted.terminal import one_line, visible
 
 _TRACEBACKS: Final = logging.Formatter()
 
-_OTHERS: Final = ("uvicorn", "uvicorn.error", "nicegui", "engineio.server", "socketio.server")
+_OTHERS: Final = ("uvicorn", "uvicorn.error")
 """Loggers of libraries; handlers of their own, which some have, are taken from them."""
 
 LOGGING: Final[dict[str, Any]] = {

@@ -1,16 +1,16 @@
-"""The pages as NiceGUI serves them: semantic HTML, to whose ids the modules in ``pages/`` attach."""
+"""The pages: HTML made by Jinja2 from the templates in ``pages/``, once for each language."""
 
-import re
+import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
-from importlib.resources import files
 from typing import Final, final
 
-from nicegui import ui
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, Response
 
-_STATIC: Final = files("latentarm.web").joinpath("pages")
-_PART: Final = re.compile(r"\{([a-z_/]+\.html)\}")
-"""Where a page holds what others hold too: the name of a file in ``pages/``."""
+from latentarm.web.server.assets import FOLDER, Assets
+from latentarm.web.words.catalogue import COOKIE, Words, chosen_language, languages
 
 
 @final
@@ -20,70 +20,94 @@ class Page:
 
     Attributes:
         path: where it is served.
-        title: its name in the navigation and in the browser's title.
-        fragment: the file in ``pages/`` that holds its body.
-        script: its module in ``pages/``.
-        styles: its style sheets in ``pages/``, besides the common ones.
+        name: of its folder in ``pages/``, of the template, script and style sheet in it, and of its words.
     """
 
     path: str
+    name: str
+
+    @property
+    def template(self) -> str:
+        """Its template."""
+        return f"{self.name}/{self.name}.html"
+
+    @property
+    def script(self) -> str:
+        """Its module."""
+        return f"{self.name}/{self.name}.js"
+
+    @property
+    def styles(self) -> tuple[str, ...]:
+        """Its style sheets, in the order in which they apply."""
+        return "layout/tokens.css", "layout/page.css", "layout/controls.css", f"{self.name}/{self.name}.css"
+
+
+PAGES: Final = (Page("/", "drive"), Page("/personalise", "personalise"), Page("/teach", "teach"))
+
+
+@final
+@dataclass(frozen=True)
+class ModelChoice:
+    """A kind of model on the Teach page.
+
+    Attributes:
+        name: in the catalogue of models.
+        title: for people.
+        help: for whom it is, in a sentence or two.
+    """
+
+    name: str
     title: str
-    fragment: str
-    script: str
-    styles: tuple[str, ...] = ()
+    help: str
 
 
-PAGES = (
-    Page("/", "Drive", "drive/drive.html", "drive/drive.js", ("layout/controls.css", "drive/drive.css")),
-    Page(
-        "/personalise",
-        "Personalise",
-        "personalise/personalise.html",
-        "personalise/personalise.js",
-        ("layout/controls.css", "personalise/personalise.css"),
-    ),
-    Page("/teach", "Teach", "teach/teach.html", "teach/teach.js", ("layout/controls.css", "teach/teach.css")),
-)
-
-_COMMON_STYLES = ("layout/tokens.css", "layout/page.css")
-
-
-def add_pages(pages: tuple[Page, ...] = PAGES) -> None:
-    """Register every page with NiceGUI. ``/static`` must serve the package's ``pages`` folder."""
-    for page in pages:
-        _add_page(page, pages)
-
-
-def _add_page(page: Page, pages: tuple[Page, ...]) -> None:
-    @ui.page(page.path, title=f"{page.title} · latentarm", language="en-US", dark=None)
-    def build() -> None:  # pyright: ignore[reportUnusedFunction]
-        for style in (*_COMMON_STYLES, *page.styles):
-            ui.add_head_html(f'<link rel="stylesheet" href="/static/{style}">')
-        # Beside NiceGUI's own application and not inside it: nobody may redraw a page that drives.
-        ui.add_body_html(body_of(page, pages))
-        ui.add_body_html(f'<script type="module" src="/static/{page.script}"></script>')
-
-
-def body_of(page: Page, pages: tuple[Page, ...]) -> str:
-    """A page's HTML, with the navigation that leads to the others.
+@final
+class Pages:
+    """Every page in every language.
 
     Args:
-        page: this page.
-        pages: all of them, in the order of the navigation.
-
-    Returns:
-        What goes into the body.
+        assets: what pages load.
+        models: names in the catalogue of models, in the order of the Teach page.
     """
-    links = "".join(
-        f'<a href="{escape(other.path)}"{_current(other is page)}>{escape(other.title)}</a>'
-        for other in pages
-    )
-    return _PART.sub(lambda name: _text(name[1]), _text(page.fragment)).replace("{pages}", links)
+
+    def __init__(self, assets: Assets, models: Sequence[str]) -> None:
+        templates = Environment(
+            loader=FileSystemLoader(FOLDER), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+        )
+        self._html = {
+            (page.path, words.language): templates.get_template(page.template)
+            .render(
+                page=page,
+                pages=PAGES,
+                asset=assets.path,
+                language=words.language,
+                languages=list(languages().values()),
+                models=[_choice(model, words) for model in models],
+                say=words.say,
+                words=words.texts,
+            )
+            .encode()
+            for page in PAGES
+            for words in languages().values()
+        }
+
+    async def answer(self, request: Request) -> Response:
+        """Serve one of `PAGES` in the language of whoever asks."""
+        words = chosen_language(request.cookies.get(COOKIE, ""), request.headers.get("accept-language", ""))
+        html = self._html[request.url.path, words.language]
+        headers = {
+            "cache-control": "private, no-cache",
+            "content-language": words.language,
+            "etag": f'"{hashlib.sha256(html).hexdigest()[:16]}"',
+            "vary": "accept-language, cookie",
+        }
+        if request.headers.get("if-none-match") == headers["etag"]:
+            return Response(status_code=304, headers=headers)
+        return HTMLResponse(html, headers=headers)
 
 
-def _text(fragment: str) -> str:
-    return _STATIC.joinpath(fragment).read_text(encoding="utf-8")
-
-
-def _current(is_this: bool) -> str:
-    return ' aria-current="page"' if is_this else ""
+def _choice(model: str, words: Words) -> ModelChoice:
+    """What a model is called; a plug-in's, which has no words here, by its own name."""
+    if f"model.{model}" not in words.texts:
+        return ModelChoice(model, model, words.say("model.plugin.help"))
+    return ModelChoice(model, words.say(f"model.{model}"), words.say(f"model.{model}.help"))

@@ -25,11 +25,8 @@ BODY_LIMIT: Final = 1 << 16
 MOST_REQUESTS: Final = 64
 """Requests that may be at work at once; `STOP` is not among them."""
 
-MOST_SOCKETS: Final = 64
-"""WebSockets that may be open at once besides those that drive, which count themselves."""
-
 DRIVE: Final = "/drive"
-"""The WebSocket that drives."""
+"""The only WebSocket."""
 
 EXPIRED: Final = 4401
 """The code that a WebSocket is closed with when its cookie has expired, out of those for applications."""
@@ -45,12 +42,9 @@ _MOST_DIGITS: Final = 20
 _READING: Final = ("GET", "HEAD")
 
 _HEADERS: Final = {
-    # NiceGUI compiles its components in the page, with scripts in its HTML: hence both 'unsafe'.
     "content-security-policy": (
-        "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval';"
-        " style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:;"
-        " connect-src 'self'; manifest-src 'self';"
-        " base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self';"
+        " base-uri 'none'; form-action 'none'; frame-ancestors 'none'; require-trusted-types-for 'script'"
     ),
     "x-content-type-options": "nosniff",
     "referrer-policy": "no-referrer",
@@ -115,7 +109,7 @@ class Keys:
 
 @final
 class Gate:
-    """Stands before the whole application, its sockets and those of the framework.
+    """Stands before the whole application and its socket.
 
     It answers `STOP` itself: before anything is counted, looked up or built. What is behind it sees whole
     requests alone.
@@ -149,7 +143,6 @@ class Gate:
         self._stop = stop
         self._entered = entered
         self._requests = 0
-        self._sockets = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Let through what may pass, answer the rest."""
@@ -178,17 +171,12 @@ class Gate:
 
     async def _socket(self, scope: Scope, receive: Receive, send: Send) -> None:
         headers = Headers(scope=scope)
-        drives = scope["path"] == DRIVE
-        if self._refusal(scope, headers) is not None or (not drives and self._sockets >= MOST_SOCKETS):
+        if self._refusal(scope, headers) is not None or scope["path"] != DRIVE:
             # Before it is accepted this is an answer of 403.
             await send({"type": "websocket.close", "code": 1008})
             return
         left_s = None if self._keys is None else self._keys.opens_for(_cookie(headers))
-        self._sockets += not drives
-        try:
-            await self.app(scope, receive if left_s is None else _until_expired(receive, left_s), send)
-        finally:
-            self._sockets -= not drives
+        await self.app(scope, receive if left_s is None else _until_expired(receive, left_s), send)
 
     def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
         if headers.getlist("host") not in [[host] for host in self._hosts]:

@@ -1,5 +1,6 @@
 /** The settings' dialog: every change counts at once. */
 
+import { attachLanguage } from "./language.js";
 import { NO_PROFILE } from "./settings.js";
 
 const TEXTS = /** @type {Record<string, (value: number) => string>} */ ({
@@ -16,7 +17,7 @@ const TEXTS = /** @type {Record<string, (value: number) => string>} */ ({
  */
 export function attachSettingsDialog(dialog, opener, settings) {
   const form = /** @type {HTMLFormElement} */ (dialog.querySelector("form"));
-  const fields = /** @type {HTMLInputElement[]} */ ([...form.querySelectorAll("input, select")]);
+  const fields = /** @type {HTMLInputElement[]} */ ([...form.querySelectorAll("input[name], select[name]")]);
 
   const show = () => {
     for (const field of fields) {
@@ -40,7 +41,7 @@ export function attachSettingsDialog(dialog, opener, settings) {
   dialog.addEventListener("close", () => opener.focus());
   form.addEventListener("input", (event) => {
     const field = /** @type {HTMLInputElement} */ (event.target);
-    if (field.type === "text") return;
+    if (field.type === "text" || !field.name) return;
     const value = field.type === "checkbox" ? field.checked : field.type === "range" ? Number(field.value) : field.value;
     settings.change({ [field.name]: value });
   });
@@ -60,6 +61,7 @@ export function attachSettingsDialog(dialog, opener, settings) {
       Object.assign(document.createElement("option"), { value, textContent })));
     show();
   };
+  attachLanguage(/** @type {HTMLSelectElement} */ (form.querySelector("#language")));
   form.querySelector("#settings-reset")?.addEventListener("click", () => settings.reset());
   settings.addEventListener("change", show);
   return { offer };

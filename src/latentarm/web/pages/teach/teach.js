@@ -8,14 +8,6 @@ const LOADING_MS = 20_000;
 /** Episodes without which nothing can be trained. */
 const FEWEST = 3;
 
-/** @type {Record<string, string>} */
-const MODEL_HELP = {
-  cvae: "Sees where the arm is; smooth under the stick, and trained in seconds.",
-  cae: "The plainest network that sees where the arm is; trained in seconds.",
-  homogeneous: "Stands still when the stick does and goes back the way it came; the one to try with an arm of six or seven joints. Takes longer.",
-  pca: "The same straight directions wherever the arm is; there to compare with.",
-};
-
 /** The run that this page goes to drive once it is loaded, and until when. */
 let going = { run: "", until: -Infinity };
 
@@ -63,7 +55,7 @@ function chosen() {
 }
 
 function showHelp() {
-  write(part("model-help"), MODEL_HELP[fields.model.value]);
+  write(part("model-help"), fields.model.selectedOptions[0]?.dataset.help ?? "");
 }
 
 let listed = "";

@@ -1,6 +1,6 @@
 /** All that is drawn in three dimensions: the arm in two views, with goals, ghosts, trail and labels. */
 
-import { THREE } from "nicegui-scene";
+import { THREE } from "../three/index.js";
 import { Ghosts } from "./ghosts.js";
 import { Labels } from "./labels.js";
 import { ArmScene } from "./scene.js";

@@ -1,6 +1,6 @@
 /** What each direction will do: paths of the tool over the next second, drawn in both views. */
 
-import { THREE } from "nicegui-scene";
+import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
 import { LOOKS } from "./predictions.js";
 

@@ -1,6 +1,6 @@
 /** The arm, its goals, the tool and the trail as one three.js scene; poses glide from one state to the next. */
 
-import { THREE } from "nicegui-scene";
+import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
 import { meshGeometry, obstacleOf, place, shapeOf } from "./shapes.js";
 

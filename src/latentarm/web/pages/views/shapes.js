@@ -1,6 +1,6 @@
 /** From the geoms of a MuJoCo model to three.js meshes. */
 
-import { THREE } from "nicegui-scene";
+import { THREE } from "../three/index.js";
 
 /**
  * One geom, placed in its body.

@@ -1,6 +1,6 @@
 /** The ways of the tools along a motion, each an arrow in both views. */
 
-import { THREE } from "nicegui-scene";
+import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
 
 const THICK_M = 0.009;

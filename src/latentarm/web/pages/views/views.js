@@ -1,6 +1,6 @@
 /** Two cameras on one scene: front and side, drawn on one canvas, only when something has changed. */
 
-import { THREE } from "nicegui-scene";
+import { THREE } from "../three/index.js";
 
 const FOV_DEG = 32;
 /** Room around the outermost points: the arm is thick, and labels stand beside goals. */

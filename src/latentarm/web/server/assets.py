@@ -1,0 +1,95 @@
+"""Scripts, style sheets and pictures of the pages: read and compressed once, and cached by browsers."""
+
+import gzip
+import hashlib
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Final, final
+
+from starlette.requests import Request
+from starlette.responses import Response
+
+from latentarm.errors import UserError
+
+FOLDER: Final = Path(__file__).parent.parent / "pages"
+THREE: Final = "three/index.js"
+"""Where three.js is among the assets."""
+
+_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
+_KEPT: Final = "private, max-age=31536000, immutable"
+
+
+@final
+@dataclass(frozen=True)
+class _Asset:
+    content: bytes
+    compressed: bytes
+    media_type: str
+
+
+@final
+class Assets:
+    """Everything that a page loads besides its HTML, each under a path that names the content of all.
+
+    A browser may keep it for as long as it likes: another version of the program has other paths.
+    """
+
+    def __init__(self) -> None:
+        found = {
+            path.relative_to(FOLDER).as_posix(): path
+            for path in sorted(FOLDER.rglob("*"))
+            if path.suffix in _TYPES
+        }
+        found[THREE] = three_js()
+        self._assets = {name: _read(path) for name, path in found.items()}
+        digest = hashlib.sha256()
+        for name, asset in self._assets.items():
+            digest.update(f"{name} {len(asset.content)}\n".encode() + asset.content)
+        self._version = digest.hexdigest()[:16]
+
+    def path(self, name: str) -> str:
+        """Where an asset is served.
+
+        Args:
+            name: its path in the folder of the pages.
+
+        Raises:
+            KeyError: there is no such asset.
+        """
+        if name not in self._assets:
+            raise KeyError(name)
+        return f"/static/{self._version}/{name}"
+
+    async def answer(self, request: Request) -> Response:
+        """Serve ``/static/{version}/{name}``."""
+        asset = self._assets.get(request.path_params["name"])
+        if asset is None or request.path_params["version"] != self._version:
+            return Response(status_code=404)
+        headers = {"cache-control": _KEPT, "etag": f'"{self._version}"', "vary": "accept-encoding"}
+        if request.headers.get("if-none-match") == headers["etag"]:
+            return Response(status_code=304, headers=headers)
+        content = asset.content
+        if "gzip" in request.headers.get("accept-encoding", ""):
+            content = asset.compressed
+            headers["content-encoding"] = "gzip"
+        return Response(content, headers=headers, media_type=asset.media_type)
+
+
+def three_js() -> Path:
+    """The bundle of three.js that NiceGUI ships; NiceGUI itself is never imported.
+
+    Raises:
+        UserError: it is not installed, or is of a version that ships no such file.
+    """
+    package = find_spec("nicegui")
+    if package is not None and package.origin is not None:
+        bundle = Path(package.origin).parent / "elements" / "scene" / "dist" / "index.js"
+        if bundle.is_file():
+            return bundle
+    raise UserError("three.js is not installed: install nicegui 3.10 or a later 3.x, which ships it.")
+
+
+def _read(path: Path) -> _Asset:
+    content = path.read_bytes()
+    return _Asset(content, gzip.compress(content, mtime=0), _TYPES[path.suffix])

@@ -1,0 +1,89 @@
+"""The words of the pages in one language, and which language a person reads.
+
+A language is a file ``<code>.json`` in this folder: a flat object of keys and texts. ``{name}`` in a text
+stands for a parameter; a text that depends on the parameter ``count`` is an object of plural forms instead,
+named as `Intl.PluralRules` names them. Adding a file adds the language to every page.
+"""
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Final, final
+
+DEFAULT: Final = "en"
+COOKIE: Final = "latentarm_language"
+"""Holds the language that somebody has chosen under Settings."""
+
+_MOST_CHARACTERS: Final = 200
+"""Of an ``Accept-Language`` header that are read."""
+
+_RANGE: Final = re.compile(
+    r"\s*([a-z]{2,8})(?:-[a-z0-9-]*)?\s*(?:;\s*q=([01](?:\.\d{0,3})?)\s*)?", re.IGNORECASE
+)
+
+
+@final
+@dataclass(frozen=True)
+class Words:
+    """The texts of one language.
+
+    Attributes:
+        language: its code, as in ``<html lang>``.
+        texts: by key; a dictionary of plural forms where a text depends on a count.
+    """
+
+    language: str
+    texts: Mapping[str, str | Mapping[str, str]]
+
+    @property
+    def name(self) -> str:
+        """What the language calls itself."""
+        return self.say("language.name")
+
+    def say(self, key: str) -> str:
+        """A text without parameters.
+
+        Raises:
+            KeyError: there is no such text.
+            TypeError: it depends on a count.
+        """
+        text = self.texts[key]
+        if not isinstance(text, str):
+            raise TypeError(f"{key} depends on a count")
+        return text
+
+
+@cache
+def languages() -> dict[str, Words]:
+    """Every language that there is, by its code, in the order of the codes; English fills its gaps."""
+    texts = {
+        file.name.removesuffix(".json"): json.loads(file.read_text(encoding="utf-8"))
+        for file in files(__package__).iterdir()
+        if file.name.endswith(".json")
+    }
+    return {code: Words(code, {**texts[DEFAULT], **own}) for code, own in sorted(texts.items())}
+
+
+def chosen_language(cookie: str, accepted: str) -> Words:
+    """The words for a person: in the language of their choice, else in one that their browser asks for.
+
+    Args:
+        cookie: value of `COOKIE`; "" where there is none.
+        accepted: the ``Accept-Language`` header.
+
+    Returns:
+        English where nothing that they read is there.
+    """
+    known = languages()
+    wanted = [cookie, *_wanted(accepted[:_MOST_CHARACTERS])]
+    return known[next((code for code in wanted if code in known), DEFAULT)]
+
+
+def _wanted(accepted: str) -> list[str]:
+    """Codes of languages (without regions), the most wanted first."""
+    found = [match for part in accepted.split(",") if (match := _RANGE.fullmatch(part))]
+    by_weight = sorted(found, key=lambda match: -float(match[2] or 1.0))
+    return [match[1].lower() for match in by_weight if float(match[2] or 1.0) > 0.0]

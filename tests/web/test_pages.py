@@ -1,0 +1,104 @@
+"""Pages are HTML of our own, in the language of whoever asks, and load nothing of a framework."""
+
+import gzip
+import re
+import subprocess
+import sys
+
+import httpx
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from latentarm.web.server.assets import THREE, Assets
+from latentarm.web.server.pages import PAGES
+from latentarm.web.words.catalogue import COOKIE, DEFAULT, chosen_language, languages
+
+PATHS = [page.path for page in PAGES]
+
+
+@pytest.fixture(scope="module")
+def client(site):
+    with httpx.Client(base_url=site.origin) as client:
+        yield client
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_a_page_loads_only_files_of_ours_and_runs_no_inline_script(client, path):
+    answer = client.get(path)
+    assert answer.status_code == 200
+    assert set(re.findall(r"<script[^>]*?type=\"([^\"]*)", answer.text)) == {"application/json", "module"}
+    assert "style=" not in answer.text
+    assert " onclick" not in answer.text
+    for address in re.findall(r'(?:href|src)="(/static/[^"]*)"', answer.text):
+        assert client.get(address).status_code == 200
+
+
+def test_what_a_page_loads_is_kept_for_good_and_compressed(client):
+    found = client.get(Assets().path("layout/page.css"), headers={"accept-encoding": "gzip"})
+    assert "immutable" in found.headers["cache-control"]
+    assert found.headers["content-encoding"] == "gzip"
+    again = client.get(found.request.url.path, headers={"if-none-match": found.headers["etag"]})
+    assert again.status_code == 304
+    plain = client.get(found.request.url.path, headers={"accept-encoding": "identity"})
+    assert plain.text == found.text
+
+
+def test_a_page_that_has_not_changed_is_not_sent_again(client):
+    tag = client.get("/").headers["etag"]
+    assert client.get("/", headers={"if-none-match": tag}).status_code == 304
+
+
+@pytest.mark.parametrize("path", ["/static/0/layout/page.css", "/static/", "/static/layout/base.html"])
+def test_other_files_are_not_served(client, path):
+    assert client.get(path).status_code == 404
+
+
+def test_templates_are_not_served(client):
+    version = Assets().path(THREE).split("/")[2]
+    assert client.get(f"/static/{version}/layout/base.html").status_code == 404
+    assert client.get(f"/static/{version}/%2e%2e/server/app.py").status_code == 404
+
+
+def test_the_drive_page_loads_at_most_300_kb_of_script():
+    assets = Assets()
+    scripts = [asset for name, asset in assets._assets.items() if name.endswith(".js")]
+    assert sum(len(asset.compressed) for asset in scripts) < 300_000
+    assert all(gzip.decompress(asset.compressed) == asset.content for asset in scripts)
+
+
+def test_nothing_of_nicegui_is_imported():
+    code = "import sys, latentarm.web.server.app as app; app.Assets(); print('nicegui' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+@pytest.mark.parametrize(
+    ("cookie", "accepted", "language"),
+    [
+        ("", "", "en"),
+        ("", "fr, xx;q=0.9", "en"),
+        ("", "de-AT,de;q=0.9,en;q=0.8", "de"),
+        ("", "en-GB,de;q=0.9", "en"),
+        ("", "en;q=0.1, de;q=0.2", "de"),
+        ("", "de;q=0, en", "en"),
+        ("de", "en", "de"),
+        ("../en", "de", "de"),
+    ],
+)
+def test_a_person_reads_the_language_of_their_choice(cookie, accepted, language):
+    assert chosen_language(cookie, accepted).language == language
+
+
+@given(st.text(), st.text())
+def test_any_request_is_answered_in_some_language(cookie, accepted):
+    assert chosen_language(cookie, accepted).language in languages()
+
+
+def test_pages_say_which_language_they_are_in(client):
+    for language in languages():
+        answer = client.get("/", headers={"accept-language": language})
+        assert f'<html lang="{language}">' in answer.text
+        assert answer.headers["content-language"] == language
+    chosen = client.get("/", headers={"accept-language": "de", "cookie": f"{COOKIE}={DEFAULT}"})
+    assert chosen.headers["content-language"] == DEFAULT

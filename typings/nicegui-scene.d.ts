@@ -1,4 +1,0 @@
-/** What NiceGUI's bundle of three.js exports, as far as the page uses it. */
-import * as THREE from "three";
-
-export { THREE };
