@@ -1,17 +1,15 @@
 import json
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from latentarm.metrics.results import read_results
 from latentarm.models.catalogue import MODELS
-from latentarm.studies.alignment import preset as alignment
 from latentarm.studies.properties.preset import PRESETS, Preset
-from latentarm.studies.shared_autonomy import preset as shared_autonomy
 from latentarm.studies.shared_autonomy.cell import TASKS
 from latentarm.studies.shared_autonomy.figures.draw import FIGURES
+from latentarm.types import Row
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -62,32 +60,27 @@ def test_the_smallest_study_of_shared_autonomy_runs_from_end_to_end(run: Run, wo
     assert {path.stem for path in folder.glob("*.png")} == {*FIGURES} - {"entropy_weight"}
 
 
-def test_one_task_of_shared_autonomy_for_machines(
-    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("name", "task"), [("shared_autonomy", "planar_two_cups"), ("alignment", "plane")])
+def test_one_task_for_machines(
+    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch, name: str, task: str
 ) -> None:
-    tiny = replace(shared_autonomy.PRESETS["smoke"], epochs=1, drives=2, betas=(0.0, 75.0, 1e4))
-    monkeypatch.setitem(shared_autonomy.PRESETS, "smoke", tiny)
-    words = ("--preset", "smoke", "--task", "planar_two_cups", "--jobs", 1, "--json")
-    code, out, err = run("reproduce", "shared-autonomy", *words)
+    """What is asked for reaches the study, and its rows are printed; tests/studies runs the studies."""
+    asked = []
+    rows = [Row(name, "drift", "1", 0.5, 0.1, 3, task=task, model="cae")]
+    study = f"latentarm.studies.{name}"
+    monkeypatch.setattr(f"{study}.run.run_{name}", lambda config: asked.append(config) or rows)
+    monkeypatch.setattr(f"{study}.summary.summary_tables", lambda *figures: [])
+    words = name.replace("_", "-")
+    folder = Path("reproduced") / words
+    folder.mkdir(parents=True)
+    options = ("--preset", "smoke", "--task", task, "--seed", 5, "--jobs", 1, "--json")
+    code, out, err = run("reproduce", words, *options)
     assert code == 0
-    written = read_results(Path("reproduced/shared-autonomy/results.json"))
-    assert json.loads(out) == [row.as_json() for row in written]
-    assert "results.md" in err
-
-
-def test_the_alignment_of_one_task_for_machines(
-    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    small = alignment.PRESETS["smoke"]
-    curves = replace(small.curves, ensemble_steps=2, candidates=6)
-    tiny = replace(small, epochs=1, runs=2, steps=2, ideal_steps=2, ideal_answers=20, curves=curves)
-    monkeypatch.setitem(alignment.PRESETS, "smoke", tiny)
-    words = ("--preset", "smoke", "--task", "plane", "--jobs", 1, "--json")
-    code, out, err = run("reproduce", "alignment", *words)
-    assert code == 0
-    written = read_results(Path("reproduced/alignment/results.json"))
-    assert json.loads(out) == [row.as_json() for row in written]
-    assert "reproduced/alignment/results.md" in err
+    assert json.loads(out) == [row.as_json() for row in rows]
+    assert f"{folder}/results.md" in err
+    (config,) = asked
+    assert (config.out, config.preset.name, config.tasks) == (folder, "smoke", (task,))
+    assert (config.seed, config.jobs, config.backend, config.quiet) == (5, 1, "joblib", True)
 
 
 @pytest.mark.slow
