@@ -1,10 +1,13 @@
 """What `import latentarm as la` offers."""
 
 import ast
+import inspect
 import subprocess
 import sys
 from pathlib import Path
+from typing import get_args
 
+import numpy as np
 import pytest
 
 import latentarm as la
@@ -41,3 +44,43 @@ def test_importing_it_loads_nothing_heavy():
 def test_a_name_that_does_not_exist_is_an_attribute_error():
     with pytest.raises(AttributeError, match="Stepp"):
         la.Stepp  # noqa: B018
+
+
+class Named:
+    """A path that is neither a text nor a `Path`."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __fspath__(self):
+        return str(self.path)
+
+
+@pytest.mark.parametrize("kind", [str, Named])
+def test_paths_may_be_texts_or_path_like(kind, tmp_path):
+    """Every function of the API that takes a file or a folder."""
+    folder = {name: kind(tmp_path / name) for name in ("data", "run", "checkpoint", "journal.sqlite")}
+    demonstrations = la.TableTop().demonstrate(4, np.random.default_rng(0))
+    la.write_dataset(demonstrations, folder["data"])
+    la.append_episode(folder["data"], demonstrations.episodes[0])
+    read = la.read_dataset(folder["data"])
+    assert len(read.episodes) == len(la.import_demonstrations(folder["data"]).episodes) == 5
+    model = la.SCL(epochs=1).fit(read, checkpoint=folder["checkpoint"])
+    config = {"held_out": [], "demonstrations": "", "kind": "scl", "context": "state", "fingerprint": ""}
+    model.save(folder["run"], run=config | {"robot": "panda", "end_effector": None})
+    assert la.load_model(folder["run"]).kind == "scl"
+    assert la.load_decoder(folder["run"]).latent_dim == 2
+    assert la.read_run(folder["run"]).robot == "panda"
+    la.Recorder(folder["journal.sqlite"]).close()
+    (tmp_path / "arm.xml").write_text(la.load_robot("planar").mjcf)
+    assert la.load_robot(kind(tmp_path / "arm.xml")).dof
+
+
+@pytest.mark.parametrize("name", la.__all__)
+def test_no_function_asks_for_a_path_alone(name):
+    found = getattr(la, name)
+    functions = [found, *vars(found).values()] if isinstance(found, type) else [found]
+    for function in filter(inspect.isfunction, functions):
+        if function.__name__ == "__init__" or not function.__name__.startswith("_"):
+            hints = [hint for key, hint in function.__annotations__.items() if key != "return"]
+            assert not [hint for hint in hints if Path in (hint, *get_args(hint))], function

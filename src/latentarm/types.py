@@ -8,9 +8,13 @@ belief ``b``, goal ``g``, end-effector pose ``x``.
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from os import PathLike
 
 import numpy as np
 from numpy.typing import NDArray
+
+StrPath = str | PathLike[str]
+"""A file or folder, as the public functions take it."""
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -14,7 +14,7 @@ from latentarm.demonstrations.provenance import provenance_json
 from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import limits_document
-from latentarm.types import Goal, Provenance, StatedLimits, StepRecord
+from latentarm.types import Goal, Provenance, StatedLimits, StepRecord, StrPath
 from latentarm.untrusted.opening import check_file, is_missing
 
 LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
@@ -106,7 +106,8 @@ class Recorder:
         UserError: the file cannot be written, or is no journal.
     """
 
-    def __init__(self, path: Path, limits: JournalLimits | None = None) -> None:
+    def __init__(self, path: StrPath, limits: JournalLimits | None = None) -> None:
+        path = Path(path)
         self._path = path
         self._watch = JournalWatch(path, limits or JournalLimits())
         self._samples_per_check = 100

@@ -41,7 +41,7 @@ from latentarm.demonstrations.tables import (
 from latentarm.demonstrations.validation import check_same_features, validate, validate_episode
 from latentarm.errors import UserError
 from latentarm.files import write_text, written_whole
-from latentarm.types import Demonstrations, Episode
+from latentarm.types import Demonstrations, Episode, StrPath
 
 LOCK_FILE: Final = ".lock"
 """In a dataset's folder while an episode is appended."""
@@ -52,7 +52,7 @@ def is_dataset(path: Path) -> bool:
     return (path / INFO_PATH).is_file()
 
 
-def write_dataset(demonstrations: Demonstrations, path: Path) -> None:
+def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:
     """Write demonstrations to a new folder, which appears whole or not at all.
 
     Values are stored in single precision, as the layout has them; goals exactly.
@@ -64,6 +64,7 @@ def write_dataset(demonstrations: Demonstrations, path: Path) -> None:
     Raises:
         UserError: the demonstrations are unfit (see `validate`), or ``path`` is taken or unwritable.
     """
+    path = Path(path)
     validate(demonstrations, str(path))
     features = features_of(demonstrations)
     tasks: list[str] = []
@@ -102,7 +103,7 @@ def write_dataset(demonstrations: Demonstrations, path: Path) -> None:
         _write_state(staging, pa.concat_tables(rows), (0, 0), tasks, info)
 
 
-def append_episode(path: Path, episode: Episode) -> None:
+def append_episode(path: StrPath, episode: Episode) -> None:
     """Add one episode to a dataset: whole once this returns, absent if it is killed before.
 
     The newest data file is copied with the episode added, up to the layout's size of a data file;
@@ -115,6 +116,7 @@ def append_episode(path: Path, episode: Episode) -> None:
     Raises:
         UserError: the episode is unfit, ``path`` is no dataset of ours, or it is being written.
     """
+    path = Path(path)
     with locked(path, path / LOCK_FILE):
         info = _native_info(path)
         validate_episode(episode, info.episodes, info.joint_names, str(path))
@@ -149,7 +151,7 @@ def append_episode(path: Path, episode: Episode) -> None:
         )
 
 
-def read_dataset(path: Path) -> Demonstrations:
+def read_dataset(path: StrPath) -> Demonstrations:
     """Read a dataset that `write_dataset` wrote, with every episode that was completed.
 
     Args:
@@ -161,6 +163,7 @@ def read_dataset(path: Path) -> Demonstrations:
     Raises:
         UserError: ``path`` is no dataset, another program's (import it first), or damaged.
     """
+    path = Path(path)
     info = _native_info(path)
     demonstrations = Demonstrations(
         episodes=read_episodes(path, info),

@@ -20,7 +20,7 @@ from latentarm.demonstrations.translation import ActionChoice, Translation, tran
 from latentarm.demonstrations.validation import validate
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations
+from latentarm.types import Demonstrations, StrPath
 from latentarm.untrusted.memory import bounded_memory
 from latentarm.untrusted.opening import opened
 
@@ -58,7 +58,7 @@ class ImportOptions(TypedDict, total=False):
 
 
 def import_demonstrations(
-    source: Path, robot: Robot | None = None, **options: Unpack[ImportOptions]
+    source: StrPath, robot: Robot | None = None, **options: Unpack[ImportOptions]
 ) -> Demonstrations:
     """Read demonstrations from a file or folder of any known kind, and check them.
 
@@ -75,6 +75,7 @@ def import_demonstrations(
     Raises:
         UserError: one sentence naming the file and, where it applies, the episode and the sample.
     """
+    source = Path(source)
     where = str(source)
     data = _read(source, robot, options)
     actions = options.get("actions", "known")

@@ -14,6 +14,7 @@ from latentarm.models.parameters import check_parameters
 from latentarm.models.pca import PCA
 from latentarm.models.saving import read_model
 from latentarm.models.zero_penalty import CAEZero
+from latentarm.types import StrPath
 
 MODELS: Final[dict[str, type[LatentActionModel]]] = {
     "pca": PCA,
@@ -28,13 +29,14 @@ MODELS: Final[dict[str, type[LatentActionModel]]] = {
 }
 
 
-def load_model(folder: Path) -> LatentActionModel:
+def load_model(folder: StrPath) -> LatentActionModel:
     """Read a model that was saved to a folder.
 
     Raises:
         UserError: a file is missing, broken, foreign, of another version, or does not agree with the
             other.
     """
+    folder = Path(folder)
     trained = read_model(folder)
     model_class = MODELS[trained.kind]
     parameters = cast(dict[str, Any], dict(trained.parameters))

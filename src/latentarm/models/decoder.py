@@ -11,7 +11,7 @@ from latentarm.models.normaliser import Normaliser
 from latentarm.models.numpy_networks import Layer, halve_hidden, network_output, propagate
 from latentarm.models.saving import read_model
 from latentarm.models.trained import TrainedModel
-from latentarm.types import FloatArray
+from latentarm.types import FloatArray, StrPath
 
 NORM_FLOOR: Final = 1e-12
 """Added under the root of a squared column length, so that a column of zeros divides by a number."""
@@ -69,7 +69,7 @@ class Decoder:
         return self._form(z, context)
 
 
-def load_decoder(folder: Path, seed: int = 0) -> Decoder:
+def load_decoder(folder: StrPath, seed: int = 0) -> Decoder:
     """Read one seed's decoder from a folder that a model was saved to. Loads no torch.
 
     Args:
@@ -79,7 +79,7 @@ def load_decoder(folder: Path, seed: int = 0) -> Decoder:
     Raises:
         UserError: the files are missing, broken or foreign, or there is no such seed.
     """
-    return Decoder(read_model(folder), seed)
+    return Decoder(read_model(Path(folder)), seed)
 
 
 class _Form(ABC):

@@ -39,7 +39,7 @@ from latentarm.models.trained import TrainedModel, TrainingSummary
 from latentarm.models.training import Report, TrainingResult
 from latentarm.models.unfitted import UnfittedError
 from latentarm.robots.catalogue import load_recorded_robot
-from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs
+from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs, StrPath
 
 ROWS_AT_ONCE: Final = 4096
 """Pairs encoded or decoded at a time, so that memory does not grow with the dataset."""
@@ -144,7 +144,7 @@ class LatentActionModel(BaseEstimator, ABC):
         validation: Sequence[int] | None = None,
         chain: Chain | None = None,
         term: LossTerm | None = None,
-        checkpoint: Path | None = None,
+        checkpoint: StrPath | None = None,
         report: Report | None = None,
     ) -> Self:
         """Learn from demonstrations, all seeds at once.
@@ -185,7 +185,8 @@ class LatentActionModel(BaseEstimator, ABC):
         )
         arm = self._arm(demonstrations, chain) if self.sees_tools else None
         chosen = tuple(int(index) for index in validation)
-        self.trained_ = self._fit_pairs(pairs, chosen, arm, term, checkpoint, report)
+        saved = None if checkpoint is None else Path(checkpoint)
+        self.trained_ = self._fit_pairs(pairs, chosen, arm, term, saved, report)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds
             warn(CollapseWarning(describe_collapse(self.kind, seeds, self.collapsed_)), stacklevel=2)
@@ -253,7 +254,7 @@ class LatentActionModel(BaseEstimator, ABC):
         """
         return TorchDecoder(self._fitted(), self._action, seed, dtype)
 
-    def save(self, folder: Path, *, run: Mapping[str, object] | None = None) -> None:
+    def save(self, folder: StrPath, *, run: Mapping[str, object] | None = None) -> None:
         """Write ``model.safetensors`` and ``config.json``.
 
         Args:
@@ -263,7 +264,7 @@ class LatentActionModel(BaseEstimator, ABC):
         Raises:
             UserError: the model is not fitted, or the files cannot be written.
         """
-        write_model(folder, self._fitted(), run or {})
+        write_model(Path(folder), self._fitted(), run or {})
 
     @property
     def seed_numbers(self) -> tuple[int, ...]:

@@ -1,6 +1,7 @@
 """Robots by name."""
 
 from collections.abc import Callable
+from os import fspath
 from pathlib import Path
 
 from latentarm.errors import UserError
@@ -11,7 +12,7 @@ from latentarm.robots.model_file import load_model_file
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, StatedLimits
+from latentarm.types import Demonstrations, StatedLimits, StrPath
 
 ROBOTS: dict[str, Callable[[], Robot]] = {
     "panda": panda,
@@ -22,7 +23,7 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
 
 
 def load_robot(
-    name_or_path: str, end_effector: str | None = None, limits: StatedLimits | None = None
+    name_or_path: StrPath, end_effector: str | None = None, limits: StatedLimits | None = None
 ) -> Robot:
     """A robot of the catalogue, or any robot whose MJCF or URDF file is given.
 
@@ -40,7 +41,7 @@ def load_robot(
         UserError: the name is unknown, an end-effector is given for a named robot, the file cannot be
             used, or the limits are not those of its joints.
     """
-    robot = _load(name_or_path, end_effector)
+    robot = _load(fspath(name_or_path), end_effector)
     return robot if limits is None else restate(robot, limits)
 
 

@@ -24,7 +24,7 @@ from latentarm.robots.end_effector import AmbiguousEndEffectorError
 from latentarm.robots.limits_file import limits_document, parse_limits
 from latentarm.robots.model_copy import COPIES, load_copy
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, FloatArray, Goal, StatedLimits
+from latentarm.types import Demonstrations, FloatArray, Goal, StatedLimits, StrPath
 from latentarm.untrusted.opening import is_missing, read_bytes
 
 TaskName = Literal["table_top", "held_out", "reach"]
@@ -136,12 +136,13 @@ def run_facts(run: Run) -> dict[str, object]:
     }
 
 
-def read_run(folder: Path) -> Run:
+def read_run(folder: StrPath) -> Run:
     """Read a run folder's own description; the model itself is checked when it is loaded.
 
     Raises:
         UserError: the folder is not a run, or its ``config.json`` is damaged.
     """
+    folder = Path(folder)
     path = folder / "config.json"
     if is_missing(path):
         raise UserError(f"{folder} is not a run: it has no config.json (see `latentarm train`).")
