@@ -7,7 +7,7 @@ import latentarm as la
 DT_S = 0.01
 
 robot = la.load_robot("panda")
-arm = la.KinematicArm(robot, robot.home, DT_S)
+arm = la.KinematicArm(robot, robot.home)
 step = la.Step(robot, la.EndEffectorController(robot), la.SafetyConfig(), dt_s=DT_S)
 
 # The arm starts disengaged. It takes a neutral input, then an explicit enable.
@@ -21,7 +21,7 @@ for tick in range(1, 101):
     age_s = 0.0  # how old that input is by the loop's own clock
     record = step(la.Input(u), age_s, arm.state(), tick * DT_S)
     arm.send(record.command)
-    arm.advance()
+    arm.advance(DT_S)
 moved = robot.chain.forward(arm.state()).position - before
 print(f"One second of full stick to the left moved the tool by {np.round(100 * moved, 1)} cm.")
 
@@ -29,5 +29,5 @@ print(f"One second of full stick to the left moved the tool by {np.round(100 * m
 for tick in range(101, 131):
     record = step(la.Input(u), 0.2, arm.state(), tick * DT_S)
     arm.send(record.command)
-    arm.advance()
+    arm.advance(DT_S)
 print(f"Then the input went stale: {step.stopped.reason if step.stopped else 'not at all'}")

@@ -91,7 +91,7 @@ class FaultyArm(Arm):
     def __init__(
         self, robot: Robot, state: FloatArray, fault: str, at_s: float, rng: np.random.Generator
     ) -> None:
-        self.plant = KinematicArm(robot, state, PERIOD_S)
+        self.plant = KinematicArm(robot, state)
         self._fault, self._at_s, self._rng = fault, at_s, rng
         self._joint = int(rng.integers(robot.dof))
         self._sign = float(rng.choice([-1.0, 1.0]))

@@ -1,3 +1,4 @@
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -5,6 +6,7 @@ import numpy as np
 import pytest
 
 from latentarm.cli import main
+from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
 
 
@@ -43,3 +45,39 @@ def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder that the command runs in."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+@pytest.fixture(scope="session")
+def made(recording: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What commands begin with, made once: the datasets ``eat`` and ``table``, and a run ``mine`` on it."""
+    folder = tmp_path_factory.mktemp("made")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        assert main(["import", str(recording), "eat"]) == 0
+        write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), Path("table"))
+        hardly = ["--model", "cae", "--seeds", "2", "--epochs", "2"]
+        assert main(["train", "--demonstrations", "table", *hardly, "--out", "mine"]) == 0
+    return folder
+
+
+def copied(name: str, made: Path, workplace: Path) -> Path:
+    shutil.copytree(made / name, workplace / name)
+    return Path(name)
+
+
+@pytest.fixture
+def eat(made: Path, workplace: Path) -> Path:
+    """The recording, imported as ``eat``."""
+    return copied("eat", made, workplace)
+
+
+@pytest.fixture
+def table(made: Path, workplace: Path) -> Path:
+    """Six demonstrations at the table, with goals, called ``table``."""
+    return copied("table", made, workplace)
+
+
+@pytest.fixture
+def trained(made: Path, table: Path, workplace: Path) -> Path:
+    """A run called ``mine`` on ``table``: two seeds of a cAE, hardly trained."""
+    return copied("mine", made, workplace)

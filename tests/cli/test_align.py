@@ -3,15 +3,17 @@
 import io
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from latentarm.alignment.training import FitConfig
 from latentarm.commands import align as aligning
-from latentarm.demonstrations.dataset import write_dataset
 from latentarm.metrics.results import read_results
-from latentarm.tasks.table_top import TableTop
+from latentarm.runs import aligning as learning
+from latentarm.runs import questions
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -19,12 +21,10 @@ ALIGN = ("align", "mine", "--name", "ada")
 
 
 @pytest.fixture
-def trained(run: Run, workplace: Path) -> Path:
-    """A run called ``mine``, hardly trained."""
-    write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), Path("table"))
-    command = ("train", "--demonstrations", "table", "--model", "cae", "--seeds", 2, "--epochs", 2)
-    assert run(*command, "--out", "mine")[0] == 0
-    return Path("mine")
+def hurried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Alignments are hardly learned, where a test is not about what was learned."""
+    monkeypatch.setattr(learning, "FitConfig", partial(FitConfig, steps=20))
+    monkeypatch.setattr(questions, "QUICK", FitConfig(steps=20))
 
 
 def errors(document: str) -> dict[str, float]:
@@ -68,6 +68,7 @@ def test_a_simulated_person_is_asked_and_drives(run: Run, trained: Path) -> None
     assert driven["with"] != driven["without"]
 
 
+@pytest.mark.usefixtures("hurried")
 def test_json_is_one_document_and_the_same_seed_gives_the_same(run: Run, trained: Path) -> None:
     outs = []
     for name in ("one", "two"):
@@ -89,6 +90,7 @@ def typed(monkeypatch: pytest.MonkeyPatch, *lines: str) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO("".join(f"{line}\n" for line in lines)))
 
 
+@pytest.mark.usefixtures("hurried")
 def test_a_person_answers_in_lines(run: Run, trained: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     typed(monkeypatch, "0.5 -1", "", "left", "2 0", "0.5", "nan 0", "0, 0.25", "\x1b[A\x1b[A\x1b[D")
     code, out, err = run(*ALIGN, "--answers", 3)
@@ -104,6 +106,7 @@ def test_a_person_answers_in_lines(run: Run, trained: Path, monkeypatch: pytest.
     assert len(np.unique(config["answers"]["start"], axis=0)) == 3
 
 
+@pytest.mark.usefixtures("hurried")
 def test_no_more_is_asked_when_enough_is_known(
     run: Run, trained: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -162,6 +165,7 @@ def test_what_cannot_be_aligned_is_refused(run: Run, trained: Path) -> None:
     assert not (trained / "profiles").exists()
 
 
+@pytest.mark.usefixtures("hurried")
 def test_a_name_is_given_once_and_for_one_model(run: Run, trained: Path) -> None:
     assert run(*ALIGN, "--simulated", "--answers", 1)[0] == 0
     code, _, err = run(*ALIGN, "--simulated")

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
 
 Run = Callable[..., tuple[int, str, str]]
@@ -85,8 +84,7 @@ def test_words_that_no_command_has(run: Run, words: tuple[str, ...]) -> None:
     assert err
 
 
-def test_a_run_knows_its_dataset(run: Run, workplace: Path, recording: Path) -> None:
-    run("import", recording, "eat")
+def test_a_run_knows_its_dataset(run: Run, eat: Path) -> None:
     run("train", "--demonstrations", "eat", "--model", "pca", "--out", "mine")
     Path("eat").rename("moved")
     code, _, err = run("evaluate", "mine", "--folds", 0)
@@ -100,8 +98,7 @@ def test_a_run_knows_its_dataset(run: Run, workplace: Path, recording: Path) -> 
     assert "not the dataset" in err
 
 
-def test_a_decoder_with_beliefs_is_not_driven_to_foreign_goals(run: Run, workplace: Path) -> None:
-    write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), Path("table"))
+def test_a_decoder_with_beliefs_is_not_driven_to_foreign_goals(run: Run, table: Path) -> None:
     command = ("train", "--demonstrations", "table", "--model", "scl", "--epochs", 1, "--seeds", 1)
     run(*command, "--context", "state_belief")
     code, _, err = run("drive", "runs/table-scl", "--task", "reach")
@@ -118,8 +115,7 @@ def test_a_recording_without_a_rate_is_imported_when_told(run: Run, workplace: P
     assert run("import", "bare.npz", "bare", "--rate-hz", 20, "--instruction", "eat")[0] == 0
 
 
-def test_a_folder_that_is_a_file(run: Run, workplace: Path, recording: Path) -> None:
-    run("import", recording, "eat")
+def test_a_folder_that_is_a_file(run: Run, eat: Path) -> None:
     Path("file").write_text("")
     code, _, err = run("train", "--demonstrations", "eat", "--model", "pca", "--out", "file/run")
     assert code == 2

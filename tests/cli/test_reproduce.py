@@ -29,21 +29,14 @@ TINY = Preset(
 PROPERTIES = ("reproduce", "properties", "--preset", "smoke", "--task", "reach", "--jobs", 1)
 
 
-def test_the_properties_for_people_and_for_machines(
-    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_properties_for_people(run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PRESETS, "smoke", TINY)
     code, out, err = run(*PROPERTIES)
     assert code == 0
     assert "reach, simulated" in out
     assert "reproduced/properties/results.md" in out
     assert f"{len(MODELS)} models on reach" in err
-    written = read_results(Path("reproduced/properties/results.json"))
-
-    code, out, err = run(*PROPERTIES, "--json")
-    assert code == 0
-    assert json.loads(out) == [row.as_json() for row in written]
-    assert "results.md" in err
+    assert read_results(Path("reproduced/properties/results.json"))
 
 
 @pytest.mark.slow

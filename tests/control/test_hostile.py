@@ -141,7 +141,7 @@ def give_up(loop):
 
 
 def loop_of(arm, scripted, script, observers=()):
-    simulated = KinematicArm(arm, arm.home, DT)
+    simulated = KinematicArm(arm, arm.home)
     clock = SimulatedClock([simulated.advance])
     controller = scripted(np.full((1, 7), 0.3))
     step = Step(arm, controller, SafetyConfig(), dt_s=DT)

@@ -52,7 +52,7 @@ class Stuttering(Clock):
 @pytest.fixture
 def setup(arm, scripted):
     def make(late=None, observers=(), source=None):
-        simulated = KinematicArm(arm, arm.home, 0.01)
+        simulated = KinematicArm(arm, arm.home)
         clock = SimulatedClock([simulated.advance])
         step = Step(arm, scripted(MATRIX), SafetyConfig())
         records = []
@@ -178,7 +178,7 @@ def test_an_observer_that_fails_leaves_the_arm_ramped_to_rest(setup):
 
 
 def test_finish_from_another_thread_ends_a_real_loop(arm, scripted):
-    simulated = KinematicArm(arm, arm.home, 0.01)
+    simulated = KinematicArm(arm, arm.home)
     loop = ControlLoop(Step(arm, scripted(MATRIX), SafetyConfig()), simulated, Stick(), MonotonicClock())
     thread = threading.Thread(target=loop.run)
     thread.start()

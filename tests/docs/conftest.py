@@ -4,6 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from latentarm.cli import main
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Command, StepRecord
@@ -28,3 +29,20 @@ def record_on_the_page(journal: Path) -> None:
 @pytest.fixture(name="record_on_the_page", scope="session")
 def fixture_record_on_the_page() -> Callable[[Path], None]:
     return record_on_the_page
+
+
+@pytest.fixture(name="workspace", scope="session")
+def fixture_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What pages assume that readers have: a recording, its dataset, a run and a journal of the page."""
+    folder = tmp_path_factory.mktemp("workspace")
+    demonstrations = TableTop().demonstrate(6, np.random.default_rng(0))
+    states = [episode.state[::4] for episode in demonstrations.episodes]
+    recording = folder / "recording.npz"
+    ends = np.cumsum([len(state) for state in states])
+    np.savez(recording, q=np.concatenate(states), episode_ends=ends, rate_hz=5.0)
+    assert main(["import", str(recording), str(folder / "eat")]) == 0
+    train = ["train", "--demonstrations", str(folder / "eat"), "--epochs", "1", "--seeds", "1"]
+    assert main([*train, "--out", str(folder / "runs/eat-cvae")]) == 0
+    (folder / "teleop").mkdir()
+    record_on_the_page(folder / "teleop/journal.sqlite")
+    return folder

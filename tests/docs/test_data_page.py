@@ -1,18 +1,15 @@
 """The samples of docs/data.md are made and imported, block after block, as a reader would."""
 
-import re
-import shlex
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from latentarm.cli import main
+from documentation import ROOT, run_page
 from latentarm.demonstrations.dataset import read_dataset
 
-PAGE = Path(__file__).parents[2] / "docs/data.md"
+PAGE = ROOT / "docs/data.md"
 
 
 def test_every_sample_imports(
@@ -20,13 +17,7 @@ def test_every_sample_imports(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     record_on_the_page(Path("teleop/journal.sqlite"))
-    names: dict[str, Any] = {}
-    for language, block in re.findall(r"```(python|sh)\n(.*?)```", PAGE.read_text(), flags=re.DOTALL):
-        if language == "python":
-            exec(block, names)  # noqa: S102 - the page is ours
-            continue
-        for line in block.splitlines():
-            assert main(shlex.split(line, comments=True)[1:]) == 0, line
+    names = run_page(PAGE, {})
     for name in ("from-numpy", "from-csv", "from-robomimic"):
         states = np.concatenate([episode.state for episode in read_dataset(Path(name)).episodes])
         np.testing.assert_allclose(states, names["motion"], atol=1e-6)

@@ -1,27 +1,29 @@
-"""The documents tell the truth: their commands run, their links lead somewhere, their packages exist."""
+"""The documents tell the truth: their snippets run, their links lead somewhere, their packages exist."""
 
 import re
 import shlex
-from collections.abc import Callable
+import shutil
 from pathlib import Path
 
-import numpy as np
 import pytest
 
+from documentation import PAGES, ROOT, SLOW, commands, name_of, run_page
 from latentarm.cli import main
-from latentarm.tasks.table_top import TableTop
 
-ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 SHARED = ROOT.parent / "shared" / "demonstrations"
 
+NOT_RUN = {
+    "make demo": "tests/simulation runs it in its smallest size",
+    "make test": "this is it",
+    "make dist": "tests/packaging builds both files",
+    "python scripts/seeds_in_turn.py sine cae": "twenty minutes",
+}
+"""Lines of shell blocks that no test runs, each with the reason."""
 
-def commands(page: Path) -> list[str]:
-    """The lines of a page's shell blocks."""
-    blocks = re.findall(r"```sh\n(.*?)```", page.read_text(), flags=re.DOTALL)
-    lines = [line.split("#")[0].strip() for block in blocks for line in block.splitlines()]
-    return [line for line in lines if line]
+ON_RECORDED_DEMONSTRATIONS = ["docs/comparison.md", "docs/models.md", "docs/results.md"]
+"""Pages whose commands need the recorded demonstrations, and minutes."""
 
+RUN_ELSEWHERE = {*ON_RECORDED_DEMONSTRATIONS, "docs/data.md"}
 
 STUDIES = list(
     dict.fromkeys(
@@ -30,24 +32,8 @@ STUDIES = list(
 )
 """Commands that take minutes, each once, on whichever pages they stand."""
 
-QUICKLY = {
-    "train": {"--epochs": "1", "--seeds": "1"},
-    "drive": {"--drives": "1", "--time-limit-s": "2"},
-    "align": {"--answers": "2"},
-}
-"""Options that make a command short where the page does not give them."""
 
-
-def quickly(line: str) -> list[str]:
-    """The words of a command after ``latentarm``, of a size for a test."""
-    words = shlex.split(line)[1:]
-    for option, value in QUICKLY.get(words[0], {}).items():
-        if option not in words:
-            words += [option, value]
-    return words
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_links_lead_somewhere(page: Path) -> None:
     links = re.findall(r"\]\(([^)#\s]+)[^)]*\)", page.read_text())
     missing = [link for link in links if "://" not in link and not (page.parent / link).exists()]
@@ -60,27 +46,23 @@ def test_make_targets_exist() -> None:
     assert {"demo", "test"} <= named <= targets
 
 
-def test_every_command_of_the_pages_is_one_of_ours() -> None:
-    """What is in a shell block is either run by a test below, or a target of make, or a named script."""
-    for page in PAGES:
-        for line in commands(page):
-            assert line.startswith(("make ", "latentarm ", "python scripts/")), f"{page.name}: {line}"
+def test_every_line_of_the_pages_runs_or_has_a_reason_not_to() -> None:
+    lines = {line for page in PAGES for line in commands(page)}
+    assert {line for line in lines if not line.startswith("latentarm ")} == set(NOT_RUN)
 
 
-def test_readme_commands_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, record_on_the_page: Callable[[Path], None]
+@pytest.mark.parametrize("page", [one for one in PAGES if name_of(one) not in RUN_ELSEWHERE], ids=name_of)
+def test_a_page_runs_from_top_to_bottom(
+    page: Path, workspace: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    demonstrations = TableTop().demonstrate(6, np.random.default_rng(0))
-    states = [episode.state[::4] for episode in demonstrations.episodes]
-    ends = np.cumsum([len(state) for state in states])
-    np.savez("recording.npz", q=np.concatenate(states), episode_ends=ends, rate_hz=5.0)
-    record_on_the_page(Path("teleop/journal.sqlite"))
-    run = [line for line in commands(ROOT / "README.md") if line.startswith("latentarm ")]
-    assert run
-    for line in run:
-        if line not in STUDIES:
-            assert main(quickly(line)) in (0, 1), line
+    makes = {line.split()[3] for line in commands(page) if line.startswith("latentarm import ")}
+    for given in workspace.iterdir():
+        if given.name == "runs" and "eat" in makes:
+            continue
+        if given.name not in makes:
+            (shutil.copytree if given.is_dir() else shutil.copyfile)(given, given.name)
+    run_page(page, NOT_RUN)
 
 
 @pytest.mark.slow  # tests/cli/test_reproduce.py runs each study in its smallest size
@@ -96,17 +78,24 @@ def test_commands_of_the_study_run(line: str, tmp_path: Path, monkeypatch: pytes
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not SHARED.exists(), reason="the recorded demonstrations are not beside this clone")
-@pytest.mark.parametrize("page", ["comparison.md", "models.md", "results.md"])
+@pytest.mark.skipif(not SHARED.exists(), reason="the recorded demonstrations are not next to this clone")
+@pytest.mark.parametrize("page", ON_RECORDED_DEMONSTRATIONS)
 def test_commands_on_recorded_demonstrations_run(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    run = [line for line in commands(ROOT / "docs" / page) if line.startswith("latentarm ")]
+    run = [line for line in commands(ROOT / page) if line.startswith("latentarm ")]
     assert run
     for line in run:
         small = line.replace("../shared", str(SHARED.parent)).replace("--preset paper", "--preset smoke")
         assert main(shlex.split(small)[1:]) in (0, 1), line
+
+
+def test_slow_commands_stand_only_where_a_slow_test_runs_them() -> None:
+    for page in PAGES:
+        for line in commands(page):
+            if line.startswith("latentarm ") and line.split()[1] in SLOW:
+                assert line in STUDIES or name_of(page) in ON_RECORDED_DEMONSTRATIONS, line
 
 
 def test_architecture_names_every_package() -> None:

@@ -29,12 +29,12 @@ def test_a_third_partys_arm_loads_and_can_be_driven(which, tool, dof, request):
     assert 5 <= len(robot.capsules) <= 16
     assert len(robot.self_pairs) <= 40
     # Resolved rates lift the tool straight up.
-    simulated = KinematicArm(robot, robot.home, 0.02)
+    simulated = KinematicArm(robot, robot.home)
     start = robot.chain.forward(robot.home).position
     for _ in range(50):
         rates = np.linalg.pinv(robot.chain.jacobian(simulated.state()))[:, 2] * 0.02
         simulated.send(Command(rates, duration_s=0.02))
-        simulated.advance()
+        simulated.advance(0.02)
     moved = robot.chain.forward(simulated.state()).position - start
     np.testing.assert_allclose(moved, [0, 0, 0.02], atol=1e-4)
 

@@ -54,7 +54,7 @@ def test_a_real_arm_refuses_limits_that_are_assumed(the_panda, ur5e_file):
         UserError, match=r"is a real arm, and its acceleration and jerk of all joints.*--limits"
     ):
         check_limits(RealArm(), ur5e)
-    check_limits(KinematicArm(ur5e, ur5e.home, 0.01), ur5e)
+    check_limits(KinematicArm(ur5e, ur5e.home), ur5e)
     # One figure of one joint is enough.
     sources = LimitSources.same("manufacturer", 7)
     one = replace(sources, jerk=("assumed", *sources.jerk[1:]))

@@ -15,13 +15,13 @@ import uvicorn
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
+from latentarm.arms.catalogue import make_live_arm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.loop import ControlLoop
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process.cockpit import Cockpit
 from latentarm.web.arm_process.drive_setup import PERIOD_S, Setting, Spec, load_setting
-from latentarm.web.arm_process.live_arm import LiveArm
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.protocol.channel import Given, Order, Report, new_channel, parse_report
 from latentarm.web.server.addresses import TeleopConfig, listen
@@ -80,7 +80,7 @@ class Desk:
         self.orphaned = False
         self.writer = EpisodeWriter(folder)
         self.cockpit = Cockpit(setting, self.channel, self.clock, self.writer, lambda: self.orphaned)
-        self.arm = LiveArm(setting.task.robot, setting.start, self.clock)
+        self.arm = make_live_arm(setting.spec.arm, setting.task.robot, setting.start, self.clock.now_s)
         self.step = setting.step()
         self.loop = ControlLoop(
             self.step, self.arm, self.cockpit, self.clock, [self.cockpit.observe, self._saw]

@@ -22,14 +22,14 @@ def looked(setting, q, mode):
 
 def driven(setting, q, u, mode):
     """Where the tool is after a second of a full deflection, through all safety filters."""
-    step, arm = setting.step(), KinematicArm(setting.task.robot, q, PERIOD_S)
+    step, arm = setting.step(), KinematicArm(setting.task.robot, q)
     step.reset(q)
     step.choose_mode(mode)
     step(Input(np.zeros(2)), 0.0, q, 0.0)
     step.enable()
     for tick in range(1, 101):
         arm.send(step(Input(np.array(u)), 0.0, arm.state(), tick * PERIOD_S).command)
-        arm.advance()
+        arm.advance(PERIOD_S)
     return setting.task.robot.chain.forward(arm.state()).position
 
 
@@ -57,14 +57,14 @@ def test_ghosts_do_not_go_through_the_table(setting):
     for _ in range(12):
         path = np.array(looked(setting, q, index).left)
         assert path[:, 2].min() > 0.0
-        step, arm = setting.step(), KinematicArm(setting.task.robot, q, PERIOD_S)
+        step, arm = setting.step(), KinematicArm(setting.task.robot, q)
         step.reset(q)
         step.choose_mode(index)
         step(Input(np.zeros(2)), 0.0, q, 0.0)
         step.enable()
         for tick in range(1, 21):
             arm.send(step(Input(np.array([-1.0, 0.0])), 0.0, arm.state(), tick * PERIOD_S).command)
-            arm.advance()
+            arm.advance(PERIOD_S)
         q = arm.state()
     lowest = chain.forward(q).position
     np.testing.assert_allclose(np.array(looked(setting, q, index).left)[-1], lowest, atol=0.03)

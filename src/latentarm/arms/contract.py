@@ -1,6 +1,7 @@
 """What the control loop needs of an arm, real or simulated."""
 
 from abc import ABC, abstractmethod
+from typing import final
 
 from latentarm.errors import UserError
 from latentarm.robots.notices import assumed_limits
@@ -34,6 +35,27 @@ class Arm(ABC):
     @abstractmethod
     def stop(self) -> None:
         """Stop now and forget the last command."""
+
+
+class SimulatedArm(Arm):
+    """An arm that moves nothing real. Time passes for it only in `advance`."""
+
+    @property
+    @final
+    def simulated(self) -> bool:
+        """True."""
+        return True
+
+    @abstractmethod
+    def advance(self, dt_s: float) -> None:
+        """Let time pass.
+
+        Args:
+            dt_s: how long, s.
+
+        Raises:
+            UserError: ``dt_s`` is not finite or not above zero.
+        """
 
 
 def check_limits(arm: Arm, robot: Robot) -> None:

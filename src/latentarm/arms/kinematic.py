@@ -4,29 +4,27 @@ from typing import final
 
 import numpy as np
 
-from latentarm.arms.contract import Arm
+from latentarm.arms.contract import SimulatedArm
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.types import Command, FloatArray
 
 
 @final
-class KinematicArm(Arm):
+class KinematicArm(SimulatedArm):
     """Kinematic simulation of the paper's transition, ``s' = s + a dt``.
 
-    Time passes only in `advance`. A joint that reaches a limit stays there, as at a hard stop.
+    A joint that reaches a limit stays there, as at a hard stop.
 
     Args:
         robot: whose joints these are.
         state: (n,), where the arm starts, rad.
-        dt_s: how long `advance` lasts when it is not told, s.
 
     Raises:
-        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits; or
-            ``dt_s`` is not above zero.
+        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
     """
 
-    def __init__(self, robot: Robot, state: FloatArray, dt_s: float) -> None:
+    def __init__(self, robot: Robot, state: FloatArray) -> None:
         start = np.array(state, dtype=np.float64)
         if start.shape != (robot.dof,) or not np.isfinite(start).all():
             raise UserError(
@@ -38,18 +36,10 @@ class KinematicArm(Arm):
                 f"The arm cannot start with {robot.joint_names[joint]} at {start[joint]:.4g}: its limits are"
                 f" {robot.limits.lower[joint]:.4g} and {robot.limits.upper[joint]:.4g}."
             )
-        if not (np.isfinite(dt_s) and dt_s > 0.0):
-            raise UserError(f"The simulated arm's time step is {dt_s} s: it must be above zero.")
         self._limits = robot.limits
-        self._dt_s = float(dt_s)
         self._state = start
         self._velocity = np.zeros(robot.dof)
         self._left_s = 0.0
-
-    @property
-    def simulated(self) -> bool:
-        """True."""
-        return True
 
     def state(self) -> FloatArray:
         """(n,), joint positions, rad."""
@@ -76,17 +66,14 @@ class KinematicArm(Arm):
         self._velocity = np.zeros_like(self._velocity)
         self._left_s = 0.0
 
-    def advance(self, dt_s: float | None = None) -> None:
-        """Let time pass.
-
-        Args:
-            dt_s: how long, s; the arm's own time step when None.
-        """
-        passed = self._dt_s if dt_s is None else dt_s
-        moving = min(passed, self._left_s)
+    def advance(self, dt_s: float) -> None:
+        """Let time pass; see the base class."""
+        if not (np.isfinite(dt_s) and dt_s > 0.0):
+            raise UserError(f"The simulated arm's time step is {dt_s} s: it must be above zero.")
+        moving = min(dt_s, self._left_s)
         moved = self._state + self._velocity * moving
         self._state = np.clip(moved, self._limits.lower, self._limits.upper)
-        self._left_s -= passed
+        self._left_s -= dt_s
         # A hair of rounding must not stop an arm whose commands last exactly one step.
         if self._left_s <= -1e-9:
             self.stop()

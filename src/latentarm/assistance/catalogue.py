@@ -1,12 +1,25 @@
-"""The beliefs by name."""
+"""The beliefs by name: ours, and those that other distributions register."""
 
-from latentarm.assistance.boltzmann import BoltzmannBelief
-from latentarm.assistance.distance import DistanceBelief
-from latentarm.assistance.maximum_entropy import MaximumEntropyBelief
+from typing import Final, cast
 
-BELIEFS: dict[str, type[BoltzmannBelief] | type[DistanceBelief] | type[MaximumEntropyBelief]] = {
-    "boltzmann": BoltzmannBelief,
-    "distance": DistanceBelief,
-    "maximum_entropy": MaximumEntropyBelief,
-}
+from latentarm.assistance.belief import Belief, Rule
+from latentarm.plugins import Catalogue
+
+
+def _rule(name: str, thing: object) -> Rule:
+    if not (isinstance(thing, type) and issubclass(thing, Belief)):
+        raise TypeError(f"{thing!r} is no subclass of latentarm.assistance.belief.Belief")
+    return cast(Rule, thing)
+
+
+BELIEFS: Final = Catalogue(
+    "latentarm.beliefs",
+    "belief",
+    {
+        "boltzmann": "latentarm.assistance.boltzmann:BoltzmannBelief",
+        "distance": "latentarm.assistance.distance:DistanceBelief",
+        "maximum_entropy": "latentarm.assistance.maximum_entropy:MaximumEntropyBelief",
+    },
+    _rule,
+)
 """Each is made with ``goals``, and if wanted ``period_s``, ``prior`` and ``floor``."""

@@ -11,7 +11,7 @@ from typing import Annotated, final
 import numpy as np
 from tyro.conf import arg
 
-from latentarm.arms.kinematic import KinematicArm
+from latentarm.arms.catalogue import DEFAULT_ARM, make_simulated_arm
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.commands.options import Json, Seed
@@ -116,7 +116,7 @@ class _TimedStep:
             arbitration=FixedAlpha(),
             dt_s=dt_s,
         )
-        self._arm = KinematicArm(task.robot, task.robot.home, dt_s)
+        self._arm = make_simulated_arm(DEFAULT_ARM, task.robot, task.robot.home)
         self._took_s: list[float] = []
         self._step.reset(self._arm.state())
         self._step(Input(np.zeros(2)), 0.0, self._arm.state(), 0.0)
@@ -131,7 +131,7 @@ class _TimedStep:
         if record.command.stop is not None:
             raise RuntimeError(f"the timed arm was stopped: {record.command.stop.reason}")
         self._arm.send(record.command)
-        self._arm.advance()
+        self._arm.advance(self._step.dt_s)
         return state
 
     def median_us(self) -> float:

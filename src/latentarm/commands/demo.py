@@ -11,7 +11,9 @@ import numpy as np
 from tyro.conf import arg
 
 from latentarm.alignment.profile import profile_names
+from latentarm.arms.catalogue import DEFAULT_ARM
 from latentarm.assistance.blending import Arbitration, FixedAlpha
+from latentarm.commands.choices import ArmName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import say, show
@@ -64,6 +66,7 @@ class DemoConfig:
         episodes: demonstrations.
         seeds: models of each kind, trained at once; they take turns to be driven.
         epochs: passes over the training pairs, at most.
+        arm: what moves, a simulated arm of `latentarm.arms.catalogue`.
     """
 
     out: Path
@@ -75,6 +78,7 @@ class DemoConfig:
     episodes: int = 60
     seeds: int = 3
     epochs: int = 16
+    arm: str = DEFAULT_ARM
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
@@ -141,7 +145,10 @@ def _conditions(task: TableTop, config: DemoConfig) -> list[tuple[Subject, list[
     def add(
         model: str | None, condition: str, controllers: Sequence[Controller], arbitration: Arbitration | None
     ) -> None:
-        setups = [Setup(task, one, arbitration, BoltzmannConfig(), TIME_LIMIT_S) for one in controllers]
+        setups = [
+            Setup(task, one, arbitration, BoltzmannConfig(), TIME_LIMIT_S, arm=config.arm)
+            for one in controllers
+        ]
         conditions.append((Subject("demo", task=task.name, model=model, condition=condition), setups))
 
     for model in MODELS:
@@ -193,6 +200,7 @@ def _about(config: DemoConfig) -> dict[str, object]:
         "episodes": config.episodes,
         "seeds": config.seeds,
         "epochs": config.epochs,
+        "arm": config.arm,
     }
 
 
@@ -219,6 +227,7 @@ def demo(
         "demo"
     ),
     drives: Annotated[int, arg(help="Simulated drives for each goal and condition.")] = 20,
+    arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM,
     seed: Seed = 0,
     jobs: Annotated[int, arg(help="Processes that drive side by side; -1 is one per core.")] = -1,
     json: Json = False,
@@ -228,7 +237,7 @@ def demo(
     In a terminal it ends with the page of `latentarm teleop`. For example: latentarm demo --out demo
     """
     bars = not json and sys.stderr.isatty()
-    rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars))
+    rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars, arm=arm))
     write_options(out, "demo")
     show(rows, json)
     say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
@@ -236,4 +245,4 @@ def demo(
     if json or not (sys.stdin.isatty() and sys.stdout.isatty()):
         say(f"To drive the arm yourself: latentarm teleop {run}", json)
         return 0
-    return teleop(run, port=0, out=out / "teleop")
+    return teleop(run, port=0, out=out / "teleop", arm=arm)

@@ -8,8 +8,10 @@ from typing import Annotated, Final, Literal
 
 from tyro.conf import Positional, arg
 
+from latentarm.arms.catalogue import DEFAULT_ARM
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
+from latentarm.commands.choices import ArmName, BeliefName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seed
 from latentarm.commands.output import note, say, show
@@ -41,7 +43,6 @@ from latentarm.tasks.task import Task
 from latentarm.types import Row
 
 ControllerName = Literal["latent", "latent_assist", "end_effector"]
-BeliefName = Literal["boltzmann", "distance", "maximum_entropy"]
 ArbitrationName = Literal["fixed", "confidence"]
 
 MADE: Final = ("drives.json", "drives.csv", "paths.png")
@@ -61,6 +62,7 @@ class DriveConfig:
         out: folder for drives.json and the figure.
         task: what is to be done; what the run was trained for where None.
         robot: a robot's name or model file; that of the run where None.
+        arm: what moves, a simulated arm of `latentarm.arms.catalogue`.
         end_effector: site, body or link of a model file.
         limits: a limits file, or None.
         profile: name of the person whose alignment stands between input and latent action; z = u where None.
@@ -87,13 +89,14 @@ class DriveConfig:
     out: Path
     task: TaskName | None = None
     robot: str | None = None
+    arm: str = DEFAULT_ARM
     end_effector: str | None = None
     limits: Path | None = None
     profile: str | None = None
     drives: int = 3
     operator: OperatorName | None = None
     beta: float = BoltzmannConfig.beta
-    belief: BeliefName = "boltzmann"
+    belief: str = "boltzmann"
     arbitration: ArbitrationName | None = None
     alpha: float | None = None
     time_limit_s: float | None = None
@@ -169,8 +172,9 @@ def drive_run(config: DriveConfig, tell: Callable[[Sequence[str]], None] = lambd
         arbitration=arbitration,
         operator=BoltzmannConfig(beta=config.beta),
         time_limit_s=TIME_LIMITS_S[task.name] if config.time_limit_s is None else config.time_limit_s,
-        rule=BELIEFS[config.belief],
+        rule=BELIEFS.find(config.belief, "--belief"),
         planning=PLANNING[operator],
+        arm=config.arm,
     )
     about = _about(config, setup, operator, run, arbitration)
     if config.record is not None:
@@ -213,6 +217,7 @@ def _about(
         "controller": config.controller,
         "task": setup.task.name,
         "robot": robot.name,
+        "arm": config.arm,
         "end_effector": robot.chain.tools[0].name,
         "limit_sources": asdict(robot.limits.sources) | {"tool_speed": robot.tool_speed_source},
         "profile": config.profile,
@@ -312,6 +317,7 @@ def drive(
         str | None,
         arg(help="A robot's name or the path of an MJCF or URDF file; that of the run by default."),
     ] = None,
+    arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM,
     end_effector: EndEffector = None,
     limits: LimitsFile = None,
     profile: Annotated[
@@ -327,7 +333,7 @@ def drive(
     ] = None,
     beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0,
     belief: Annotated[
-        Literal["boltzmann", "distance", "maximum_entropy"],
+        BeliefName,
         arg(help="How inputs change the belief over goals, for help and for models trained on (s, b)."),
     ] = "boltzmann",
     arbitration: Annotated[
@@ -365,6 +371,7 @@ def drive(
             controller=controller or ("latent" if run else "end_effector"),
             task=task,
             robot=robot,
+            arm=arm,
             end_effector=end_effector,
             limits=limits,
             profile=profile,

@@ -8,6 +8,8 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
+from latentarm.arms.catalogue import DEFAULT_ARM
+from latentarm.commands.choices import ArmName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import say
@@ -27,6 +29,7 @@ def teleop(
     ] = None,
     certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
+    arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM,
     seed: Seed = 0,
     out: Annotated[Path, arg(metavar="DIR", help="Folder for what is recorded.")] = Path("teleop"),
     most_gb: Annotated[
@@ -57,7 +60,7 @@ def teleop(
             print(json_format.dumps({"address": address}), flush=True)
 
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
-    config = TeleopConfig(Spec(run, profile, seed, out, room), host, port, certfile, keyfile)
+    config = TeleopConfig(Spec(run, profile, seed, out, room, arm), host, port, certfile, keyfile)
     before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     serve(config, announce, ready)
     for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):

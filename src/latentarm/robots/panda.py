@@ -1,5 +1,7 @@
 """The Franka Emika Panda, built offline from the manufacturer's published figures."""
 
+from functools import cache
+
 import mujoco
 import numpy as np
 
@@ -104,8 +106,12 @@ _NEVER_MEET = (
 )
 
 
+@cache
 def panda() -> Robot:
-    """The Panda with its hand at a fixed opening; "tool" is the point between the fingertips."""
+    """The Panda with its hand at a fixed opening; "tool" is the point between the fingertips.
+
+    The same object each time: its arrays are not to be written to.
+    """
     spec = mujoco.MjSpec()
     spec.modelname = "panda"
     spec.compiler.degree = False

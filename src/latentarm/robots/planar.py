@@ -1,5 +1,7 @@
 """Planar arms as in the paper's simulations: n links of equal length, one arm or two."""
 
+from functools import cache
+
 import mujoco
 import numpy as np
 
@@ -17,8 +19,11 @@ BASES_APART_M = 0.8
 _RADIUS_M = 0.02
 
 
+@cache
 def planar(n_links: int = 5, arms: int = 1) -> Robot:
     """A planar arm in the x-y plane, or two side by side whose states are one vector.
+
+    The same object each time: its arrays are not to be written to.
 
     Args:
         n_links: joints of each arm.

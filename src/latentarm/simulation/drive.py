@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from latentarm.arms.kinematic import KinematicArm
+from latentarm.arms.catalogue import DEFAULT_ARM, make_simulated_arm
 from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import Arbitration
 from latentarm.assistance.boltzmann import BoltzmannBelief
@@ -46,6 +46,7 @@ class Setup:
         foresight: where the simulated operator expects an input to lead; they know the arm where None.
         planning: how far a simulated operator who knows the arm plans where one step leads no nearer; None
             never plans (see `latentarm.operators.catalogue`).
+        arm: what moves, a simulated arm of `latentarm.arms.catalogue`.
 
     Raises:
         UserError: an operator who does not know the arm is asked to plan.
@@ -59,6 +60,7 @@ class Setup:
     rule: Rule = BoltzmannBelief
     foresight: Foresight | None = None
     planning: PlanningConfig | None = None
+    arm: str = DEFAULT_ARM
 
     def __post_init__(self) -> None:
         if self.foresight is not None and self.planning is not None:
@@ -112,12 +114,12 @@ def simulate(
         The drive.
 
     Raises:
-        UserError: the task is done where the arm starts.
+        UserError: the task is done where the arm starts, or the arm cannot be used.
     """
     task, controller = setup.task, setup.controller
     dt_s = 1.0 / RATE_HZ
     start = task.sample_start(goal, rng)
-    arm = KinematicArm(task.robot, start, dt_s)
+    arm = make_simulated_arm(setup.arm, task.robot, start)
     step = _step(setup, dt_s)
     operator = make_operator(task.robot, setup.operator, setup.planning, setup.foresight, dt_s)
     remaining = list(task.waypoints(goal, manner))
@@ -140,7 +142,7 @@ def simulate(
         if watch is not None:
             watch(records[-1])
         arm.send(records[-1].command)
-        arm.advance()
+        arm.advance(dt_s)
     return _trace(records, setup, goal, manner, remaining, since_s)
 
 

@@ -6,6 +6,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.arms.catalogue import ARMS, DEFAULT_ARM
 from latentarm.assistance.blending import Arbitration, FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.journal_limits import JournalLimits
@@ -57,6 +58,7 @@ class Spec:
         seed: of where the arm starts.
         out: folder for recordings.
         journal: how much room a recording may take.
+        arm: what moves, a name of `latentarm.arms.catalogue`.
 
     Raises:
         UserError: the seed is none, or a profile is named without a run.
@@ -67,6 +69,7 @@ class Spec:
     seed: int = 0
     out: Path = Path("teleop")
     journal: JournalLimits = field(default_factory=JournalLimits)
+    arm: str = DEFAULT_ARM
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < 2**31:
@@ -183,8 +186,9 @@ def load_setting(spec: Spec) -> Setting:
     """Load what a spec names.
 
     Raises:
-        UserError: the run, its dataset or the profile is not to be had, or they do not fit each other.
+        UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
     """
+    ARMS.find(spec.arm, "--arm")  # here it can be said where the command was typed
     if spec.run is None:
         task = task_without_run()
         latent = None

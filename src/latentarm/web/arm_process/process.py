@@ -9,20 +9,22 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import FrameType
-from typing import Final
+from typing import Final, TypeVar
 
 from threadpoolctl import threadpool_limits
 
+from latentarm.arms.catalogue import make_live_arm
 from latentarm.arms.contract import Arm
-from latentarm.control.clock import MonotonicClock
+from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.control.loop import ControlLoop
 from latentarm.errors import UserError
 from latentarm.untrusted.terminal import one_line
 from latentarm.web.arm_process.cockpit import Cockpit
 from latentarm.web.arm_process.drive_setup import Setting, Spec, load_setting, with_profile
-from latentarm.web.arm_process.live_arm import LiveArm
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.protocol.channel import Channel, ChooseProfile, ChooseRun, Reset
+
+T = TypeVar("T")
 
 _PRIORITY: Final = 10
 """Of the least urgent real-time processes."""
@@ -52,7 +54,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
         clock = MonotonicClock()
         writer = EpisodeWriter(spec.out, spec.journal)
         cockpit = Cockpit(setting, channel, clock, writer, orphaned=lambda: os.getppid() != server)
-        arm: Arm = LiveArm(setting.task.robot, setting.start, clock)
+        arm = _arm(setting, clock)
         # Nothing that is there by now is ever garbage: the collector need not look through it.
         gc.collect()
         gc.freeze()
@@ -68,14 +70,12 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                     case None:
                         break
                     case Reset():
-                        arm = LiveArm(setting.task.robot, setting.start, clock)
+                        arm = _arm(setting, clock)
                     case ChooseProfile(name=name):
-                        setting, note = _loaded(partial(with_profile, setting, name), setting)
+                        setting, note = _loaded(partial(_other_profile, setting, name), setting)
                     case ChooseRun(run=run):
                         spec = replace(setting.spec, run=Path(run), profile=None)
-                        setting, note = _loaded(partial(load_setting, spec), setting)
-                        if not note:
-                            arm = LiveArm(setting.task.robot, setting.start, clock)
+                        (setting, arm), note = _loaded(partial(_other_run, spec, clock), (setting, arm))
         finally:
             writer.close()
             gc.unfreeze()
@@ -87,12 +87,26 @@ def _ask_for_priority() -> None:
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
-def _loaded(load: Callable[[], Setting], before: Setting) -> tuple[Setting, str]:
+def _arm(setting: Setting, clock: Clock) -> Arm:
+    return make_live_arm(setting.spec.arm, setting.task.robot, setting.start, clock.now_s)
+
+
+def _other_profile(setting: Setting, name: str | None) -> Setting:
+    other = with_profile(setting, name)
+    other.step()
+    return other
+
+
+def _other_run(spec: Spec, clock: Clock) -> tuple[Setting, Arm]:
+    setting = load_setting(spec)
+    setting.step()
+    return setting, _arm(setting, clock)
+
+
+def _loaded(load: Callable[[], T], before: T) -> tuple[T, str]:
     """What is loaded, or what there was before and why the other cannot be used."""
     try:
-        setting = load()
-        setting.step()
-        return setting, ""
+        return load(), ""
     except UserError as error:
         return before, one_line(str(error))
     except Exception as error:  # noqa: BLE001 - whatever a file does, the process that owns the arm goes on

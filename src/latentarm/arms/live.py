@@ -1,11 +1,9 @@
 """A simulated arm that lives in real time."""
 
+from collections.abc import Callable
 from typing import final
 
-from latentarm.arms.contract import Arm
-from latentarm.arms.kinematic import KinematicArm
-from latentarm.control.clock import Clock
-from latentarm.robots.robot import Robot
+from latentarm.arms.contract import Arm, SimulatedArm
 from latentarm.types import Command, FloatArray
 
 
@@ -16,18 +14,14 @@ class LiveArm(Arm):
     So it stops by itself once a command has run out, as a real one must.
 
     Args:
-        robot: whose joints these are.
-        state: (n,), where it starts, rad.
-        clock: the time that it lives in.
-
-    Raises:
-        UserError: see `KinematicArm`.
+        arm: what moves; nothing else may let time pass for it.
+        now_s: the time that it lives in, s; never goes back.
     """
 
-    def __init__(self, robot: Robot, state: FloatArray, clock: Clock) -> None:
-        self._arm = KinematicArm(robot, state, dt_s=1.0)
-        self._clock = clock
-        self._at_s = clock.now_s()
+    def __init__(self, arm: SimulatedArm, now_s: Callable[[], float]) -> None:
+        self._arm = arm
+        self._now_s = now_s
+        self._at_s = now_s()
 
     @property
     def simulated(self) -> bool:
@@ -36,23 +30,23 @@ class LiveArm(Arm):
 
     def state(self) -> FloatArray:
         """See the base class."""
-        return self._now().state()
+        return self._current().state()
 
     def velocity(self) -> FloatArray:
         """See the base class."""
-        return self._now().velocity()
+        return self._current().velocity()
 
     def send(self, command: Command) -> None:
         """See the base class."""
-        self._now().send(command)
+        self._current().send(command)
 
     def stop(self) -> None:
         """See the base class."""
-        self._now().stop()
+        self._current().stop()
 
-    def _now(self) -> KinematicArm:
+    def _current(self) -> SimulatedArm:
         """The arm as it is by now."""
-        now_s = self._clock.now_s()
+        now_s = self._now_s()
         if now_s > self._at_s:
             self._arm.advance(now_s - self._at_s)
         self._at_s = now_s
