@@ -20,12 +20,12 @@ from .demonstrations.dataset import read_dataset as read_dataset
 from .demonstrations.dataset import write_dataset as write_dataset
 from .demonstrations.importing import import_demonstrations as import_demonstrations
 from .errors import UserError as UserError
-from .models.autoencoders import CAE as CAE
-from .models.autoencoders import CVAE as CVAE
-from .models.catalogue import load_model as load_model
+from .models.autoencoders.training import CAE as CAE
+from .models.autoencoders.training import CVAE as CVAE
 from .models.decoder import load_decoder as load_decoder
-from .models.homogeneous import Homogeneous as Homogeneous
-from .models.linear import SCL as SCL
+from .models.homogeneous.training import Homogeneous as Homogeneous
+from .models.saving import load_model as load_model
+from .models.scl.training import SCL as SCL
 from .robots.catalogue import load_robot as load_robot
 from .runs.folder import read_run as read_run
 from .tasks.table_top import TableTop as TableTop

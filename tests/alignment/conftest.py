@@ -6,7 +6,7 @@ import torch
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.models.catalogue import MODELS
-from latentarm.models.pca import PCA
+from latentarm.models.pca.training import PCA
 from latentarm.robots.assemble import assemble
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.planar import planar

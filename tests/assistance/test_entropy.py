@@ -12,8 +12,8 @@ from latentarm.assistance.entropy import (
 )
 from latentarm.errors import UserError
 from latentarm.kinematics.torch_chain import TorchChain
-from latentarm.models.autoencoders import CAE
-from latentarm.models.pca import PCA
+from latentarm.models.autoencoders.training import CAE
+from latentarm.models.pca.training import PCA
 from latentarm.models.term import Situation
 from latentarm.robots.planar import planar
 from latentarm.types import Demonstrations, Episode

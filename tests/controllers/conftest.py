@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from latentarm.models.pca import PCA
+from latentarm.models.pca.training import PCA
 from latentarm.robots.catalogue import load_robot
 from latentarm.types import Demonstrations, Episode
 

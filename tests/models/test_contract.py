@@ -12,9 +12,9 @@ from sklearn.utils import estimator_checks
 from sklearn.utils.validation import check_is_fitted
 
 from latentarm.errors import UserError
-from latentarm.models.catalogue import MODELS, load_model
+from latentarm.models.catalogue import KINDS, MODELS
 from latentarm.models.decoder import load_decoder
-from latentarm.models.layout import LAYOUTS
+from latentarm.models.saving import load_model
 from latentarm.models.scaling import CollapseWarning
 
 SMALL = {"seeds": 2, "epochs": 3, "hidden": (8, 8), "window": 2}
@@ -30,8 +30,8 @@ def model(name, demonstrations):
     return MODELS[name](**SMALL).fit(demonstrations)
 
 
-def test_the_tables_name_the_same_models():
-    assert list(MODELS) == list(LAYOUTS) == [model.kind for model in MODELS.values()]
+def test_an_estimator_and_its_kind_name_each_other(name):
+    assert MODELS[name].kind is KINDS[name]
 
 
 def test_all_models_take_the_same_parameters(name):

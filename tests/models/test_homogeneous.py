@@ -11,9 +11,8 @@ from hypothesis.extra.numpy import arrays
 
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.models.batches import Batch
-from latentarm.models.decoder import odd_degrees
-from latentarm.models.homogeneous import Homogeneous
-from latentarm.models.layout import HOMOGENEOUS_DAMPING_M2, ORDERS
+from latentarm.models.homogeneous.runtime import DAMPING_M2, ORDERS, odd_degrees
+from latentarm.models.homogeneous.training import Homogeneous
 from latentarm.models.model import AHEAD_S
 from latentarm.models.networks import group_layers
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M
@@ -47,7 +46,7 @@ def metric(chain, state):
     """G(s) by its definition, from the chain alone."""
     weight = np.diag([1.0] * 3 + [ROTATION_WEIGHT_M**2] * 3)
     jacobian = chain.jacobian(state)
-    return jacobian.T @ weight @ jacobian + HOMOGENEOUS_DAMPING_M2 * np.eye(chain.dof)
+    return jacobian.T @ weight @ jacobian + DAMPING_M2 * np.eye(chain.dof)
 
 
 @settings(max_examples=80)

@@ -15,8 +15,8 @@ from latentarm.errors import UserError
 from latentarm.models.batches import Batch
 from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import load_decoder
-from latentarm.models.isometric import Isometric, _geometry
-from latentarm.models.layout import ISOMETRIC_DAMPING_M2
+from latentarm.models.isometric.runtime import DAMPING_M2
+from latentarm.models.isometric.training import Isometric, _geometry
 from latentarm.models.networks import group_layers
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M, ToolContexts
 from latentarm.robots.catalogue import load_robot
@@ -55,7 +55,7 @@ def metric(chain, state):
     weight = np.diag([1.0] * 3 + [ROTATION_WEIGHT_M**2] * 3)
     jacobians = [chain.jacobian(state, tool) for tool in range(len(chain.tools))]
     tools = sum(jacobian.T @ weight @ jacobian for jacobian in jacobians) / len(jacobians)
-    return tools + ISOMETRIC_DAMPING_M2 * np.eye(chain.dof)
+    return tools + DAMPING_M2 * np.eye(chain.dof)
 
 
 def saturation(model):
@@ -200,8 +200,8 @@ def test_two_arms_count_both_tools(samples):
 def test_an_observation_is_what_its_chain_says(demonstrations):
     arm = planar(4)
     context = demonstrations.episodes[0].state[:7]
-    contexts = ToolContexts.fitted(arm.chain, context, ISOMETRIC_DAMPING_M2)
-    again = ToolContexts.of_tensors(contexts.tensors(), ISOMETRIC_DAMPING_M2)
+    contexts = ToolContexts.fitted(arm.chain, context, DAMPING_M2)
+    again = ToolContexts.of_tensors(contexts.tensors(), DAMPING_M2)
     np.testing.assert_array_equal(again.apply(context), contexts.apply(context))
     sizes = contexts.sizes
     jacobian = contexts.apply(context)[:, sizes.jacobian].reshape(7, 6, 4)
@@ -224,14 +224,14 @@ def test_it_needs_to_know_the_arm(demonstrations):
 
 
 def test_a_model_of_another_metric_is_refused(demonstrations):
-    contexts = ToolContexts.fitted(planar(4).chain, demonstrations.episodes[0].state, ISOMETRIC_DAMPING_M2)
+    contexts = ToolContexts.fitted(planar(4).chain, demonstrations.episodes[0].state, DAMPING_M2)
     with pytest.raises(UserError, match="train it again"):
         ToolContexts.of_tensors(
-            {**contexts.tensors(), "metric.scale": np.array([0.1, ISOMETRIC_DAMPING_M2])},
-            ISOMETRIC_DAMPING_M2,
+            {**contexts.tensors(), "metric.scale": np.array([0.1, DAMPING_M2])},
+            DAMPING_M2,
         )
     with pytest.raises(UserError, match="train it again"):
-        ToolContexts.of_tensors(contexts.tensors(), 2 * ISOMETRIC_DAMPING_M2)
+        ToolContexts.of_tensors(contexts.tensors(), 2 * DAMPING_M2)
 
 
 @pytest.mark.parametrize(

@@ -11,9 +11,9 @@ import pytest
 from safetensors.numpy import load, save
 
 from latentarm.errors import UserError
-from latentarm.models.catalogue import MODELS, load_model
+from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import load_decoder
-from latentarm.models.saving import write_model
+from latentarm.models.saving import load_model, write_model
 
 CONFIG, WEIGHTS = "config.json", "model.safetensors"
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Final, final
 
-from latentarm.models.layout import Shape
+from latentarm.models.kind import Shape
 from latentarm.models.numpy_networks import Layer, halve_hidden, propagate
 from latentarm.types import FloatArray
 

@@ -20,7 +20,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.latent import LatentController
 from latentarm.kinematics.obstacles import Sphere
-from latentarm.models.autoencoders import CVAE
+from latentarm.models.autoencoders.training import CVAE
 from latentarm.models.training import epoch_bar
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.tasks.table_top import TableTop

@@ -1,54 +1,58 @@
-"""Every latent action model by name, and reading a saved one back."""
+"""Every latent action model by name: ours, and those that other distributions add (`latentarm.models`)."""
 
-from dataclasses import fields
-from pathlib import Path
-from typing import Any, Final, cast
+from collections.abc import Iterator, Mapping
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Final, final
 
-from latentarm.errors import UserError
-from latentarm.models.autoencoders import AE, CAE, CVAE, VAE
-from latentarm.models.homogeneous import Homogeneous
-from latentarm.models.isometric import Isometric
-from latentarm.models.linear import SCL
-from latentarm.models.model import LatentActionModel
-from latentarm.models.parameters import check_parameters
-from latentarm.models.pca import PCA
-from latentarm.models.saving import read_model
-from latentarm.models.zero_penalty import CAEZero
-from latentarm.types import StrPath
+from latentarm.models.kind import ModelKind
+from latentarm.plugins import Catalogue
 
-MODELS: Final[dict[str, type[LatentActionModel]]] = {
-    "pca": PCA,
-    "ae": AE,
-    "vae": VAE,
-    "cae": CAE,
-    "cvae": CVAE,
-    "cae_zero": CAEZero,
-    "scl": SCL,
-    "isometric": Isometric,
-    "homogeneous": Homogeneous,
-}
+if TYPE_CHECKING:
+    from latentarm.models.model import LatentActionModel
 
 
-def load_model(folder: StrPath) -> LatentActionModel:
-    """Read a model that was saved to a folder.
+def _as_kind(name: str, thing: object) -> ModelKind:
+    if not isinstance(thing, ModelKind):
+        raise TypeError(f"it registers a {type(thing).__name__}, not a ModelKind")
+    if thing.name != name:
+        raise ValueError(f"its ModelKind calls itself '{thing.name}'")
+    return thing
 
-    Raises:
-        UserError: a file is missing, broken, foreign, of another version, or does not agree with the
-            other.
-    """
-    folder = Path(folder)
-    trained = read_model(folder)
-    model_class = MODELS[trained.kind]
-    parameters = cast(dict[str, Any], dict(trained.parameters))
-    if isinstance(parameters.get("hidden"), list):
-        parameters["hidden"] = tuple(parameters["hidden"])
-    known = {entry.name for entry in fields(model_class) if entry.init}
-    for name in sorted(known ^ set(parameters)):
-        state = "lacks the" if name in known else "holds an unknown"
-        raise UserError(f"{folder / 'config.json'} {state} parameter '{name}' of the {trained.kind} model.")
-    check_parameters(parameters)
-    model = model_class(**parameters)
-    if (model.latent_dim, model.seeds) != (trained.dimensions.latent, trained.dimensions.seeds):
-        raise UserError(f"{folder / 'config.json'} contradicts itself: parameters and dimensions differ.")
-    model.trained_ = trained
-    return model
+
+KINDS: Final = Catalogue(
+    "latentarm.models",
+    "model",
+    {
+        "pca": "latentarm.models.pca.runtime:PCA",
+        "ae": "latentarm.models.autoencoders.runtime:AE",
+        "vae": "latentarm.models.autoencoders.runtime:VAE",
+        "cae": "latentarm.models.autoencoders.runtime:CAE",
+        "cvae": "latentarm.models.autoencoders.runtime:CVAE",
+        "cae_zero": "latentarm.models.autoencoders.runtime:CAE_ZERO",
+        "scl": "latentarm.models.scl.runtime:SCL",
+        "isometric": "latentarm.models.isometric.runtime:ISOMETRIC",
+        "homogeneous": "latentarm.models.homogeneous.runtime:HOMOGENEOUS",
+    },
+    _as_kind,
+)
+"""What each kind is, in the order in which tables and figures show them. Needs no torch."""
+
+
+@final
+class _Estimators(Mapping[str, "type[LatentActionModel]"]):
+    """The class that trains each kind; looking one up imports torch."""
+
+    def __getitem__(self, name: str) -> "type[LatentActionModel]":
+        return resolve_name(KINDS[name].estimator)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(KINDS)
+
+    def __len__(self) -> int:
+        return len(KINDS)
+
+    def __contains__(self, name: object) -> bool:
+        return name in KINDS
+
+
+MODELS: Final = _Estimators()

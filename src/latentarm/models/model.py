@@ -4,12 +4,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar, Final, Literal, Self
+from typing import ClassVar, Final, Literal, Self, final
 from warnings import warn
 
 import numpy as np
 import torch
 from sklearn.base import BaseEstimator
+from sklearn.exceptions import NotFittedError
 from torch import Tensor
 
 from latentarm.demonstrations.pairs import make_pairs
@@ -18,10 +19,20 @@ from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import TrainingData
 from latentarm.models.decoder import Decoder
-from latentarm.models.layout import LAYOUTS, Dimensions
+from latentarm.models.kind import Dimensions, ModelKind, TrainedModel, TrainingSummary
 from latentarm.models.networks import Networks
 from latentarm.models.normaliser import Normaliser, action_normaliser, context_normaliser
-from latentarm.models.parameters import check_parameters, check_rows, check_validation
+from latentarm.models.parameters import (
+    MOST_SEEDS,
+    RANGE,
+    Choice,
+    Real,
+    Whole,
+    Widths,
+    check_parameters,
+    check_rows,
+    check_validation,
+)
 from latentarm.models.saving import write_model
 from latentarm.models.scaling import (
     EFFECT_SAMPLES,
@@ -35,9 +46,7 @@ from latentarm.models.scaling import (
 from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.torch_decoder import TorchDecoder
-from latentarm.models.trained import TrainedModel, TrainingSummary
 from latentarm.models.training import Report, TrainingResult
-from latentarm.models.unfitted import UnfittedError
 from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs, StrPath
 
@@ -48,6 +57,11 @@ AHEAD_S: Final = 0.1
 """How far ahead those models look that do, s: as long as a short press of the stick."""
 
 Weights = Mapping[str, FloatArray]
+
+
+@final
+class UnfittedError(UserError, NotFittedError):
+    """A model is used before `fit`: bad input to us, and scikit-learn's own error to its tools."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -83,35 +97,34 @@ class LatentActionModel(BaseEstimator, ABC):
         trained_: what `fit` learned.
     """
 
-    kind: ClassVar[str]
-    """The name of the model on disk and on the command line."""
-
-    rests_at_zero: ClassVar[bool]
-    """Whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must stay u = 0.
-    Where it does not, u = 0 is the mean latent action of the demonstrations."""
-
-    sees_tools: ClassVar[bool] = False
-    """Whether the model looks at the arm's tools and their Jacobians, so that fitting needs a known arm."""
+    kind: ClassVar[ModelKind]
+    """What the model is apart from its training."""
 
     looks_ahead: ClassVar[bool] = False
     """Whether the loss looks at the context that an action leads to within `AHEAD_S`."""
 
-    latent_dim: int = 2
-    context: Literal["state", "state_belief"] = "state"
-    actions: Literal["displacement", "recorded"] = "displacement"
-    window: int = 5
-    state_noise_rad: float = 0.0
-    validation_fraction: float = 0.2
-    data_seed: int = 0
-    seeds: int = 1
-    seed: int = 0
-    hidden: tuple[int, ...] = (32, 32)
-    learning_rate: float = 1e-2
-    epochs: int = 30
-    batch_size: int = 32
-    patience: int = 10
-    device: Literal["cpu", "cuda", "auto"] = "cpu"
-    checkpoint_interval_s: float = 5.0
+    latent_dim: int = field(default=2, metadata={RANGE: Whole()})
+    context: Literal["state", "state_belief"] = field(
+        default="state", metadata={RANGE: Choice(("state", "state_belief"))}
+    )
+    actions: Literal["displacement", "recorded"] = field(
+        default="displacement", metadata={RANGE: Choice(("displacement", "recorded"))}
+    )
+    window: int = field(default=5, metadata={RANGE: Whole()})
+    state_noise_rad: float = field(default=0.0, metadata={RANGE: Real()})
+    validation_fraction: float = field(default=0.2, metadata={RANGE: Real(below=1.0, strictly=True)})
+    data_seed: int = field(default=0, metadata={RANGE: Whole(0)})
+    seeds: int = field(default=1, metadata={RANGE: Whole(1, MOST_SEEDS)})
+    seed: int = field(default=0, metadata={RANGE: Whole(0)})
+    hidden: tuple[int, ...] = field(default=(32, 32), metadata={RANGE: Widths()})
+    learning_rate: float = field(default=1e-2, metadata={RANGE: Real(strictly=True)})
+    epochs: int = field(default=30, metadata={RANGE: Whole()})
+    batch_size: int = field(default=32, metadata={RANGE: Whole()})
+    patience: int = field(default=10, metadata={RANGE: Whole()})
+    device: Literal["cpu", "cuda", "auto"] = field(
+        default="cpu", metadata={RANGE: Choice(("cpu", "cuda", "auto"))}
+    )
+    checkpoint_interval_s: float = field(default=5.0, metadata={RANGE: Real()})
     trained_: TrainedModel = field(init=False)
 
     @abstractmethod
@@ -172,7 +185,7 @@ class LatentActionModel(BaseEstimator, ABC):
         Warns:
             CollapseWarning: a latent dimension moves nothing; ``collapsed_`` says which.
         """
-        check_parameters(self.get_params(deep=False))
+        check_parameters(type(self), self.get_params(deep=False))
         if validation is None:
             rng = np.random.default_rng([self.data_seed, 0])
             validation = [
@@ -183,13 +196,13 @@ class LatentActionModel(BaseEstimator, ABC):
         pairs = make_pairs(
             demonstrations, self.window, self.state_noise_rad, self.context, rng, actions=self.actions
         )
-        arm = self._arm(demonstrations, chain) if self.sees_tools else None
+        arm = self._arm(demonstrations, chain) if self.kind.sees_tools else None
         chosen = tuple(int(index) for index in validation)
         saved = None if checkpoint is None else Path(checkpoint)
         self.trained_ = self._fit_pairs(pairs, chosen, arm, term, saved, report)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds
-            warn(CollapseWarning(describe_collapse(self.kind, seeds, self.collapsed_)), stacklevel=2)
+            warn(CollapseWarning(describe_collapse(self.kind.name, seeds, self.collapsed_)), stacklevel=2)
         return self
 
     def encode(self, context: FloatArray, action: FloatArray) -> FloatArray:
@@ -300,8 +313,8 @@ class LatentActionModel(BaseEstimator, ABC):
         if chain is None:
             if not demonstrations.robot:
                 raise UserError(
-                    f"The {self.kind} model looks at the arm's tool, and the demonstrations do not say which "
-                    "arm they are of: name it when they are imported (--robot)."
+                    f"The {self.kind.name} model looks at the arm's tool, and the demonstrations do not say"
+                    " which arm they are of: name it when they are imported (--robot)."
                 )
             chain = load_recorded_robot(demonstrations).chain
         if chain.dof != demonstrations.dof:
@@ -334,7 +347,7 @@ class LatentActionModel(BaseEstimator, ABC):
                 f"A latent action of {dimensions.latent} dimensions is no smaller than the arm's "
                 f"{dimensions.action}: choose at most {dimensions.action}."
             )
-        contexts, actions = _normalisers(arm, LAYOUTS[self.kind].damping_m2, context, action)
+        contexts, actions = _normalisers(arm, self.kind.damping_m2, context, action)
         shown = contexts.apply(context)
         elsewhere = shown[:0]
         if term is not None:
@@ -359,9 +372,9 @@ class LatentActionModel(BaseEstimator, ABC):
         learned = self._learn(data, dimensions, scaled, checkpoint, report)
         weights = learned.weights
         latents = self._encode_rows(weights, data.context, data.action)
-        centre = np.zeros_like(latents[:, 0]) if self.rests_at_zero else latents.mean(axis=1)
+        centre = np.zeros_like(latents[:, 0]) if self.kind.rests_at_zero else latents.mean(axis=1)
         # A model that searches for z does so within the input's range.
-        in_input_units = LAYOUTS[self.kind].encoder == "nearest"
+        in_input_units = self.kind.encoder == "nearest"
         scale = unit_scale(latents) if in_input_units else latent_scale(latents, centre)
         rows = np.linspace(0, len(context) - 1, min(EFFECT_SAMPLES, len(context))).astype(np.int64)
         effect = effect_of_dimensions(
@@ -386,7 +399,7 @@ class LatentActionModel(BaseEstimator, ABC):
                 validation_loss=learned.validation_loss,
                 best_epoch=learned.best_epoch,
                 history=learned.history,
-                collapsed=find_collapsed(effect, latents, LAYOUTS[self.kind]),
+                collapsed=find_collapsed(effect, latents, gaussian=self.kind.encoder == "gaussian"),
             ),
         )
 
@@ -409,7 +422,7 @@ class LatentActionModel(BaseEstimator, ABC):
     def _fitted(self) -> TrainedModel:
         if not hasattr(self, "trained_"):
             raise UnfittedError(
-                f"This {self.kind} model is not fitted yet: call fit first, or load a saved one."
+                f"This {self.kind.name} model is not fitted yet: call fit first, or load a saved one."
             )
         return self.trained_
 

@@ -7,7 +7,7 @@ from typing import Final, final
 import torch
 from torch import Tensor
 
-from latentarm.models.layout import Shape
+from latentarm.models.kind import Shape
 from latentarm.types import FloatArray
 
 Layer = tuple[Tensor, Tensor]

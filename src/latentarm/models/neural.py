@@ -13,9 +13,9 @@ from torch import Tensor
 
 from latentarm.errors import UserError
 from latentarm.models.batches import Batch, TrainingData
-from latentarm.models.layout import LAYOUTS, Dimensions, weight_shapes
+from latentarm.models.kind import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
-from latentarm.models.networks import Networks, mlp, networks_from_arrays
+from latentarm.models.networks import Networks, networks_from_arrays
 from latentarm.models.scaling import SPAN_QUANTILE
 from latentarm.models.term import ScaledTerm, Span
 from latentarm.models.training import Report, TrainingConfig, TrainingResult, train
@@ -53,15 +53,14 @@ class NeuralModel(LatentActionModel, ABC):
         checkpoint: Path | None,
         report: Report | None,
     ) -> TrainingResult:
-        layout = LAYOUTS[self.kind]
         apart = ("device", "checkpoint_interval_s")
         identity = {name: value for name, value in self.get_params(deep=False).items() if name not in apart}
         if term is not None:
             identity["term"] = dict(term.term.settings)
         return train(
             self._objective(term),
-            weight_shapes(layout, dimensions),
-            dimensions.latent if layout.encoder == "gaussian" else 0,
+            self.kind.weight_shapes(dimensions),
+            dimensions.latent if self.kind.encoder == "gaussian" else 0,
             data,
             self.seed_numbers,
             TrainingConfig(
@@ -74,7 +73,7 @@ class NeuralModel(LatentActionModel, ABC):
             device=choose_device(self.device),
             start=self.start(data, dimensions) if self.start else None,
             checkpoint=checkpoint,
-            identity=json.dumps({"kind": self.kind, **identity}, sort_keys=True),
+            identity=json.dumps({"kind": self.kind.name, **identity}, sort_keys=True),
             report=report,
         )
 
@@ -94,9 +93,9 @@ class NeuralModel(LatentActionModel, ABC):
     def _span(self, latent: Tensor) -> Span:
         """What `LatentActionModel.fit` will scale inputs to, as far as a batch (S, B, d) tells."""
         centre = latent.mean(dim=1, keepdim=True)
-        if self.rests_at_zero:
+        if self.kind.rests_at_zero:
             centre = torch.zeros_like(centre)
-        if LAYOUTS[self.kind].encoder == "nearest":
+        if self.kind.encoder == "nearest":
             return Span(centre, torch.ones_like(centre))
         return Span(centre, (latent - centre).abs().quantile(SPAN_QUANTILE, dim=1, keepdim=True))
 
@@ -126,22 +125,6 @@ def choose_device(name: str) -> torch.device:
     if name == "cuda" and not present:
         raise UserError("The device is cuda, but torch finds no CUDA on this machine: use cpu, or auto.")
     return torch.device("cuda" if present and name in ("cuda", "auto") else "cpu")
-
-
-def encoder_output(networks: Networks, context: Tensor, action: Tensor) -> Tensor:
-    """The encoder network on (c, a): (S, B, c) and (S, B, m) to (S, B, d), or 2 d for a Gaussian one."""
-    return mlp(networks["encoder"], torch.cat([context, action], dim=-1))
-
-
-def posterior(networks: Networks, context: Tensor, action: Tensor) -> tuple[Tensor, Tensor]:
-    """Mean and log variance of a Gaussian encoder, each (S, B, d)."""
-    mean, log_variance = encoder_output(networks, context, action).chunk(2, dim=-1)
-    return mean, log_variance
-
-
-def conditioned_action(networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
-    """The decoder network on (z, c): (S, B, d) and (S, B, c) to (S, B, m)."""
-    return mlp(networks["decoder"], torch.cat([latent, context], dim=-1))
 
 
 def _for_every_seed(networks: Networks, values: FloatArray) -> Tensor:

@@ -1,10 +1,15 @@
-"""One small network as the control loop runs it: NumPy alone."""
+"""Small networks as the control loop runs them: one seed, NumPy alone, with scalings folded in."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 
+from latentarm.models.kind import TrainedModel
 from latentarm.types import FloatArray
+
+NORM_FLOOR: Final = 1e-12
+"""Added under the root of a squared column length, so that a column of zeros divides by a number."""
 
 Layer = tuple[FloatArray, FloatArray]
 """Weight (in, out) and bias (out,)."""
@@ -33,3 +38,34 @@ def network_output(values: FloatArray, layers: Sequence[Layer]) -> FloatArray:
     """Through all layers, whose weights `halve_hidden` gave."""
     (weight, bias), *rest = layers
     return propagate(values @ weight + bias, rest)
+
+
+def layers_of(trained: TrainedModel, seed: int, network: str = "decoder") -> list[Layer]:
+    """A network's weights (in, out) and biases (out,) of one seed, copied out of the stack."""
+    tensors, count = trained.tensors, 0
+    layers: list[Layer] = []
+    while f"{network}.{count}.weight" in tensors:
+        weight, bias = tensors[f"{network}.{count}.weight"], tensors[f"{network}.{count}.bias"]
+        layers.append((weight[seed].copy(), bias[seed, 0].copy()))
+        count += 1
+    return layers
+
+
+def scale_output(layers: list[Layer], scale: FloatArray) -> list[Layer]:
+    """Let a network whose last layer gives normalised actions give rad/s."""
+    weight, bias = layers[-1]
+    return [*layers[:-1], (weight * scale, bias * scale)]
+
+
+def scale_latent(layer: Layer, trained: TrainedModel, seed: int) -> Layer:
+    """Let a first layer that takes z take u instead: z = centre + scale u."""
+    weight, bias = layer
+    latents = trained.latents
+    return latents.scale[seed, 0][:, None] * weight, bias + latents.centre[seed, 0] @ weight
+
+
+def scale_context(layer: Layer, trained: TrainedModel) -> Layer:
+    """Let a first layer that takes a normalised context take a raw one."""
+    weight, bias = layer
+    scaled = weight / trained.tensors["context.scale"][:, None]
+    return scaled, bias - trained.tensors["context.centre"] @ scaled

@@ -1,40 +1,22 @@
-"""Refusing parameters and arrays that make no sense, in one sentence each."""
+"""Ranges of parameters, which stand in the fields' metadata, and refusals in one sentence each."""
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Final
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Final, final
 
 import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
 
-WHOLE: Final = {
-    "latent_dim": 1,
-    "window": 1,
-    "seeds": 1,
-    "seed": 0,
-    "data_seed": 0,
-    "epochs": 1,
-    "batch_size": 1,
-    "patience": 1,
-}
-"""Whole-numbered parameters and the least that each may be."""
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
-POSITIVE: Final = ("learning_rate",)
-NOT_NEGATIVE: Final = (
-    "state_noise_rad",
-    "checkpoint_interval_s",
-    "kl_weight",
-    "zero_weight",
-    "bend_weight",
-    "smoothness_weight",
-)
-CHOICES: Final = {
-    "context": ("state", "state_belief"),
-    "actions": ("displacement", "recorded"),
-    "device": ("cpu", "cuda", "auto"),
-}
+RANGE: Final = "range"
+"""Key of a parameter's `Range` in the metadata of its field."""
+
 WIDEST: Final = 4096
 """Units of a hidden layer, at most."""
 MOST_SEEDS: Final = 1000
@@ -43,42 +25,102 @@ LARGEST: Final = 2**31 - 1
 """A whole-numbered parameter or a seed, at most."""
 
 
-def check_parameters(parameters: Mapping[str, object]) -> None:
-    """Check the values of a model's parameters, whoever wrote them.
+class Range(ABC):
+    """What a parameter may be. ``str()`` of it completes "it must be ..."."""
+
+    @abstractmethod
+    def __contains__(self, value: object) -> bool: ...
+
+
+@final
+@dataclass(frozen=True)
+class Whole(Range):
+    """A whole number.
+
+    Attributes:
+        least: the smallest.
+        most: the largest.
+    """
+
+    least: int = 1
+    most: int = LARGEST
+
+    def __contains__(self, value: object) -> bool:
+        return type(value) is int and self.least <= value <= self.most
+
+    def __str__(self) -> str:
+        return f"a whole number from {self.least} to {self.most}"
+
+
+@final
+@dataclass(frozen=True)
+class Real(Range):
+    """A finite number.
+
+    Attributes:
+        least: the smallest.
+        below: what it stays below.
+        strictly: whether ``least`` itself is too small.
+    """
+
+    least: float = 0.0
+    below: float = math.inf
+    strictly: bool = False
+
+    def __contains__(self, value: object) -> bool:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return False
+        return (value > self.least if self.strictly else value >= self.least) and value < self.below
+
+    def __str__(self) -> str:
+        if self.below < math.inf:
+            return f"a number between {self.least:g} and {self.below:g}"
+        return f"a finite number {'above' if self.strictly else 'of at least'} {self.least:g}"
+
+
+@final
+@dataclass(frozen=True)
+class Choice(Range):
+    """One of a few texts.
+
+    Attributes:
+        among: these.
+    """
+
+    among: tuple[str, ...]
+
+    def __contains__(self, value: object) -> bool:
+        return value in self.among
+
+    def __str__(self) -> str:
+        return f"one of {', '.join(self.among)}"
+
+
+@final
+class Widths(Range):
+    """Units of each hidden layer."""
+
+    def __contains__(self, value: object) -> bool:
+        return isinstance(value, tuple) and all(units in Whole(1, WIDEST) for units in value)
+
+    def __str__(self) -> str:
+        return f"a tuple of whole numbers from 1 to {WIDEST}"
+
+
+def check_parameters(model: "type[DataclassInstance]", parameters: Mapping[str, object]) -> None:
+    """Check a model's parameters against the ranges in its fields' metadata, whoever wrote them.
 
     Raises:
         UserError: a value has the wrong type or lies outside its range.
     """
-    for name, value in parameters.items():
-        problem = _problem(name, value)
-        if problem:
-            raise UserError(f"The model parameter {name} is {value!r}; it must be {problem}.")
+    for entry in fields(model):
+        allowed: Range | None = entry.metadata.get(RANGE)
+        if allowed is not None and entry.name in parameters and parameters[entry.name] not in allowed:
+            said = repr(parameters[entry.name])
+            raise UserError(f"The model parameter {entry.name} is {said}; it must be {allowed}.")
     first, seeds = parameters.get("seed"), parameters.get("seeds")
     if isinstance(first, int) and isinstance(seeds, int) and first + seeds - 1 > LARGEST:
         raise UserError(f"{seeds} seeds from {first} on end beyond {LARGEST}: choose a smaller first seed.")
-
-
-def _problem(name: str, value: object) -> str:
-    """What the value should have been, or nothing where it is right."""
-    number = value if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
-    if name in WHOLE:
-        most = MOST_SEEDS if name == "seeds" else LARGEST
-        fits = isinstance(number, int) and WHOLE[name] <= number <= most
-        return "" if fits else f"a whole number from {WHOLE[name]} to {most}"
-    if name in POSITIVE:
-        return "" if 0 < number < math.inf else "a positive number"
-    if name in NOT_NEGATIVE:
-        return "" if 0 <= number < math.inf else "a finite number, zero or more"
-    if name in CHOICES:
-        return "" if value in CHOICES[name] else f"one of {', '.join(CHOICES[name])}"
-    if name == "validation_fraction":
-        return "" if 0 < number < 1 else "a number between 0 and 1"
-    if name == "hidden":
-        fits = isinstance(value, tuple) and all(
-            type(units) is int and 1 <= units <= WIDEST for units in value
-        )
-        return "" if fits else f"a tuple of whole numbers from 1 to {WIDEST}"
-    return "absent: no such parameter is known"
 
 
 def check_validation(validation: Sequence[int], episodes: int) -> None:

@@ -9,9 +9,10 @@ import json
 import math
 import platform
 from collections.abc import Mapping
+from dataclasses import fields
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 from safetensors import SafetensorError
@@ -19,11 +20,16 @@ from safetensors.numpy import load, save
 
 from latentarm.errors import UserError
 from latentarm.files import write_text, written_whole
-from latentarm.models.layout import LAYOUTS, Dimensions, Shape, tensor_shapes
+from latentarm.models.catalogue import KINDS, MODELS
+from latentarm.models.kind import Dimensions, Shape, TrainedModel, TrainingSummary
+from latentarm.models.parameters import check_parameters
 from latentarm.models.reading import Section
-from latentarm.models.trained import TrainedModel, TrainingSummary
-from latentarm.types import FloatArray
+from latentarm.plugins import Origin
+from latentarm.types import FloatArray, StrPath
 from latentarm.untrusted.opening import read_bytes
+
+if TYPE_CHECKING:
+    from latentarm.models.model import LatentActionModel
 
 CONFIG_NAME: Final = "config.json"
 WEIGHTS_NAME: Final = "model.safetensors"
@@ -58,9 +64,11 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
     with written_whole(folder / WEIGHTS_NAME) as part:
         part.write_bytes(content)
     dimensions, summary = trained.dimensions, trained.summary
+    origin = KINDS.origin(trained.kind.name)
     section = {
         "schema": SCHEMA,
-        "kind": trained.kind,
+        "kind": trained.kind.name,
+        **({} if origin is None else {"distribution": origin.distribution}),
         "parameters": dict(trained.parameters),
         "dimensions": {
             "seeds": dimensions.seeds,
@@ -85,7 +93,7 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
             name: {"shape": list(array.shape), "dtype": "F64"} for name, array in trained.tensors.items()
         },
         "sha256": hashlib.sha256(content).hexdigest(),
-        "versions": {"python": platform.python_version(), **_versions()},
+        "versions": {"python": platform.python_version(), **_versions(origin)},
     }
     write_text(folder / CONFIG_NAME, json.dumps({**run, "model": section}, indent=2) + "\n")
 
@@ -104,9 +112,8 @@ def read_model(folder: Path) -> TrainedModel:
             f"{path} has schema {schema} and this version reads schemas 2 and {SCHEMA}: train the model"
             " again."
         )
-    kind = section.text("kind")
-    if kind not in LAYOUTS:
-        raise UserError(f"{path} names the model '{kind}', which is none of {', '.join(LAYOUTS)}.")
+    name, origin = section.text("kind"), section.plain().get("distribution")
+    kind = KINDS.find(name, str(path), origin if isinstance(origin, str) else None)
     sizes = section.section("dimensions")
     dimensions = Dimensions(
         seeds=sizes.integer("seeds", 1),
@@ -116,13 +123,11 @@ def read_model(folder: Path) -> TrainedModel:
         hidden=tuple(sizes.integers("hidden", 1, longest=MOST_LAYERS)),
         tools=sizes.integer("tools", 0),
     )
-    if LAYOUTS[kind].decoder == "isometry" and (
-        dimensions.tools < 1 or dimensions.context < dimensions.action
-    ):
+    if kind.sees_tools and (dimensions.tools < 1 or dimensions.context < dimensions.action):
         raise UserError(
-            f"{path}: a model of kind '{kind}' has at least one tool, and the state in its context."
+            f"{path}: a model of kind '{name}' has at least one tool, and the state in its context."
         )
-    shapes = tensor_shapes(LAYOUTS[kind], dimensions)
+    shapes = kind.tensor_shapes(dimensions)
     parameters = _renamed(section.section("parameters"))
     parameters.choice("context", ("state", "state_belief"))
     training = _renamed(section.section("training"))
@@ -137,6 +142,33 @@ def read_model(folder: Path) -> TrainedModel:
     )
     tensors = read_tensors(folder / WEIGHTS_NAME, shapes, section.text("sha256"))
     return TrainedModel(kind, parameters.plain(), dimensions, tensors, summary)
+
+
+def load_model(folder: StrPath) -> "LatentActionModel":
+    """Read a model that was saved to a folder, to encode with or to fit anew. Imports torch.
+
+    Raises:
+        UserError: a file is missing, broken, foreign, of another version, or does not agree with the
+            other, or the distribution that the model came from is not installed.
+    """
+    folder = Path(folder)
+    trained = read_model(folder)
+    path, kind = folder / CONFIG_NAME, trained.kind.name
+    model_class = MODELS[kind]
+    parameters: dict[str, Any] = {
+        name: tuple(cast(list[object], value)) if isinstance(value, list) else value
+        for name, value in trained.parameters.items()
+    }
+    known = {entry.name for entry in fields(model_class) if entry.init}
+    for name in sorted(known ^ set(parameters)):
+        state = "lacks the" if name in known else "holds an unknown"
+        raise UserError(f"{path} {state} parameter '{name}' of the {kind} model.")
+    check_parameters(model_class, parameters)
+    model = model_class(**parameters)
+    if (model.latent_dim, model.seeds) != (trained.dimensions.latent, trained.dimensions.seeds):
+        raise UserError(f"{path} contradicts itself: parameters and dimensions differ.")
+    model.trained_ = trained
+    return model
 
 
 def _renamed(section: Section) -> Section:
@@ -197,8 +229,8 @@ def _are_links(links: FloatArray, joints: int, each_before_its_own: bool) -> boo
     return bool(((links == np.round(links)) & (links >= -1) & (links < limit)).all())
 
 
-def _versions() -> dict[str, str]:
-    versions: dict[str, str] = {}
+def _versions(origin: Origin | None) -> dict[str, str]:
+    versions = {} if origin is None else {origin.distribution: origin.version}
     for package in PACKAGES:
         try:
             versions[package] = version(package)

@@ -5,7 +5,6 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.models.layout import Layout
 from latentarm.models.normaliser import Normaliser
 from latentarm.types import BoolArray, FloatArray
 
@@ -78,19 +77,19 @@ def effect_of_dimensions(
     return np.stack(effects, axis=-1)
 
 
-def find_collapsed(effect: FloatArray, latents: FloatArray, layout: Layout) -> BoolArray:
+def find_collapsed(effect: FloatArray, latents: FloatArray, *, gaussian: bool) -> BoolArray:
     """Which dimensions learned nothing.
 
     Args:
         effect: (S, d), see `effect_of_dimensions`.
         latents: (S, N, d), the encoder's means on the training pairs.
-        layout: the model's; a Gaussian encoder may also collapse to its prior.
+        gaussian: whether the encoder is, and may also collapse to its prior.
 
     Returns:
         (S, d).
     """
     dead = effect < DEAD_EFFECT
-    if layout.encoder == "gaussian":
+    if gaussian:
         dead |= latents.var(axis=1) < INACTIVE_VARIANCE
     return dead
 

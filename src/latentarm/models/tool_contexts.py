@@ -10,14 +10,35 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain, Frame
-from latentarm.models.layout import PLACE, TWIST
 from latentarm.models.normaliser import Normaliser, context_normaliser
 from latentarm.models.scaling import SPAN_QUANTILE
 from latentarm.types import FloatArray
 
+TWIST: Final = 6
+"""Entries of a tool's twist: 3 of velocity, 3 of angular velocity."""
+
+PLACE: Final = 9
+"""Numbers that tell a network where a tool is: its position and the first two columns of its rotation."""
+
 ROTATION_WEIGHT_M: Final = 0.05
 """What a turn of a tool by 1 rad counts beside a motion by 1 m. Low, so that directions of z are told apart
 by where they move the tools; not zero, so that turning a tool in place counts too."""
+
+
+def tool_shapes(joints: int, tools: int) -> dict[str, tuple[int, ...]]:
+    """Shapes of what a saved model keeps of an arm of n joints and k tools, by name (see `ToolContexts`)."""
+    return {
+        "place.centre": (PLACE * tools,),
+        "place.scale": (PLACE * tools,),
+        "metric.scale": (2,),
+        "chain.parent": (joints,),
+        "chain.offset": (joints, 4, 4),
+        "chain.axis": (joints, 3),
+        "chain.anchor": (joints, 3),
+        "chain.slide": (joints,),
+        "chain.tool_link": (tools,),
+        "chain.tool": (tools, 4, 4),
+    }
 
 
 @final

@@ -6,11 +6,10 @@ from typing import cast, final
 import torch
 from torch import Tensor
 
-from latentarm.models.layout import weight_shapes
+from latentarm.models.kind import TrainedModel
 from latentarm.models.networks import Networks, group_layers
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.torch_tool_contexts import TorchToolContexts
-from latentarm.models.trained import TrainedModel
 from latentarm.types import FloatArray
 
 Action = Callable[[Networks, Tensor, Tensor], Tensor]
@@ -56,7 +55,7 @@ class TorchDecoder:
         self.context_dim = trained.dimensions.context
         self.action_dim = trained.dimensions.action
         self.dtype = dtype
-        learned = weight_shapes(trained.layout, trained.dimensions)
+        learned = trained.kind.weight_shapes(trained.dimensions)
         self._networks = group_layers(
             {name: tensor(trained.tensors[name][seed : seed + 1]) for name in learned}
         )

@@ -1,4 +1,8 @@
-"""`ToolContexts` in torch: what a decoder is shown of the arm, differentiable with respect to the state."""
+"""`ToolContexts` and the metric of the tools in torch, differentiable with respect to the state.
+
+Joint velocities a come with their weighted twists J_w a, as `latentarm.models.tool_contexts` has them; then
+``a^T G b = (J_w a)^T (J_w b) + damping a^T b``, and G itself is never needed.
+"""
 
 from typing import final
 
@@ -6,8 +10,7 @@ import torch
 from torch import Tensor
 
 from latentarm.kinematics.torch_chain import TorchChain
-from latentarm.models.layout import TWIST
-from latentarm.models.tool_contexts import ToolContexts
+from latentarm.models.tool_contexts import TWIST, ToolContexts
 from latentarm.types import FloatArray
 
 
@@ -52,3 +55,14 @@ class TorchToolContexts:
             ],
             dim=-1,
         )
+
+
+def inner(first: Tensor, first_twist: Tensor, second: Tensor, second_twist: Tensor, damping: float) -> Tensor:
+    """``a^T G b`` of joint velocities (..., m) with weighted twists (..., 6 k): (..., 1)."""
+    joints = damping * (first * second).sum(-1, keepdim=True)
+    return (first_twist * second_twist).sum(-1, keepdim=True) + joints
+
+
+def applied(matrix: Tensor, vector: Tensor) -> Tensor:
+    """``A v`` of (..., k, d) and (..., d): (..., k). Element by element, since they are small and many."""
+    return (matrix * vector[..., None, :]).sum(-1)

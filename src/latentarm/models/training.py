@@ -16,7 +16,7 @@ from torch import Tensor
 from latentarm.errors import UserError
 from latentarm.models.batches import Batch, Batches, TrainingData, seed_generator
 from latentarm.models.checkpoint import TrainingState, fingerprint, read_checkpoint, write_checkpoint
-from latentarm.models.layout import Shape
+from latentarm.models.kind import Shape
 from latentarm.models.networks import FlatNetworks, Networks
 from latentarm.models.optimiser import FlatAdam, falling_rate
 from latentarm.types import FloatArray, IntArray

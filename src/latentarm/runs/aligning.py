@@ -16,7 +16,7 @@ from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.metrics.measures import unit_of
 from latentarm.metrics.results import as_document
-from latentarm.models.catalogue import load_model
+from latentarm.models.saving import load_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
 from latentarm.runs.questions import ENSEMBLE, Scene, Watch, shown, unwatched

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.models.layout import LAYOUTS
+from latentarm.models.catalogue import KINDS
 from latentarm.studies.properties.paper import MODELS_OF_THE_PAPER
 from latentarm.studies.statistics import LEVEL, Direction, compare_means, holm
 from latentarm.types import FloatArray
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 LINEAR: Final = 0.9
 """R^2 above which effects count as consistent and scalable. The paper calls 0.94 ± 0.04 "roughly linear", the
 lowest that it prints; this is one SD below, where a line still explains nine tenths of the variance."""
-
-CONTEXT_FREE: Final = frozenset({"linear", "latent"})
-"""Forms of decoder (see `latentarm.models.layout`) that do not see the context."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +118,7 @@ class Comparison:
 
 def conditioned(model: str) -> bool:
     """Whether a model's decoder sees the context."""
-    return LAYOUTS[model].decoder not in CONTEXT_FREE
+    return KINDS[model].sees_context
 
 
 def compare_models(results: Sequence["CellResult"]) -> list[Comparison]:

@@ -1,6 +1,6 @@
 """A decoder that is an isometry: as far as the input is pushed, so far the tools move, anywhere."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Final, NamedTuple, final
 
 import numpy as np
@@ -8,13 +8,15 @@ import torch
 from torch import Tensor
 
 from latentarm.models.batches import Batch, TrainingData
-from latentarm.models.decoder import BEND_SIZE, NORM_FLOOR
-from latentarm.models.layout import ISOMETRIC_DAMPING_M2, PLACE, TWIST, Dimensions
-from latentarm.models.metric import applied, inner
+from latentarm.models.isometric.runtime import BEND_SIZE, DAMPING_M2, ISOMETRIC
+from latentarm.models.kind import Dimensions, ModelKind
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
+from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.objectives import reconstruction_error
-from latentarm.models.tool_contexts import ToolSizes
+from latentarm.models.parameters import RANGE, Real
+from latentarm.models.tool_contexts import PLACE, TWIST, ToolSizes
+from latentarm.models.torch_tool_contexts import applied, inner
 from latentarm.types import FloatArray
 
 STRAIGHT_START: Final = 2.0
@@ -83,11 +85,9 @@ class Isometric(NeuralModel):
         bend_weight: price of the bend, as the tools show it, and of kappa, per unit of their squares.
     """
 
-    kind: ClassVar[str] = "isometric"
-    rests_at_zero: ClassVar[bool] = True
-    sees_tools: ClassVar[bool] = True
+    kind: ClassVar[ModelKind] = ISOMETRIC
     start = staticmethod(principal_start)
-    bend_weight: float = 1e-3
+    bend_weight: float = field(default=1e-3, metadata={RANGE: Real()})
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         gain = _gain(networks)
@@ -152,7 +152,7 @@ def _geometry(networks: Networks, context: Tensor, latent_dim: int) -> _Geometry
     column_twist = jacobian @ columns
     straight, straight_twist = _orthonormal(columns[..., :latent_dim], column_twist[..., :latent_dim])
     bend, bend_twist = BEND_SIZE * columns[..., latent_dim:], BEND_SIZE * column_twist[..., latent_dim:]
-    along = _gram(straight_twist, bend_twist) + ISOMETRIC_DAMPING_M2 * _gram(straight, bend)
+    along = _gram(straight_twist, bend_twist) + DAMPING_M2 * _gram(straight, bend)
     for axis in range(latent_dim):
         part = along[..., axis, None, :]
         bend = bend - straight[..., axis, None] * part
@@ -172,9 +172,9 @@ def _orthonormal(columns: Tensor, twists: Tensor) -> tuple[Tensor, Tensor]:
     for raw, raw_twist in zip(columns.unbind(-1), twists.unbind(-1), strict=True):
         column, twist = raw, raw_twist
         for other, other_twist in zip(done, done_twist, strict=True):
-            along = inner(column, twist, other, other_twist, ISOMETRIC_DAMPING_M2)
+            along = inner(column, twist, other, other_twist, DAMPING_M2)
             column, twist = column - along * other, twist - along * other_twist
-        size = (inner(column, twist, column, twist, ISOMETRIC_DAMPING_M2) + NORM_FLOOR).rsqrt()
+        size = (inner(column, twist, column, twist, DAMPING_M2) + NORM_FLOOR).rsqrt()
         done.append(column * size)
         done_twist.append(twist * size)
     return torch.stack(done, dim=-1), torch.stack(done_twist, dim=-1)
@@ -186,7 +186,7 @@ def _decoded(geometry: _Geometry, gain: _Gain, latent: Tensor) -> Tensor:
     direction = latent / radius.clamp_min(NORM_FLOOR)
     turn = _turn(radius)
     bend, bend_twist = applied(geometry.bend, direction), applied(geometry.bend_twist, direction)
-    bend_size = inner(bend, bend_twist, bend, bend_twist, ISOMETRIC_DAMPING_M2)
+    bend_size = inner(bend, bend_twist, bend, bend_twist, DAMPING_M2)
     led = applied(geometry.straight, direction) + turn * bend
     return gain.at(radius) * led * (1 + turn.square() * bend_size).rsqrt()
 
@@ -208,7 +208,7 @@ def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
     """
     straight, bend, bend_twist = geometry
     overlap, cross, spread = _gram(straight, straight), _gram(straight, bend), _gram(bend, bend)
-    bend_metric = _entries(_gram(bend_twist, bend_twist) + ISOMETRIC_DAMPING_M2 * spread)
+    bend_metric = _entries(_gram(bend_twist, bend_twist) + DAMPING_M2 * spread)
     overlap, cross, spread = _entries(overlap), _entries(cross + cross.mT), _entries(spread)
     on_straight, on_bend = applied(straight.mT, action)[..., None], applied(bend.mT, action)[..., None]
     axes = range(len(overlap))

@@ -1,6 +1,6 @@
 """A decoder that is homogeneous: half the push moves half as fast, and the opposite push goes back."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Final, NamedTuple, final
 
 import numpy as np
@@ -8,13 +8,15 @@ import torch
 from torch import Tensor
 
 from latentarm.models.batches import Batch, TrainingData
-from latentarm.models.decoder import BEND_SIZE, NORM_FLOOR
-from latentarm.models.layout import HOMOGENEOUS_DAMPING_M2, ORDERS, PLACE, Dimensions
-from latentarm.models.metric import applied, inner
+from latentarm.models.homogeneous.runtime import BEND_SIZE, DAMPING_M2, HOMOGENEOUS, ORDERS
+from latentarm.models.kind import Dimensions, ModelKind
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
+from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.objectives import reconstruction_error
-from latentarm.models.tool_contexts import ToolSizes
+from latentarm.models.parameters import RANGE, Real
+from latentarm.models.tool_contexts import PLACE, ToolSizes
+from latentarm.models.torch_tool_contexts import applied, inner
 from latentarm.types import FloatArray
 
 STRAIGHT_START: Final = 8.0
@@ -77,12 +79,10 @@ class Homogeneous(NeuralModel):
             not undo.
     """
 
-    kind: ClassVar[str] = "homogeneous"
-    rests_at_zero: ClassVar[bool] = True
-    sees_tools: ClassVar[bool] = True
+    kind: ClassVar[ModelKind] = HOMOGENEOUS
     looks_ahead: ClassVar[bool] = True
     start = staticmethod(principal_start)
-    smoothness_weight: float = 2.0
+    smoothness_weight: float = field(default=2.0, metadata={RANGE: Real()})
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         here = _geometry(networks, batch.context, batch.action.shape[-1])
@@ -131,12 +131,12 @@ def _geometry(networks: Networks, context: Tensor, joints: int) -> _Geometry:
     for axis in range(latent):
         column, twist = columns[..., axis], twists[..., axis]
         for other, other_twist in zip(straight, straight_twist, strict=True):
-            along = inner(column, twist, other, other_twist, HOMOGENEOUS_DAMPING_M2)
+            along = inner(column, twist, other, other_twist, DAMPING_M2)
             column, twist = column - along * other, twist - along * other_twist
-        size = (inner(column, twist, column, twist, HOMOGENEOUS_DAMPING_M2) + NORM_FLOOR).rsqrt()
+        size = (inner(column, twist, column, twist, DAMPING_M2) + NORM_FLOOR).rsqrt()
         column, twist = column * size, twist * size
         along = (twist[..., None] * bend_twist).sum(-2, keepdim=True)
-        along = along + HOMOGENEOUS_DAMPING_M2 * (column[..., None] * bend).sum(-2, keepdim=True)
+        along = along + DAMPING_M2 * (column[..., None] * bend).sum(-2, keepdim=True)
         bend, bend_twist = bend - column[..., None] * along, bend_twist - twist[..., None] * along
         straight.append(column)
         straight_twist.append(twist)
@@ -147,7 +147,7 @@ def _geometry(networks: Networks, context: Tensor, joints: int) -> _Geometry:
 
 
 def _odd_degrees(direction: Tensor) -> Tensor:
-    """As `latentarm.models.decoder.odd_degrees`, in torch."""
+    """As `latentarm.models.homogeneous.runtime.odd_degrees`, in torch."""
     twice = 4 * direction.square() - 2
     before, degree, parts = direction, direction, [direction]
     for _ in ORDERS:
@@ -161,7 +161,7 @@ def _decoded(geometry: _Geometry, latent: Tensor) -> Tensor:
     radius = torch.linalg.vector_norm(latent, dim=-1, keepdim=True)
     degrees = _odd_degrees(latent / radius.clamp_min(NORM_FLOOR))
     led, twist = applied(geometry.columns, degrees), applied(geometry.twists, degrees)
-    return radius * led * (inner(led, twist, led, twist, HOMOGENEOUS_DAMPING_M2) + NORM_FLOOR).rsqrt()
+    return radius * led * (inner(led, twist, led, twist, DAMPING_M2) + NORM_FLOOR).rsqrt()
 
 
 @torch.no_grad()
@@ -197,7 +197,7 @@ def _nearest(geometry: _Geometry, action: Tensor) -> Tensor:
         spacing /= 4
     degrees = _odd_degrees(best)
     led, twist = applied(geometry.columns, degrees), applied(geometry.twists, degrees)
-    size = (inner(led, twist, led, twist, HOMOGENEOUS_DAMPING_M2) + NORM_FLOOR).sqrt()
+    size = (inner(led, twist, led, twist, DAMPING_M2) + NORM_FLOOR).sqrt()
     push = (led * action).sum(-1, keepdim=True) * size / (led.square().sum(-1, keepdim=True) + NORM_FLOOR)
     return push * best
 

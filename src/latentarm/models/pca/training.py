@@ -10,9 +10,10 @@ from torch import Tensor
 
 from latentarm.errors import UserError
 from latentarm.models.batches import TrainingData
-from latentarm.models.layout import Dimensions
+from latentarm.models.kind import Dimensions, ModelKind
 from latentarm.models.model import LatentActionModel, Weights
 from latentarm.models.networks import Networks, mlp
+from latentarm.models.pca import runtime
 from latentarm.models.term import ScaledTerm
 from latentarm.models.training import Report, TrainingResult
 from latentarm.types import FloatArray
@@ -27,8 +28,7 @@ class PCA(LatentActionModel):
     Nothing in it is random: every seed gets the same.
     """
 
-    kind: ClassVar[str] = "pca"
-    rests_at_zero: ClassVar[bool] = False
+    kind: ClassVar[ModelKind] = runtime.PCA
 
     def _learn(
         self,

@@ -7,10 +7,12 @@ import torch
 from torch import Tensor
 
 from latentarm.models.batches import Batch
-from latentarm.models.decoder import NORM_FLOOR
+from latentarm.models.kind import ModelKind
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.neural import NeuralModel
+from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.objectives import reconstruction_error
+from latentarm.models.scl import runtime
 
 
 @final
@@ -24,8 +26,7 @@ class SCL(NeuralModel):
     ``psi(c, a) = M(c)^T a``: the best z there is, without weights of its own.
     """
 
-    kind: ClassVar[str] = "scl"
-    rests_at_zero: ClassVar[bool] = True
+    kind: ClassVar[ModelKind] = runtime.SCL
 
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         columns = _columns(networks, batch.context, batch.action.shape[-1])

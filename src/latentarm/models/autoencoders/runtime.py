@@ -1,0 +1,126 @@
+"""The autoencoders apart from their training.
+
+In all of them the encoder psi(c, a) sees context and action; conditioning is about the decoder alone.
+"""
+
+from dataclasses import replace
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
+from latentarm.models.numpy_networks import (
+    halve_hidden,
+    layers_of,
+    propagate,
+    scale_context,
+    scale_latent,
+    scale_output,
+)
+from latentarm.style import Look
+from latentarm.types import FloatArray
+
+
+@final
+class LatentDecoder(Runtime):
+    """phi(z) of PCA, AE and VAE."""
+
+    def __init__(self, trained: TrainedModel, seed: int) -> None:
+        layers = scale_output(layers_of(trained, seed), trained.actions.scale)
+        weight, bias = scale_latent(layers[0], trained, seed)
+        (self._weight, self._bias), *self._rest = halve_hidden([(weight, bias), *layers[1:]])
+
+    def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
+        """See `Runtime`."""
+        action = propagate(z @ self._weight + self._bias, self._rest)
+        if context.ndim == 1:
+            return action
+        shape = np.broadcast_shapes(action.shape[:-1], context.shape[:-1])
+        return np.broadcast_to(action, (*shape, action.shape[-1]))
+
+
+@final
+class ConditionedDecoder(Runtime):
+    """phi(z, c) of the conditioned autoencoders."""
+
+    def __init__(self, trained: TrainedModel, seed: int) -> None:
+        layers = scale_output(layers_of(trained, seed), trained.actions.scale)
+        d = trained.dimensions.latent
+        weight, bias = layers[0]
+        # Two products instead of one over (z, c) joined: cheaper than joining, and they broadcast.
+        from_latent, bias = scale_latent((weight[:d], bias), trained, seed)
+        from_context, bias = scale_context((weight[d:], bias), trained)
+        weight = np.concatenate([from_latent, from_context])
+        (weight, self._bias), *self._rest = halve_hidden([(weight, bias), *layers[1:]])
+        self._from_latent, self._from_context = weight[:d].copy(), weight[d:].copy()
+
+    def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
+        """See `Runtime`."""
+        first = z @ self._from_latent + (context @ self._from_context + self._bias)
+        return propagate(first, self._rest)
+
+
+def _latent_sizes(dimensions: Dimensions) -> dict[str, Shape]:
+    return {"decoder": (dimensions.latent, *dimensions.hidden, dimensions.action)}
+
+
+def _conditioned_sizes(dimensions: Dimensions) -> dict[str, Shape]:
+    seen = dimensions.latent + dimensions.context
+    return {"decoder": (seen, *dimensions.hidden, dimensions.action)}
+
+
+_MOVES: Final = (
+    "The {name} may move with the stick at rest and need not go back when it is pressed back; for rest and"
+    " reversal by construction try --model homogeneous, or the plainer --model scl."
+)
+_TRAINING: Final = "latentarm.models.autoencoders.training"
+
+AE: Final = ModelKind(
+    name="ae",
+    description="The plainest network; does not see where the arm is.",
+    look=Look("AE", "#E69F00", "v", "--"),
+    estimator=f"{_TRAINING}:AE",
+    runtime=LatentDecoder,
+    decoder=_latent_sizes,
+    encoder="deterministic",
+    sees_context=False,
+    advice=_MOVES.format(name="ae"),
+)
+VAE: Final = replace(
+    AE,
+    name="vae",
+    description="A smoother network; does not see where the arm is.",
+    look=Look("VAE", "#CC79A7", "^", "--"),
+    estimator=f"{_TRAINING}:VAE",
+    encoder="gaussian",
+    advice=_MOVES.format(name="vae"),
+)
+CAE: Final = ModelKind(
+    name="cae",
+    description="The plainest network that sees where the arm is; trained in seconds.",
+    look=Look("cAE", "#0072B2", "o", "-"),
+    estimator=f"{_TRAINING}:CAE",
+    runtime=ConditionedDecoder,
+    decoder=_conditioned_sizes,
+    encoder="deterministic",
+    advice=_MOVES.format(name="cae"),
+)
+CVAE: Final = replace(
+    CAE,
+    name="cvae",
+    description="Sees where the arm is; smooth under the stick, and trained in seconds.",
+    look=Look("cVAE", "#009E73", "D", "-"),
+    estimator=f"{_TRAINING}:CVAE",
+    encoder="gaussian",
+    advice=_MOVES.format(name="cvae"),
+)
+CAE_ZERO: Final = replace(
+    CAE,
+    name="cae_zero",
+    description="A cAE that is told to rest when the stick rests.",
+    look=Look("cAE, zero penalty", "#56B4E9", "P", "-."),
+    estimator=f"{_TRAINING}:CAEZero",
+    rests_at_zero=True,
+    advice="The cae_zero nearly rests but need not go back when the stick is pressed back; for both by"
+    " construction try --model homogeneous, or the plainer --model scl.",
+)

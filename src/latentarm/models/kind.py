@@ -1,0 +1,204 @@
+"""What a kind of latent action model is apart from its training, and a trained model of it. NumPy alone."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal, final
+
+from latentarm.errors import UserError
+from latentarm.models.normaliser import Normaliser
+from latentarm.models.tool_contexts import ToolContexts, tool_shapes
+from latentarm.style import Look
+from latentarm.types import BoolArray, FloatArray, IntArray
+
+Encoder = Literal["projection", "nearest", "deterministic", "gaussian"]
+Shape = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Dimensions:
+    """The sizes that fix every tensor's shape.
+
+    Attributes:
+        seeds: S, models trained side by side.
+        latent: d.
+        context: c.
+        action: m.
+        hidden: units of each hidden layer, the same in encoder and decoder.
+        tools: k, end-effectors of the arm; 0 where the model does not look at them.
+    """
+
+    seeds: int
+    latent: int
+    context: int
+    action: int
+    hidden: tuple[int, ...]
+    tools: int = 0
+
+
+class Runtime(ABC):
+    """phi of one trained seed as the control loop runs it: NumPy alone, a few microseconds."""
+
+    @abstractmethod
+    def __init__(self, trained: "TrainedModel", seed: int) -> None:
+        """Take one seed's decoder out of a trained model; there is such a seed."""
+
+    @abstractmethod
+    def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
+        """Joint velocities (..., m), rad/s, of inputs (..., d) in contexts (..., c), which broadcast."""
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class ModelKind:
+    """Everything that the project knows of a kind of model, except how it is trained.
+
+    Attributes:
+        name: on disk, on the command line and in results.
+        description: one sentence for people who choose a model.
+        look: how figures draw it, and its name there.
+        estimator: the class that trains it, a `LatentActionModel`, as ``package.module:Class``. It is
+            imported when a model is trained, so that running one needs no torch.
+        runtime: the decoder in NumPy.
+        decoder: layer widths, input first, by network, of the networks that decode.
+        encoder: ``projection`` onto the columns of the decoder or the ``nearest`` action that it can
+            decode (neither has weights of its own), or a network of (c, a) whose output is z
+            (``deterministic``) or (mu, log sigma^2) (``gaussian``).
+        sees_context: whether the decoder sees the context.
+        rests_at_zero: whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must
+            stay u = 0. Where it does not, u = 0 is the mean latent action of the demonstrations.
+        reverses: whether it rests, and the opposite input goes back, by construction.
+        damping_m2: for models that look at the arm's tools, what a joint's motion by 1 rad counts beside
+            the square of a tool's motion by 1 m, in the metric of the tools: enough to keep motions that no
+            tool shows from being free. None for models that do not look.
+        advice: which model to try next and why, in one clause; "" where nothing was measured.
+    """
+
+    name: str
+    description: str
+    look: Look
+    estimator: str
+    runtime: type[Runtime]
+    decoder: Callable[[Dimensions], Mapping[str, Shape]]
+    encoder: Encoder
+    sees_context: bool = True
+    rests_at_zero: bool = False
+    reverses: bool = False
+    damping_m2: float | None = None
+    advice: str = ""
+
+    @property
+    def sees_tools(self) -> bool:
+        """Whether it looks at the arm's tools and their Jacobians, so that fitting needs a known arm."""
+        return self.damping_m2 is not None
+
+    def weight_shapes(self, dimensions: Dimensions) -> dict[str, Shape]:
+        """Shape, with the leading seed axis, of every learned tensor by name (``decoder.0.weight``, ...)."""
+        inputs, d = dimensions.context + dimensions.action, dimensions.latent
+        outputs = {"deterministic": d, "gaussian": 2 * d}.get(self.encoder)
+        networks = dict(self.decoder(dimensions))
+        if outputs is not None:
+            networks["encoder"] = (inputs, *dimensions.hidden, outputs)
+        return {
+            f"{network}.{layer}.{part}": (dimensions.seeds, rows, width)
+            for network, sizes in networks.items()
+            for layer, (before, width) in enumerate(pairwise(sizes))
+            for part, rows in (("weight", before), ("bias", 1))
+        }
+
+    def tensor_shapes(self, dimensions: Dimensions) -> dict[str, Shape]:
+        """Shape of every tensor of a saved model: the learned ones, the normalisers and the latent scale."""
+        return {
+            **self.weight_shapes(dimensions),
+            **(tool_shapes(dimensions.action, dimensions.tools) if self.sees_tools else {}),
+            "context.centre": (dimensions.context,),
+            "context.scale": (dimensions.context,),
+            "action.scale": (1,),
+            "latent.centre": (dimensions.seeds, dimensions.latent),
+            "latent.scale": (dimensions.seeds, dimensions.latent),
+        }
+
+
+@final
+@dataclass(frozen=True)
+class TrainingSummary:
+    """How a training went.
+
+    Attributes:
+        seeds: the S seeds.
+        validation_episodes: indices of the episodes that decided when training stopped.
+        validation_loss: (S,), loss on their pairs, in normalised units.
+        best_epoch: (S,), the epoch whose weights were kept, counted from 1.
+        history: (E, S), validation loss after each epoch, NaN where it was not a number; E = 0 where
+            there were none.
+        collapsed: (S, d), latent dimensions that move nothing.
+    """
+
+    seeds: tuple[int, ...]
+    validation_episodes: tuple[int, ...]
+    validation_loss: FloatArray
+    best_epoch: IntArray
+    history: FloatArray
+    collapsed: BoolArray
+
+
+@final
+@dataclass(frozen=True)
+class TrainedModel:
+    """What a fit leaves behind, as plain arrays: the record that is saved, loaded and run.
+
+    Attributes:
+        kind: which kind of model.
+        parameters: what the model was constructed with, as JSON has it.
+        dimensions: its sizes.
+        tensors: float64 arrays by name, as `ModelKind.tensor_shapes` lists them.
+        summary: how the training went.
+    """
+
+    kind: ModelKind
+    parameters: Mapping[str, object]
+    dimensions: Dimensions
+    tensors: Mapping[str, FloatArray]
+    summary: TrainingSummary
+
+    @property
+    def contexts(self) -> Normaliser | ToolContexts:
+        """The map from contexts (..., c) to what the networks see."""
+        if self.kind.sees_tools:
+            return self.tool_contexts
+        return Normaliser(self.tensors["context.centre"], self.tensors["context.scale"])
+
+    @property
+    def tool_contexts(self) -> ToolContexts:
+        """`contexts` of a model that looks at the tools.
+
+        Raises:
+            UserError: it does not.
+        """
+        if self.kind.damping_m2 is None:
+            raise UserError(f"A {self.kind.name} model does not look at the arm's tools.")
+        return ToolContexts.of_tensors(self.tensors, self.kind.damping_m2)
+
+    @property
+    def actions(self) -> Normaliser:
+        """Normaliser of actions (..., m)."""
+        scale = self.tensors["action.scale"]
+        return Normaliser(0.0 * scale, scale)
+
+    @property
+    def latents(self) -> Normaliser:
+        """From latent actions as trained (S, N, d) to inputs u."""
+        return Normaliser(self.tensors["latent.centre"][:, None], self.tensors["latent.scale"][:, None])
+
+    def check_seed_index(self, seed: int) -> None:
+        """Refuse a seed's index that this model does not have.
+
+        Raises:
+            UserError: ``seed`` is not within 0..S-1.
+        """
+        if not 0 <= seed < self.dimensions.seeds:
+            raise UserError(
+                f"This model has no seed index {seed}: it was trained with {self.dimensions.seeds} "
+                f"(0 to {self.dimensions.seeds - 1})."
+            )

@@ -1,0 +1,25 @@
+"""PCA apart from its training. It decodes as an autoencoder without hidden layers does."""
+
+from typing import Final
+
+from latentarm.models.autoencoders.runtime import LatentDecoder
+from latentarm.models.kind import Dimensions, ModelKind, Shape
+from latentarm.style import Look
+
+
+def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
+    return {"decoder": (dimensions.latent, dimensions.action)}
+
+
+PCA: Final = ModelKind(
+    name="pca",
+    description="The same straight directions wherever the arm is; there to compare with.",
+    look=Look("PCA", "#7f7f7f", "s", ":"),
+    estimator="latentarm.models.pca.training:PCA",
+    runtime=LatentDecoder,
+    decoder=_sizes,
+    encoder="projection",
+    sees_context=False,
+    advice="The pca moves the joints alike in every state; for motions that depend on the state try"
+    " --model homogeneous, or the plainer --model scl.",
+)
