@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from documentation import PAGES, ROOT, SLOW, commands, name_of, run_page
+from latentarm import __version__
 from latentarm.cli import main
 
 SHARED = ROOT.parent / "shared" / "demonstrations"
@@ -107,3 +108,11 @@ def test_architecture_names_every_package() -> None:
 def test_no_registry_host_or_absolute_path_is_named() -> None:
     for page in PAGES:
         assert not re.search(r"pypi\.org|/work/|/tmp/|/root/", page.read_text()), page
+
+
+def test_the_newest_version_of_the_changelog_is_that_of_the_package() -> None:
+    versions = re.findall(
+        r"^## (\d+\.\d+\.\d+) - \d{4}-\d\d-\d\d$", (ROOT / "CHANGELOG.md").read_text(), re.M
+    )
+    assert versions[0] == __version__
+    assert f"version: {__version__}\n" in (ROOT / "CITATION.cff").read_text()
