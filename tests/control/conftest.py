@@ -143,19 +143,20 @@ class Oracle:
 
 
 def box_distance(a: FloatArray, b: FloatArray, box: Box) -> FloatArray:
-    """Distance of segments to a box by ternary search; zero inside."""
+    """Distance of segments to a box, whose square is convex along a segment, by bisection; zero inside."""
     a, b = (a - box.centre) @ box.rotation, (b - box.centre) @ box.rotation
+    way = b - a
 
-    def at(s: FloatArray) -> FloatArray:
-        outside = np.maximum(np.abs(a + s[..., None] * (b - a)) - box.half_extents, 0.0)
-        return np.sqrt((outside**2).sum(-1))
+    def outside(s: FloatArray) -> FloatArray:
+        at = a + s[..., None] * way
+        return at - np.clip(at, -box.half_extents, box.half_extents)
 
     low, high = np.zeros(a.shape[:-1]), np.ones(a.shape[:-1])
-    for _ in range(80):
-        left, right = low + (high - low) / 3, high - (high - low) / 3
-        nearer = at(left) < at(right)
-        low, high = np.where(nearer, low, left), np.where(nearer, right, high)
-    return np.minimum(np.minimum(at(low), at(high)), np.minimum(at(0 * low), at(0 * low + 1)))
+    for _ in range(40):
+        middle = (low + high) / 2
+        rises = np.vecdot(outside(middle), way) > 0
+        low, high = np.where(rises, low, middle), np.where(rises, middle, high)
+    return np.linalg.norm(outside((low + high) / 2), axis=-1)
 
 
 @pytest.fixture(scope="session")
