@@ -11,9 +11,10 @@ CONSTRAIN := $(if $(LOCK),PIP_CONSTRAINT=$(abspath $(LOCK)))
 UV := $(CONSTRAIN) $(BIN)/python scripts/uv.py
 INSTALL := $(UV) pip install --quiet --python $(BIN)/python $(TORCH)
 WORKERS ?= $(shell env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)
-# One thread for each worker, and a test file stays with one worker, so that what it trains is trained once.
+# One thread for each worker. A test file stays with one worker, so that what it trains is trained once; tests/conftest.py
+# orders the files.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
-PARALLEL := --numprocesses $(WORKERS) --dist loadfile
+PARALLEL := --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-all test-thorough check format bench docs dist lock arms clean

@@ -1,4 +1,5 @@
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -6,10 +7,20 @@ from matplotlib.figure import Figure
 
 from figure_faults import faults
 
+HERE = Path(__file__).parent
+
 # On a busy machine a single example may take long without anything being wrong.
 settings.register_profile("latentarm", deadline=None)
 settings.register_profile("thorough", max_examples=10_000, deadline=None)
 settings.load_profile("latentarm")
+
+LONGEST_FIRST = ("studies", "models", "parallel", "cli", "docs", "simulation", "control")
+"""Folders whose files take longest: a worker that begins one last would keep the others waiting."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    rank = {name: index for index, name in enumerate(LONGEST_FIRST)}
+    items.sort(key=lambda item: rank.get(item.path.relative_to(HERE).parts[0], len(rank)))
 
 
 @pytest.fixture(autouse=True, scope="session")
