@@ -17,7 +17,7 @@ PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
 PARALLEL := --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-thorough check format bench docs dist lock arms clean
+.PHONY: help demo test test-all test-thorough check message-types format bench docs dist lock arms clean
 
 help: ## Show what can be made.
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -47,7 +47,11 @@ check: $(VENV)/installed-dev node_modules/installed ## Lint, formatting, types a
 	$(BIN)/lint-imports
 	$(BIN)/node node_modules/typescript/bin/tsc
 
+message-types: $(VENV)/installed-dev ## Write the types of the page's messages for its JavaScript.
+	$(BIN)/python scripts/message_types.py
+
 test: check ## Everything that must hold, in minutes.
+	$(BIN)/node --test 'tests/web/js/*.test.js'
 	$(PYTEST) -m "not slow and not clock" $(PARALLEL)
 	$(PYTEST) -m "not slow and clock"
 

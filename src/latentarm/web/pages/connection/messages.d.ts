@@ -1,0 +1,237 @@
+// Written by `make message-types` from the messages that the server declares.
+
+export interface AnswerQuestion {
+  type: "answer";
+  question: number;
+  u: number[];
+}
+
+export interface AskToDrive {
+  type: "ask_to_drive";
+}
+
+export interface BeginPersonalise {
+  type: "personalise";
+  name: string;
+  questions: number;
+}
+
+export interface CancelPersonalise {
+  type: "cancel_personalise";
+}
+
+export interface CancelTraining {
+  type: "cancel_training";
+}
+
+export interface DiscardAlignment {
+  type: "discard_alignment";
+}
+
+export interface DriverInput {
+  type: "input";
+  seq: number;
+  nonce: string;
+  u: number[];
+  source: "pointer" | "keyboard" | "dpad" | "gamepad" | "switch";
+  latched: boolean;
+}
+
+export interface Ghosts {
+  up: [number, number, number][];
+  down: [number, number, number][];
+  left: [number, number, number][];
+  right: [number, number, number][];
+}
+
+export interface HandOver {
+  type: "hand_over";
+  to: string;
+}
+
+export interface Hello {
+  type: "hello";
+  version: 1;
+  name?: string | null;
+}
+
+export interface KeepAlignment {
+  type: "keep_alignment";
+}
+
+export interface Limits {
+  latch_max_s: number;
+}
+
+export interface Mode {
+  type: "mode";
+  mode: "latent" | "assisted" | "end_effector";
+  axes?: number | null;
+}
+
+export interface NamedGoal {
+  name: string;
+  position: [number, number, number];
+}
+
+export interface Personalise {
+  phase: "preparing" | "asking" | "thinking" | "learning" | "learned" | "kept" | "failed";
+  name: string;
+  question: number;
+  number: number;
+  of: number;
+  back: boolean;
+  motion: ShownMotion | null;
+  share: number;
+  answers: number;
+  error: number | null;
+  error_without: number | null;
+  why: string | null;
+}
+
+export interface PickRun {
+  type: "run";
+  run: string;
+}
+
+export interface PressEnable {
+  type: "enable";
+}
+
+export interface PressStop {
+  type: "stop";
+}
+
+export interface Profile {
+  type: "profile";
+  name: string | null;
+}
+
+export interface QuestionBefore {
+  type: "question_before";
+  question: number;
+}
+
+export interface RecordEpisode {
+  type: "record";
+  on: boolean;
+  task?: string;
+}
+
+export interface Recorded {
+  number: number;
+  task: string;
+  seconds: number;
+}
+
+export interface RecordingState {
+  on: boolean;
+  samples: number;
+  episodes: number;
+  problem: string | null;
+}
+
+export interface Refused {
+  type: "refused";
+  why: string;
+}
+
+export interface Release {
+  type: "release";
+}
+
+export interface ResetArm {
+  type: "reset";
+}
+
+export interface ShownMotion {
+  duration_s: number;
+  frames: number[][][];
+  tools: [number, number, number][][];
+}
+
+export interface SkipQuestion {
+  type: "skip_question";
+  question: number;
+}
+
+export interface State {
+  type: "state";
+  nonce: string;
+  tick: number;
+  phase: "disengaged" | "neutral_needed" | "ready" | "moving" | "stopping";
+  why: string;
+  mode: "latent" | "assisted" | "end_effector";
+  axes: number;
+  profile: string | null;
+  bodies: number[][];
+  tool: [number, number, number];
+  ghosts: Ghosts | null;
+  belief: number[] | null;
+  alpha: number;
+  bound_m: number | null;
+  driver: string | null;
+  driver_name: string | null;
+  watchers: number;
+  asking: string | null;
+  asking_name: string | null;
+  recording: RecordingState | null;
+  trail: number;
+  late_share: number;
+  you: boolean;
+}
+
+export interface TrailClear {
+  type: "trail_clear";
+}
+
+export interface Train {
+  type: "train";
+  name: string;
+  model: string;
+  latent_dim: 1 | 2;
+  episodes: number[];
+}
+
+export interface Training {
+  phase: "exporting" | "training" | "done" | "failed" | "cancelled";
+  run: string;
+  epoch: number;
+  epochs: number;
+  loss: number | null;
+  seconds_left: number | null;
+  why: string | null;
+}
+
+export interface TryAlignment {
+  type: "try_alignment";
+}
+
+export interface Welcome {
+  type: "welcome";
+  version: 1;
+  id: string;
+  dof: number;
+  latent_dim: number;
+  robot: string;
+  run: string | null;
+  profiles: string[];
+  modes: ("latent" | "assisted" | "end_effector")[];
+  goals: NamedGoal[];
+  end_effector_modes: string[];
+  limits: Limits;
+}
+
+export interface Workshop {
+  type: "workshop";
+  training: Training | null;
+  personalise: Personalise | null;
+  recordings: Recorded[];
+  runs: string[];
+  run: string | null;
+  profiles: string[];
+}
+
+export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ResetArm | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment;
+
+export type ServerMessage = Welcome | State | Workshop | Refused;
