@@ -66,7 +66,7 @@ def settings(page: Page) -> None:
 
 def recorded(page: Page) -> None:
     """The Teach page with episodes to learn from: the same few seconds, driven three times."""
-    page.get_by_role("radio", name="Tool directions").check()
+    page.get_by_role("radio", name="Straight lines").check()
     page.get_by_label("What is being done").fill("towards the table")
     while page.get_by_role("link", name="Teach the arm").is_hidden() or episodes(page) < EPISODES:
         before = episodes(page)

@@ -60,7 +60,7 @@ def settle(page, arm, press_enable, *labels):
 
 
 def test_swapped_axes_turn_the_way_of_the_tool(page, arm, press_enable, way):
-    page.get_by_role("radio", name="Tool directions").check()
+    page.get_by_role("radio", name="Straight lines").check()
     arm.wait(lambda: arm.state["mode"] == "end_effector")
     press_enable(page, arm)
     sideways = way(page, "ArrowRight")
@@ -163,7 +163,7 @@ class TestProfile:
         arm.comes_to_rest()
         page.get_by_role("button", name="Arm back to start").click()
         page.get_by_role("button", name="Settings").click()
-        page.get_by_role("dialog").get_by_label("Personal alignment").select_option("mia")
+        page.get_by_role("dialog").get_by_label("Your directions").select_option("mia")
         page.get_by_role("button", name="Done").click()
         arm.wait(lambda: arm.state["profile"] == "mia")
         press_enable(page, arm)

@@ -205,7 +205,7 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
     learned = arm.workshop["personalise"]
     assert learned["error"] < 0.2 < learned["error_without"]
     page.get_by_role("button", name="Try it").click()
-    expect(page.get_by_role("heading", name="You are trying the alignment of ada.")).to_be_visible()
+    expect(page.get_by_role("heading", name="You are trying the directions of ada.")).to_be_visible()
     assert found(page) == []
     after = straightness(page, arm, *hands)
     assert after > 0.8
@@ -216,8 +216,8 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
     arm.wait(lambda: arm.workshop["profiles"] == ["ada"])
     assert [folder.name for folder in (run / "profiles").iterdir()] == ["ada"]
     page.get_by_role("button", name="Settings").click()
-    expect(page.get_by_label("Personal alignment")).to_have_value("ada")
+    expect(page.get_by_label("Your directions")).to_have_value("ada")
     page.get_by_role("button", name="Done").click()
     page.get_by_role("link", name="Personalise").click()
-    page.get_by_role("heading", name="The alignment of ada is kept.").wait_for()
+    page.get_by_role("heading", name="The directions of ada are kept.").wait_for()
     assert found(page) == []

@@ -69,7 +69,7 @@ def test_the_last_input_is_neutral(person, held):
 
 
 def test_the_tool_goes_where_the_stick_points_in_the_front_view(person, arm, held):
-    person.get_by_role("radio", name="Tool directions").check()
+    person.get_by_role("radio", name="Straight lines").check()
     arm.wait(lambda: arm.state["mode"] == "end_effector")
     before = arm.tool
     held("ArrowRight")

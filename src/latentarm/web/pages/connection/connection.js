@@ -1,11 +1,15 @@
 /**
- * The page's line to the server: one WebSocket, JSON both ways, reconnected when it breaks.
+ * The page's connection to the server: one WebSocket, JSON both ways, opened again when it breaks.
  *
- * Events: "welcome", "otherrun" (another run is driven from now on), "workshop", "state", "line" (open or not), "refused"; each carries the message or the truth in `detail`.
+ * Events: "open" when it has opened or closed; "welcome", "state", "workshop" and "refused" when such a message has
+ * come; "run_changed" when another run is driven from now on. What they carry is in `detail`.
  */
+
+/** @import {ClientMessage, Refused, ServerMessage, State, Welcome, Workshop} from "./messages.js" */
 
 /** How old the newest state may be before inputs are held back, ms: the server would not take them anyway. */
 const STALE_MS = 200;
+const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
 
 export class Connection extends EventTarget {
@@ -13,17 +17,17 @@ export class Connection extends EventTarget {
   constructor(name) {
     super();
     this.name = name;
-    /** @type {any} What the server said of itself. */
+    /** @type {Welcome | null} What is driven. */
     this.welcome = null;
-    /** @type {any} The newest state. */
+    /** @type {State | null} The newest. */
     this.state = null;
-    /** @type {any} What is learned, tried and kept. */
+    /** @type {Workshop | null} What is learned, tried and kept. */
     this.workshop = null;
     this.open = false;
     this._sequence = 0;
     this._heardAt = -Infinity;
-    this._waitMs = 500;
-    this._connect();
+    this._waitMs = FIRST_WAIT_MS;
+    this._socket = this._connect();
   }
 
   /** Whether the newest state is fresh enough that an input which echoes it would count. */
@@ -46,14 +50,10 @@ export class Connection extends EventTarget {
     return this.open && this.state !== null && ["ready", "moving"].includes(this.state.phase);
   }
 
-  /**
-   * @param {string} type
-   * @param {object} [fields]
-   * @returns {boolean} whether it went out.
-   */
-  send(type, fields = {}) {
+  /** @param {ClientMessage} message @returns {boolean} whether it went out. */
+  send(message) {
     if (!this.open || this._socket.readyState !== WebSocket.OPEN) return false;
-    this._socket.send(JSON.stringify({ type, ...fields }));
+    this._socket.send(JSON.stringify(message));
     return true;
   }
 
@@ -61,16 +61,16 @@ export class Connection extends EventTarget {
    * An input, stamped with the newest nonce and a growing number.
    *
    * @param {number[]} u in [-1, 1]
-   * @param {string} source
+   * @param {import("../inputs/deflection.js").Source} source
    * @param {boolean} latched
    */
   sendInput(u, source, latched) {
-    if (!this.fresh) return;
+    if (!this.fresh || !this.state) return;
     this._sequence += 1;
-    this.send("input", { seq: this._sequence, nonce: this.state.nonce, u, source, latched });
+    this.send({ type: "input", seq: this._sequence, nonce: this.state.nonce, u, source, latched });
   }
 
-  /** Somebody else sits here now: as another page to the server. @param {string} name */
+  /** Another person sits here now: another page to the server. @param {string} name */
   rename(name) {
     this.name = name;
     this._socket.close();
@@ -78,33 +78,38 @@ export class Connection extends EventTarget {
 
   _connect() {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
-    this._socket = new WebSocket(`${scheme}://${location.host}/drive`);
-    this._socket.addEventListener("open", () => {
+    const socket = new WebSocket(`${scheme}://${location.host}/drive`);
+    socket.addEventListener("open", () => {
       this.open = true;
       this._sequence = 0;
-      this._waitMs = 500;
+      this._waitMs = FIRST_WAIT_MS;
       this._heardAt = performance.now();
-      this.send("hello", this.name ? { version: 1, name: this.name } : { version: 1 });
-      this._tell("line", true);
+      this.send(this.name ? { type: "hello", version: 1, name: this.name } : { type: "hello", version: 1 });
+      this._tell("open", true);
     });
-    this._socket.addEventListener("message", (event) => this._heard(JSON.parse(event.data)));
-    this._socket.addEventListener("close", () => this._lost());
+    socket.addEventListener("message", (event) => this._heard(JSON.parse(event.data)));
+    socket.addEventListener("close", () => this._lost());
+    return socket;
   }
 
-  /** @param {any} message */
+  /** @param {ServerMessage} message */
   _heard(message) {
     this._heardAt = performance.now();
-    if (message.type === "welcome") {
-      const before = this.welcome;
-      this.welcome = message;
-      if (before !== null && before.run !== message.run) this._tell("otherrun", message.run);
-    }
-    if (message.type === "workshop") this.workshop = message;
-    // Ghosts are left out while they have not changed.
-    if (message.type === "state") {
-      this.state = { ...message, ghosts: message.ghosts ?? this.state?.ghosts ?? null };
-      this._tell("state", this.state);
-      return;
+    switch (message.type) {
+      case "welcome": {
+        const before = this.welcome;
+        this.welcome = message;
+        if (before !== null && before.run !== message.run) this._tell("run_changed", message.run);
+        break;
+      }
+      case "workshop":
+        this.workshop = message;
+        break;
+      case "state":
+        // Ghosts are left out while they have not changed.
+        this.state = { ...message, ghosts: message.ghosts ?? this.state?.ghosts ?? null };
+        break;
+      default:
     }
     this._tell(message.type, message);
   }
@@ -113,12 +118,14 @@ export class Connection extends EventTarget {
     const was = this.open;
     this.open = false;
     this.state = null;
-    if (was) this._tell("line", false);
-    setTimeout(() => this._connect(), this._waitMs);
+    if (was) this._tell("open", false);
+    setTimeout(() => {
+      this._socket = this._connect();
+    }, this._waitMs);
     this._waitMs = Math.min(2 * this._waitMs, LONGEST_WAIT_MS);
   }
 
-  /** @param {string} type @param {any} detail */
+  /** @param {string} type @param {unknown} detail */
   _tell(type, detail) {
     this.dispatchEvent(new CustomEvent(type, { detail }));
   }

@@ -1,68 +1,85 @@
-/** Who drives, who watches, and how the one becomes the other. */
+/** Who drives, who watches, and how one becomes the other. */
 
-/** How long the server may take to give a free seat, ms. */
-const SEAT_MS = 1000;
+import { setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "./connection.js" */
+/** @import {State} from "./messages.js" */
+
+/** How long the server may take to let this page drive where nobody does, ms. */
+const ANSWER_MS = 1000;
+
+/** Does what only the page that drives may do, and asks to drive first where that is needed. */
+export class DriverLease {
+  /** @param {Connection} connection */
+  constructor(connection) {
+    this._connection = connection;
+    this._until = -Infinity;
+    /** @type {() => void} */
+    this._then = () => {};
+    connection.addEventListener("state", () => {
+      if (performance.now() > this._until || !connection.driving) return;
+      this._until = -Infinity;
+      this._then();
+    });
+  }
+
+  /** At once where this page drives, soon where nobody does, never where another page does. @param {() => void} act */
+  ask(act) {
+    if (this._connection.driving) {
+      act();
+      return;
+    }
+    if (this._connection.state?.driver === null) {
+      this._then = act;
+      this._until = performance.now() + ANSWER_MS;
+    }
+    this._connection.send({ type: "ask_to_drive" });
+  }
+
+  /** What was asked for and waits is not done any more. */
+  forget() {
+    this._until = -Infinity;
+  }
+}
 
 /**
- * What is to be done once this page drives: at once, or soon where nobody drives; not where somebody else does.
+ * Who drives, as this page's person is told.
  *
- * @param {import("./connection.js").Connection} connection
+ * @param {State} state
+ * @param {boolean} askedHere whether this page is the one that asks to drive
  */
-export function seatFirst(connection) {
-  let until = -Infinity;
-  /** @type {() => void} */
-  let then = () => {};
-  connection.addEventListener("state", () => {
-    if (performance.now() > until || !connection.driving) return;
-    until = -Infinity;
-    then();
-  });
-  return {
-    /** @param {() => void} act */
-    ask(act) {
-      if (connection.driving) {
-        act();
-        return;
-      }
-      if (connection.state?.driver === null) {
-        then = act;
-        until = performance.now() + SEAT_MS;
-      }
-      connection.send("ask_to_drive");
-    },
-    forget() {
-      until = -Infinity;
-    },
-  };
+export function whoDrives(state, askedHere) {
+  const { you, driver, driver_name, asking, asking_name, watchers } = state;
+  if (you && asking !== null) return say("driver.you_asked", { name: asking_name || say("driver.somebody") });
+  if (you) return watchers ? say("driver.you_watched", { count: watchers }) : say("driver.you");
+  if (driver === null) return say("driver.nobody");
+  const text = say("driver.other", { name: driver_name || say("driver.somebody_else") });
+  return askedHere ? `${text} ${say("driver.asked")}` : text;
 }
 
 /**
  * @param {{text: HTMLElement, ask: HTMLButtonElement, handOver: HTMLButtonElement, release: HTMLButtonElement}} parts
- * @param {import("./connection.js").Connection} connection
+ * @param {Connection} connection
  */
-export function attachSeat(parts, connection) {
-  parts.ask.addEventListener("click", () => connection.send("ask_to_drive"));
-  parts.release.addEventListener("click", () => connection.send("release"));
+export function attachDriverPanel(parts, connection) {
+  parts.ask.addEventListener("click", () => connection.send({ type: "ask_to_drive" }));
+  parts.release.addEventListener("click", () => connection.send({ type: "release" }));
   parts.handOver.addEventListener("click", () => {
     const asking = connection.state?.asking;
-    if (asking) connection.send("hand_over", { to: asking });
+    if (asking) connection.send({ type: "hand_over", to: asking });
   });
 
   connection.addEventListener("state", () => {
-    const { you, driver, driver_name, asking, asking_name, watchers } = connection.state;
-    const askedHere = asking !== null && asking === connection.welcome?.id;
+    const { state, welcome } = connection;
+    if (!state) return;
+    const { you, asking, asking_name } = state;
+    const askedHere = asking !== null && asking === welcome?.id;
     parts.ask.hidden = you;
     parts.ask.disabled = askedHere;
     parts.release.hidden = !you;
     parts.handOver.hidden = !you || asking === null;
-    parts.handOver.textContent = `Hand over to ${asking_name || "the person who asks"}`;
-    const others = ["", "; one other page watches"][watchers] ?? `; ${watchers} other pages watch`;
-    let text = "Nobody is driving.";
-    if (you) text = asking ? `You are driving. ${asking_name || "Somebody"} asks to drive.` : `You are driving${others}.`;
-    else if (driver !== null) {
-      text = `${driver_name || "Somebody else"} is driving; you are watching, and may stop the arm.`;
-      if (askedHere) text += " You have asked to drive.";
-    }
-    if (parts.text.textContent !== text) parts.text.textContent = text;
+    setText(parts.handOver, asking_name ? say("driver.hand_over_to", { name: asking_name }) : say("driver.hand_over"));
+    setText(parts.text, whoDrives(state, askedHere));
   });
 }

@@ -1,42 +1,58 @@
 /** The state of things in one sentence, for eyes and for screen readers. */
 
+import { setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {HaltReason} from "../inputs/deflection.js" */
+/** @import {Connection} from "./connection.js" */
+
 /** A sentence that lasts shorter than this, ms, is not announced: people who nudge would hear nothing else. */
 const SETTLE_MS = 120;
 const SILENT_MS = 400;
+const LOOK_MS = 200;
 /** What the server says to do next, on pages that have no such button. */
 const NEXT_STEP = / (Let go of the stick, then press|Press) Enable[^.]*\.$/;
 
 /**
+ * What to say, and the phase that gives it its colour.
+ *
+ * @param {Pick<Connection, "open" | "state" | "silenceMs" | "engaged">} connection
+ * @param {{halted: HaltReason | null, refused: string, canEnable: boolean}} page why this page itself stopped the arm,
+ *   why the server refused it, and whether it has a button that enables
+ * @returns {{phase: string, text: string}}
+ */
+export function statusOf({ open, state, silenceMs, engaged }, { halted, refused, canEnable }) {
+  if (!open) return { phase: "lost", text: refused || say("status.lost") };
+  if (state === null) return { phase: "connecting", text: say("status.connecting") };
+  if (silenceMs > SILENT_MS) return { phase: "lost", text: say("status.silent") };
+  if (halted !== null && !engaged) return { phase: "disengaged", text: say(`halted.${halted}`) };
+  return { phase: state.phase, text: canEnable ? state.why : state.why.replace(NEXT_STEP, "") };
+}
+
+/**
  * @param {{line: HTMLElement, text: HTMLElement}} parts
- * @param {import("./connection.js").Connection} connection
+ * @param {Connection} connection
  */
 export function attachStatus(parts, connection) {
-  /** @type {string | null} Why this page itself has stopped the arm. */
+  /** @type {HaltReason | null} */
   let halted = null;
   let refused = "";
   let wanted = "";
-  let timer = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+  const canEnable = document.getElementById("enable") !== null;
 
-  const say = (/** @type {string} */ phase, /** @type {string} */ text) => {
+  const show = () => {
+    const { phase, text } = statusOf(connection, { halted, refused, canEnable });
     if (parts.line.dataset.phase !== phase) parts.line.dataset.phase = phase;
     if (text === wanted) return;
     wanted = text;
     clearTimeout(timer);
-    timer = setTimeout(() => {
-      parts.text.textContent = wanted;
-    }, SETTLE_MS);
-  };
-  const show = () => {
-    const { state } = connection;
-    if (!connection.open) say("lost", refused || "The line to the arm is broken, and the arm has stopped. Trying again …");
-    else if (state === null) say("connecting", "Connecting …");
-    else if (connection.silenceMs > SILENT_MS) say("lost", "The arm's computer is silent; the arm stops by itself.");
-    else if (halted !== null && !connection.engaged) say("disengaged", `Stopped: ${halted}. Press Enable to go on.`);
-    else say(state.phase, document.getElementById("enable") ? state.why : state.why.replace(NEXT_STEP, ""));
+    timer = setTimeout(() => setText(parts.text, wanted), SETTLE_MS);
   };
 
   connection.addEventListener("state", show);
-  connection.addEventListener("line", show);
+  connection.addEventListener("open", show);
   connection.addEventListener("welcome", () => {
     refused = "";
   });
@@ -44,10 +60,10 @@ export function attachStatus(parts, connection) {
     refused = /** @type {CustomEvent} */ (event).detail.why;
     show();
   });
-  setInterval(show, 200);
+  setInterval(show, LOOK_MS);
 
   return {
-    /** @param {string | null} why */
+    /** @param {HaltReason | null} why this page itself has stopped the arm */
     halted(why) {
       halted = why;
       show();

@@ -1,14 +1,16 @@
 /** Stop: on press, on Space and on Escape, from every page and every dialog. It needs no focus and no mouse. */
 
+/** @import {Connection} from "./connection.js" */
+
 /**
- * @param {import("./connection.js").Connection} connection
+ * @param {Connection} connection
  * @param {() => void} [alsoHere] what this page lets go of
  */
 export function attachStop(connection, alsoHere = () => {}) {
   const stop = () => {
     alsoHere();
-    // Where the line is doubtful, by another way as well; the arm also stops by itself when inputs cease.
-    if (!connection.send("stop") || !connection.fresh) fetch("/stop", { method: "POST", keepalive: true }).catch(() => {});
+    // Where the connection is doubtful, by another way as well; the arm also stops by itself when inputs cease.
+    if (!connection.send({ type: "stop" }) || !connection.fresh) fetch("/stop", { method: "POST", keepalive: true }).catch(() => {});
   };
   // Capture, on the window: before anything else on the page can keep the press for itself.
   window.addEventListener("pointerdown", (event) => {

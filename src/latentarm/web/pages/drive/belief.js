@@ -1,5 +1,18 @@
 /** The belief over goals as labelled bars, and how much the robot helps. */
 
+import { create, fillBar } from "../layout/dom.js";
+import { sayPercent } from "../layout/words.js";
+
+/** A goal is called the likeliest where its share is so many times that of a belief which prefers none. */
+const CLEARLY = 1.2;
+
+/** Whether a goal is what the robot takes to be meant. @param {number[] | null} belief @param {number} index */
+export function isLikeliest(belief, index) {
+  if (belief === null || belief.length < 2) return false;
+  const most = Math.max(...belief);
+  return belief[index] === most && most > CLEARLY / belief.length;
+}
+
 /**
  * @param {{list: HTMLElement, none: HTMLElement, alpha: HTMLElement, alphaText: HTMLElement, level: HTMLElement}} parts
  */
@@ -11,15 +24,14 @@ export function attachBelief(parts) {
     /** @param {{name: string}[]} goals */
     name(goals) {
       rows = goals.map(({ name }, index) => {
-        const item = document.createElement("li");
-        const label = Object.assign(document.createElement("span"), { textContent: name, id: `goal-${index}` });
-        const bar = Object.assign(document.createElement("span"), { className: "bar" });
+        const label = create("span", { textContent: name, id: `goal-${index}` });
+        const bar = create("span", { className: "bar" });
         bar.setAttribute("role", "meter");
         bar.setAttribute("aria-labelledby", label.id);
         bar.setAttribute("aria-valuemin", "0");
-        bar.setAttribute("aria-valuemax", "100");
-        bar.append(Object.assign(document.createElement("span"), { className: "bar-fill" }));
-        const value = Object.assign(document.createElement("span"), { className: "bar-value" });
+        bar.append(create("span", { className: "bar-fill" }));
+        const value = create("span", { className: "bar-value" });
+        const item = create("li");
         item.append(label, bar, value);
         return { item, bar, value };
       });
@@ -30,11 +42,9 @@ export function attachBelief(parts) {
     show(belief, alpha) {
       parts.list.hidden = parts.level.hidden = belief === null;
       parts.none.hidden = belief !== null;
-      const most = Math.max(...(belief ?? [0]));
       rows.forEach(({ item, bar, value }, index) => {
-        const share = belief?.[index] ?? 0;
-        fill(bar, value, share);
-        item.dataset.likeliest = String(rows.length > 1 && share === most && share > 1.2 / rows.length);
+        fill(bar, value, belief?.[index] ?? 0);
+        item.dataset.likeliest = String(isLikeliest(belief, index));
       });
       fill(parts.alpha, parts.alphaText, alpha);
     },
@@ -43,9 +53,8 @@ export function attachBelief(parts) {
 
 /** @param {HTMLElement} bar @param {HTMLElement} value @param {number} share */
 function fill(bar, value, share) {
-  const text = `${Math.round(100 * share)} %`;
+  const text = sayPercent(share);
   if (value.textContent === text) return;
   value.textContent = text;
-  bar.setAttribute("aria-valuenow", String(Math.round(100 * share)));
-  /** @type {HTMLElement} */ (bar.firstElementChild).style.width = `${100 * share}%`;
+  fillBar(bar, 100 * share);
 }

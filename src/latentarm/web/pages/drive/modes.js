@@ -1,67 +1,79 @@
 /** What the stick moves: latent actions, with help or without, or the tool along two axes at a time. */
 
-/** @type {Record<string, string>} */
-const MODE_LABELS = { latent: "Learned motions", assisted: "Learned, with help", end_effector: "Tool directions" };
-/** @type {Record<string, string>} */
-const AXES_LABELS = { "x-y": "Across", "z-yaw": "Height, turn", "roll-pitch": "Tilt" };
+import { create } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {State, Welcome} from "../connection/messages.js" */
+/** @import {WordKey} from "../layout/words.js" */
+
+/** @typedef {State["mode"]} ModeName */
+/** @typedef {{mode: ModeName, axes: number}} Steering a mode, and which pair of the end-effector's axes */
 
 /** How long the server may take to change the mode, ms. */
 const ANSWER_MS = 300;
 
 /**
+ * What follows, for people who reach everything by one button: the pairs of axes too, before the next mode.
+ *
+ * @param {Pick<Welcome, "modes" | "end_effector_modes">} welcome
+ * @param {Pick<State, "mode" | "axes">} state
+ * @returns {Steering}
+ */
+export function nextSteering({ modes, end_effector_modes }, { mode, axes }) {
+  if (mode === "end_effector" && axes + 1 < end_effector_modes.length) return { mode, axes: axes + 1 };
+  return { mode: modes[(modes.indexOf(mode) + 1) % modes.length], axes: 0 };
+}
+
+/**
  * @param {{mode: HTMLElement, axes: HTMLElement}} parts the two fieldsets
- * @param {import("../connection/connection.js").Connection} connection
+ * @param {Connection} connection
  */
 export function attachModes(parts, connection) {
-  let modes = /** @type {string[]} */ ([]);
-  let axes = /** @type {string[]} */ ([]);
-
   let askedAt = -Infinity;
 
-  const ask = (/** @type {string} */ mode, /** @type {number} */ pair) => {
+  const ask = (/** @type {Steering} */ { mode, axes }) => {
     askedAt = performance.now();
-    connection.send("mode", mode === "end_effector" ? { mode, axes: pair } : { mode });
+    connection.send(mode === "end_effector" ? { type: "mode", mode, axes } : { type: "mode", mode });
   };
   connection.addEventListener("welcome", () => {
-    modes = connection.welcome.modes;
-    axes = connection.welcome.end_effector_modes;
-    fill(parts.mode, "mode", modes.map((mode) => MODE_LABELS[mode] ?? mode), (index) => ask(modes[index], 0));
-    fill(parts.axes, "axes", axes.map((label) => AXES_LABELS[label] ?? label), (index) => ask("end_effector", index));
+    if (!connection.welcome) return;
+    const { modes, end_effector_modes } = connection.welcome;
+    fill(parts.mode, "mode", modes.map((mode) => say(`modes.${mode}`)), (index) => ask({ mode: modes[index], axes: 0 }));
+    const axes = end_effector_modes.map((name) => say(/** @type {WordKey} */ (`axes.${name}`)));
+    fill(parts.axes, "axes", axes, (index) => ask({ mode: "end_effector", axes: index }));
   });
   connection.addEventListener("state", () => {
+    const { state, welcome } = connection;
     // What was just chosen stays chosen until the server has had time to say otherwise.
-    if (performance.now() - askedAt < ANSWER_MS) return;
-    const { mode, axes: pair, you } = connection.state;
-    check(parts.mode, modes.indexOf(mode), you);
-    check(parts.axes, pair, you);
-    parts.axes.hidden = mode !== "end_effector";
+    if (!state || performance.now() - askedAt < ANSWER_MS) return;
+    check(parts.mode, welcome?.modes.indexOf(state.mode) ?? -1, state.you);
+    check(parts.axes, state.axes, state.you);
+    parts.axes.hidden = state.mode !== "end_effector";
   });
 
   return {
     next() {
-      if (!connection.state || modes.length === 0) return;
-      const { mode, axes: pair } = connection.state;
-      // Through the pairs of axes first: that is how a switch reaches all of them.
-      if (mode === "end_effector" && pair + 1 < axes.length) ask(mode, pair + 1);
-      else ask(modes[(modes.indexOf(mode) + 1) % modes.length], 0);
+      const { state, welcome } = connection;
+      if (state && welcome?.modes.length) ask(nextSteering(welcome, state));
     },
     /** @param {number} index */
     axes(index) {
-      if (index < axes.length) ask("end_effector", index);
+      if (index < (connection.welcome?.end_effector_modes.length ?? 0)) ask({ mode: "end_effector", axes: index });
     },
   };
 }
 
 /** @param {HTMLElement} fieldset @param {string} name @param {string[]} labels @param {(index: number) => void} chosen */
 function fill(fieldset, name, labels, chosen) {
-  const options = labels.map((text, index) => {
-    const label = document.createElement("label");
-    const input = Object.assign(document.createElement("input"), { type: "radio", name, value: String(index) });
+  const options = labels.map((textContent, index) => {
+    const input = create("input", { type: "radio", name, value: String(index) });
     input.addEventListener("change", () => chosen(index));
-    label.append(input, Object.assign(document.createElement("span"), { textContent: text }));
+    const label = create("label");
+    label.append(input, create("span", { textContent }));
     return label;
   });
-  /** @type {HTMLElement} */ (fieldset.querySelector(".options")).replaceChildren(...options);
+  fieldset.querySelector(".options")?.replaceChildren(...options);
 }
 
 /** Show what the server says, not what was clicked. @param {HTMLElement} fieldset @param {number} index @param {boolean} free */

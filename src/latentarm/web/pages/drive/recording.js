@@ -1,33 +1,41 @@
 /** Recording what is driven into a dataset, one episode at a time. */
 
+import { setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {State} from "../connection/messages.js" */
+
 /** Samples a second: the control loop's rate. */
 const RATE_HZ = 100;
 
+/** How the recording stands, in words. @param {Pick<State, "recording" | "you">} state */
+export function recordingWords({ recording, you }) {
+  if (recording?.problem) return recording.problem;
+  const episodes = recording?.episodes ?? 0;
+  if (recording?.on) return say("recording.on", { episode: episodes + 1, seconds: Math.floor(recording.samples / RATE_HZ) });
+  if (!you) return say("recording.not_you");
+  return episodes ? say("recording.kept", { count: episodes }) : say("recording.none");
+}
+
 /**
  * @param {{button: HTMLButtonElement, task: HTMLInputElement, text: HTMLElement, teach: HTMLElement}} parts
- * @param {import("../connection/connection.js").Connection} connection
+ * @param {Connection} connection
  */
 export function attachRecording(parts, connection) {
   parts.button.addEventListener("click", () => {
     const on = !connection.state?.recording?.on;
     const task = parts.task.value.trim();
-    connection.send("record", on && task ? { on, task } : { on });
+    connection.send(on && task ? { type: "record", on, task } : { type: "record", on });
   });
   connection.addEventListener("state", () => {
-    const { recording, you } = connection.state;
-    const on = Boolean(recording?.on);
-    parts.button.disabled = !you;
+    const { state } = connection;
+    if (!state) return;
+    const on = Boolean(state.recording?.on);
+    parts.button.disabled = !state.you;
     parts.button.setAttribute("aria-pressed", String(on));
-    write(parts.button, on ? "Stop recording" : "Start recording");
-    const episodes = recording?.episodes ?? 0;
-    const kept = episodes === 0 ? "Nothing recorded yet." : `${episodes} ${episodes === 1 ? "episode" : "episodes"} recorded.`;
-    parts.teach.hidden = on || episodes === 0;
-    if (recording?.problem) write(parts.text, recording.problem);
-    else write(parts.text, on ? `Recording episode ${episodes + 1}: ${Math.floor(recording.samples / RATE_HZ)} s.` : you ? kept : "The person who drives can record.");
+    setText(parts.button, say(on ? "recording.stop" : "recording.start"));
+    parts.teach.hidden = on || !state.recording?.episodes;
+    setText(parts.text, recordingWords(state));
   });
-}
-
-/** @param {HTMLElement} element @param {string} text */
-function write(element, text) {
-  if (element.textContent !== text) element.textContent = text;
 }

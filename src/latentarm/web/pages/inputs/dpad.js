@@ -1,15 +1,17 @@
 /** Four large buttons: hold one, or press it for a step, or press it on and off. */
 
-/** @typedef {"up" | "down" | "left" | "right"} Direction */
+import { setText } from "../layout/dom.js";
+import { say, sayNumber } from "../layout/words.js";
+import { DIRECTIONS } from "./deflection.js";
 
-/** @type {Record<Direction, [number, number]>} */
-export const DIRECTIONS = { up: [0, 1], down: [0, -1], left: [-1, 0], right: [1, 0] };
+/** @import {Direction, PersonInput} from "./deflection.js" */
+/** @import {Settings} from "../settings/settings.js" */
 
 /**
  * @param {HTMLElement} element the group of buttons
  * @param {HTMLElement} help
- * @param {import("./inputs.js").Inputs | import("../personalise/answering.js").Answering} inputs
- * @param {import("../settings/settings.js").Settings} settings
+ * @param {PersonInput} inputs
+ * @param {Settings} settings
  * @param {() => void} refused said when a press cannot move the arm yet
  */
 export function attachDpad(element, help, inputs, settings, refused) {
@@ -18,7 +20,8 @@ export function attachDpad(element, help, inputs, settings, refused) {
   let held = null;
   /** @type {HTMLButtonElement | null} */
   let latched = null;
-  let timer = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
 
   const show = (/** @type {HTMLButtonElement | null} */ pressed) => {
     for (const button of buttons) {
@@ -70,7 +73,7 @@ export function attachDpad(element, help, inputs, settings, refused) {
       button.addEventListener(lost, (event) => {
         if (/** @type {PointerEvent} */ (event).pointerId !== held?.pointer) return;
         letGo();
-        inputs.halt("the pointer was lost");
+        inputs.halt("pointer_lost");
       });
     }
     // A click without a pointer comes from Enter or from a switch or a screen reader: there is nothing to hold.
@@ -84,11 +87,8 @@ export function attachDpad(element, help, inputs, settings, refused) {
   }
   inputs.addEventListener("dropped", letGo);
   const explain = () => {
-    help.textContent = {
-      hold: "Press and hold; let go to stop.",
-      step: `Each press moves for ${settings.values.stepS.toFixed(1)} s.`,
-      latch: "Press to move, press again to stop.",
-    }[settings.values.press] ?? "";
+    const { press, stepS } = settings.values;
+    setText(help, say(`dpad.${press}`, { seconds: sayNumber(stepS, 1) }));
     show(latched);
   };
   settings.addEventListener("change", explain);

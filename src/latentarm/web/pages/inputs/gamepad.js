@@ -1,17 +1,20 @@
 /** A gamepad, or any stick that the browser takes for one: its first two axes drive, its buttons stop and enable. */
 
+/** @import {PersonInput} from "./deflection.js" */
+/** @import {Settings} from "../settings/settings.js" */
+
 const ENABLE_BUTTON = 0;
 /** A stick that rests a little off its middle is at rest. */
 const REST = 0.08;
 const IDLE_MS = 100;
 
 /**
- * @param {import("./inputs.js").Inputs | import("../personalise/answering.js").Answering} inputs
- * @param {import("../settings/settings.js").Settings} settings
+ * @param {PersonInput} input
+ * @param {Settings} settings
  * @param {{enable: () => void, stop: () => void, press: (number: number, down: boolean) => boolean}} actions
  *   `press` takes a button as a switch, where scanning is on, and says whether it did.
  */
-export function attachGamepad(inputs, settings, actions) {
+export function attachGamepad(input, settings, actions) {
   /** @type {boolean[]} */
   let down = [];
   /** @type {number | null} */
@@ -20,7 +23,7 @@ export function attachGamepad(inputs, settings, actions) {
   const lost = () => {
     driving = null;
     down = [];
-    inputs.halt("the gamepad was disconnected");
+    input.halt("gamepad_lost");
   };
 
   const poll = () => {
@@ -38,7 +41,7 @@ export function attachGamepad(inputs, settings, actions) {
     down = pressed;
     const [x, y] = [pad.axes[0] ?? 0, pad.axes[1] ?? 0];
     const resting = !(Math.hypot(x, y) > REST);
-    if (!resting || inputs.source === "gamepad") inputs.hold("gamepad", resting ? 0 : x, resting ? 0 : -y);
+    if (!resting || input.source === "gamepad") input.hold("gamepad", resting ? 0 : x, resting ? 0 : -y);
   };
   const act = (/** @type {number} */ number, /** @type {boolean} */ isDown) => {
     const stops = settings.values.gamepadStop;
@@ -51,8 +54,8 @@ export function attachGamepad(inputs, settings, actions) {
     if (event.gamepad.index === driving) lost();
   });
   // While inputs flow the pad is read with each of them; else often enough to notice a button.
-  inputs.addEventListener("poll", poll);
+  input.addEventListener("poll", poll);
   setInterval(() => {
-    if (!inputs.flowing && !document.hidden) poll();
+    if (!input.flowing && !document.hidden) poll();
   }, IDLE_MS);
 }

@@ -1,30 +1,36 @@
 /** Arrows or W A S D drive while they are held; Enter enables; letters and digits can be turned off. */
 
+import { DIRECTIONS } from "./deflection.js";
+
+/** @import {PersonInput} from "./deflection.js" */
+/** @import {Settings} from "../settings/settings.js" */
+
+const { up, down, left, right } = DIRECTIONS;
 /** @type {Record<string, [number, number]>} */
-const ARROWS = { ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] };
+const ARROWS = { ArrowUp: up, ArrowDown: down, ArrowLeft: left, ArrowRight: right };
 /** @type {Record<string, [number, number]>} */
-const LETTERS = { KeyW: [0, 1], KeyS: [0, -1], KeyA: [-1, 0], KeyD: [1, 0] };
+const LETTERS = { KeyW: up, KeyS: down, KeyA: left, KeyD: right };
 
 /**
- * @param {import("./inputs.js").Inputs | import("../personalise/answering.js").Answering} inputs
- * @param {import("../settings/settings.js").Settings} settings
+ * @param {PersonInput} input
+ * @param {Settings} settings
  * @param {{enable: () => void, nextMode: () => void, axes: (index: number) => void}} actions
  */
-export function attachKeyboard(inputs, settings, actions) {
+export function attachKeyboard(input, settings, actions) {
   /** @type {Map<string, [number, number]>} */
-  const down = new Map();
+  const held = new Map();
 
   const push = () => {
     let [x, y] = [0, 0];
-    for (const [right, up] of down.values()) {
-      x += right;
-      y += up;
+    for (const [across, along] of held.values()) {
+      x += across;
+      y += along;
     }
-    inputs.hold("keyboard", Math.sign(x), Math.sign(y));
+    input.hold("keyboard", Math.sign(x), Math.sign(y));
   };
   const letGo = () => {
-    down.clear();
-    inputs.release("keyboard");
+    held.clear();
+    input.release("keyboard");
   };
 
   window.addEventListener("keydown", (event) => {
@@ -33,12 +39,12 @@ export function attachKeyboard(inputs, settings, actions) {
       letGo();
       return;
     }
-    if (isTaken(event.target, event.code, inputs.flowing)) return;
+    if (isTaken(event.target, event.code, input.flowing)) return;
     const direction = ARROWS[event.code] ?? (settings.values.shortcuts ? LETTERS[event.code] : undefined);
     if (direction) {
-      if (inputs.flowing) event.preventDefault();
+      if (input.flowing) event.preventDefault();
       if (event.repeat) return;
-      down.set(event.code, direction);
+      held.set(event.code, direction);
       push();
     } else if (!event.repeat) {
       act(event);
@@ -52,9 +58,9 @@ export function attachKeyboard(inputs, settings, actions) {
     if (digit) actions.axes(Number(digit[1]) - 1);
   };
   window.addEventListener("keyup", (event) => {
-    if (down.delete(event.code)) push();
+    if (held.delete(event.code)) push();
   });
-  inputs.addEventListener("dropped", () => down.clear());
+  input.addEventListener("dropped", () => held.clear());
 }
 
 /** Whether the focused control wants this key for itself. @param {EventTarget | null} target @param {string} code @param {boolean} driving */

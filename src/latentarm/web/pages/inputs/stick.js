@@ -1,5 +1,11 @@
 /** The stick drawn on a grid: a pointer or a finger pushes it, and letting go lets it spring back. */
 
+import { setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {PersonInput} from "./deflection.js" */
+/** @import {Settings} from "../settings/settings.js" */
+
 const SVG = "http://www.w3.org/2000/svg";
 const SIZE = 264;
 /** From the middle to where the input is 1, in the drawing's units. */
@@ -9,8 +15,8 @@ const CELLS = 8;
 /**
  * @param {HTMLElement} element
  * @param {HTMLElement} spoken where the position is put into words
- * @param {import("./inputs.js").Inputs | import("../personalise/answering.js").Answering} inputs
- * @param {import("../settings/settings.js").Settings} settings
+ * @param {PersonInput} inputs
+ * @param {Settings} settings
  */
 export function attachStick(element, spoken, inputs, settings) {
   const drawing = draw(element);
@@ -55,7 +61,7 @@ export function attachStick(element, spoken, inputs, settings) {
       // After an ordinary release the capture is lost too, and nothing is held any more.
       if (/** @type {PointerEvent} */ (event).pointerId !== pointer) return;
       pointer = null;
-      inputs.halt("the pointer was lost");
+      inputs.halt("pointer_lost");
     });
   }
   element.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -67,7 +73,7 @@ export function attachStick(element, spoken, inputs, settings) {
     drawing.knob.setAttribute("transform", `translate(${x * REACH} ${-y * REACH})`);
     drawing.arm.setAttribute("x2", String(x * REACH));
     drawing.arm.setAttribute("y2", String(-y * REACH));
-    spoken.textContent = words(x, y);
+    setText(spoken, deflectionWords(x, y));
   };
   inputs.addEventListener("change", show);
   const outline = () => drawing.dead.setAttribute("r", String(settings.values.deadZone * REACH));
@@ -84,14 +90,14 @@ export function attachStick(element, spoken, inputs, settings) {
   };
 }
 
-/** @param {number} x @param {number} y */
-export function words(x, y) {
+/** Where the stick is: "up 50 %, left 20 %". @param {number} x @param {number} y */
+export function deflectionWords(x, y) {
   const across = Math.round(Math.abs(x) * 100);
   const along = Math.round(Math.abs(y) * 100);
   const said = [];
-  if (along) said.push(`${y > 0 ? "up" : "down"} ${along} %`);
-  if (across) said.push(`${x > 0 ? "right" : "left"} ${across} %`);
-  return said.join(", ") || "Centre";
+  if (along) said.push(say(y > 0 ? "stick.up" : "stick.down", { percent: along }));
+  if (across) said.push(say(x > 0 ? "stick.right" : "stick.left", { percent: across }));
+  return said.join(", ") || say("stick.centre");
 }
 
 /** @param {number} value */
@@ -116,11 +122,11 @@ function draw(element) {
   knob.append(part("circle", { class: "knob", r: 31 }));
   svg.append(dead, arm);
   for (const [text, x, y] of /** @type {[string, number, number][]} */ ([
-    ["Up", 0, 5 - REACH - 14], ["Down", 0, REACH + 22],
+    [say("directions.up"), 0, 5 - REACH - 14], [say("directions.down"), 0, REACH + 22],
   ])) {
     svg.append(part("text", { x, y, "text-anchor": "middle" }, text));
   }
-  for (const [text, side] of /** @type {[string, number][]} */ ([["Left", -1], ["Right", 1]])) {
+  for (const [text, side] of /** @type {[string, number][]} */ ([[say("directions.left"), -1], [say("directions.right"), 1]])) {
     const x = side * (REACH + 17);
     svg.append(part("text", { x, y: 5, "text-anchor": "middle", transform: `rotate(${side * 90} ${x} 0)` }, text));
   }

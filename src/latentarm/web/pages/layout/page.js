@@ -1,53 +1,55 @@
-/** What every page has: the person's settings, the line to the server, the state in one sentence, Stop, theme. */
+/** What every page has: the person's settings, the connection, the state in one sentence, Stop, and the theme. */
 
 import { Connection } from "../connection/connection.js";
-import { seatFirst } from "../connection/driver_lease.js";
-import { Settings } from "../settings/settings.js";
-import { attachSettingsDialog } from "../settings/settings_dialog.js";
+import { attachDriverPanel, DriverLease } from "../connection/driver_lease.js";
 import { attachStatus } from "../connection/status.js";
 import { attachStop } from "../connection/stop.js";
+import { Settings } from "../settings/settings.js";
+import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
-
-/** @param {string} id @returns {any} */
-export const part = (id) => document.getElementById(id);
-
-/** @param {HTMLElement} element @param {string} text */
-export function write(element, text) {
-  if (element.textContent !== text) element.textContent = text;
-}
+import { byId, setText } from "./dom.js";
+import { readWords, say } from "./words.js";
 
 /**
- * @param {{drop?: () => void, repaint?: () => void, otherRun?: () => void}} [page] what this page lets go of at a Stop,
- *   draws anew, and does when another run has been loaded
+ * @param {{drop?: () => void, repaint?: () => void, runChanged?: () => void}} [page] what this page lets go of at a
+ *   Stop, draws anew when the theme changes, and does when another run has been loaded
  */
-export function attachFrame({ drop = () => {}, repaint = () => {}, otherRun = () => location.reload() } = {}) {
+export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = () => location.reload() } = {}) {
+  readWords();
   const settings = new Settings();
   const connection = new Connection(settings.name);
-  const status = attachStatus({ line: part("status"), text: part("status-text") }, connection);
-  const seat = seatFirst(connection);
+  const status = attachStatus({ line: byId("status"), text: byId("status-text") }, connection);
+  const lease = new DriverLease(connection);
   const stop = attachStop(connection, () => {
-    seat.forget();
+    lease.forget();
     drop();
   });
-  const dialog = attachSettingsDialog(part("settings"), part("settings-open"), settings);
-  attachTheme(part("theme"), settings, repaint);
+  const dialog = attachSettingsDialog(byId("settings", HTMLDialogElement), byId("settings-open"), settings);
+  attachTheme(byId("theme"), settings, repaint);
+  attachDriverPanel({
+    text: byId("driver"),
+    ask: byId("ask", HTMLButtonElement),
+    handOver: byId("hand-over", HTMLButtonElement),
+    release: byId("release", HTMLButtonElement),
+  }, connection);
 
-  let name = settings.name;
+  let { name } = settings;
   settings.addEventListener("change", () => {
     if (settings.name !== name) connection.rename((name = settings.name));
   });
   connection.addEventListener("welcome", () => {
+    if (!connection.welcome) return;
     const { robot, run, limits, profiles } = connection.welcome;
-    if (part("about")) write(part("about"), run ? `${robot}, run ${run}` : `${robot}, tool directions only: no run is loaded`);
-    write(part("latch-max"), String(limits.latch_max_s));
+    setText(byId("about"), run ? say("layout.about_run", { robot, run }) : say("layout.about_no_run", { robot }));
+    setText(byId("latch-max"), String(limits.latch_max_s));
     dialog.offer(profiles);
   });
-  connection.addEventListener("otherrun", otherRun);
+  connection.addEventListener("run_changed", runChanged);
   connection.addEventListener("workshop", () => {
-    const { profiles } = connection.workshop;
-    if (!connection.welcome || profiles.join() === connection.welcome.profiles.join()) return;
-    connection.welcome.profiles = profiles;
-    dialog.offer(profiles);
+    const { welcome, workshop } = connection;
+    if (!welcome || !workshop || workshop.profiles.join() === welcome.profiles.join()) return;
+    welcome.profiles = workshop.profiles;
+    dialog.offer(workshop.profiles);
   });
-  return { settings, connection, status, seat, stop, dialog };
+  return { settings, connection, status, lease, stop };
 }

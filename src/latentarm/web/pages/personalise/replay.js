@@ -5,7 +5,7 @@ const REST_MS = 700;
 const HOLD_MS = 900;
 const FRAME_MS = 33;
 
-/** @typedef {{duration_s: number, frames: number[][][], tools: number[][][]}} Motion */
+/** @typedef {import("../connection/messages.js").ShownMotion} Motion */
 
 export class Replay {
   /** @param {(bodies: number[][]) => void} show @param {(bodies: number[][] | null) => void} shadow a second arm */
@@ -15,7 +15,9 @@ export class Replay {
     this._still = matchMedia("(prefers-reduced-motion: reduce)");
     /** @type {Motion | null} */
     this._motion = null;
-    this._began = this._timer = 0;
+    this._began = 0;
+    /** @type {ReturnType<typeof setInterval> | undefined} */
+    this._timer = undefined;
     this._still.addEventListener("change", () => this.again());
   }
 
@@ -28,7 +30,6 @@ export class Replay {
   /** From the start; without motion where people want none: the arm at the start, and as a shadow at the end. */
   again() {
     clearInterval(this._timer);
-    this._timer = 0;
     const motion = this._motion;
     this._shadow(motion && this._still.matches ? motion.frames[motion.frames.length - 1] : null);
     if (!motion) return;
@@ -48,7 +49,7 @@ export class Replay {
 }
 
 /** The poses at a share of a motion, between its frames. @param {number[][][]} frames @param {number} share */
-function between(frames, share) {
+export function between(frames, share) {
   const at = share * (frames.length - 1);
   const whole = Math.min(Math.floor(at), frames.length - 2);
   return frames[whole].map((from, body) => mixed(from, frames[whole + 1][body], at - whole));

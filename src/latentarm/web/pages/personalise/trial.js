@@ -1,19 +1,24 @@
 /** An alignment that is tried: whose it is, and whether it is kept. */
 
-import { part, write } from "../layout/page.js";
+import { byId, setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {DriverLease} from "../connection/driver_lease.js" */
+/** @import {Settings} from "../settings/settings.js" */
 
 /** The profile's name while it is tried. */
 export const TRIAL = ".trial";
 
 /**
- * @param {import("../connection/connection.js").Connection} connection
- * @param {import("../settings/settings.js").Settings} settings
- * @param {{ask: (act: () => void) => void}} seat
+ * @param {Connection} connection
+ * @param {Settings} settings
+ * @param {DriverLease} lease
  */
-export function attachTrial(connection, settings, seat) {
+export function attachTrial(connection, settings, lease) {
   let keeping = false;
   connection.addEventListener("workshop", () => {
-    const { personalise } = connection.workshop;
+    const personalise = connection.workshop?.personalise;
     if (!keeping || personalise?.phase !== "kept") return;
     keeping = false;
     // In this browser the person drives with it from now on.
@@ -22,7 +27,10 @@ export function attachTrial(connection, settings, seat) {
   return {
     keep() {
       keeping = true;
-      seat.ask(() => connection.send("keep_alignment"));
+      lease.ask(() => connection.send({ type: "keep_alignment" }));
+    },
+    discard() {
+      lease.ask(() => connection.send({ type: "discard_alignment" }));
     },
   };
 }
@@ -30,22 +38,22 @@ export function attachTrial(connection, settings, seat) {
 /**
  * The banner on the Drive page.
  *
- * @param {import("../connection/connection.js").Connection} connection
- * @param {import("../settings/settings.js").Settings} settings
- * @param {{ask: (act: () => void) => void}} seat
+ * @param {Connection} connection
+ * @param {Settings} settings
+ * @param {DriverLease} lease
  */
-export function attachTrialBanner(connection, settings, seat) {
-  const trial = attachTrial(connection, settings, seat);
-  part("trial-keep").addEventListener("click", () => trial.keep());
-  part("trial-discard").addEventListener("click", () => seat.ask(() => connection.send("discard_alignment")));
+export function attachTrialBanner(connection, settings, lease) {
+  const trial = attachTrial(connection, settings, lease);
+  byId("trial-keep").addEventListener("click", trial.keep);
+  byId("trial-discard").addEventListener("click", trial.discard);
   const show = () => {
     const personalise = connection.workshop?.personalise;
-    const tried = personalise?.phase === "learned" && connection.state?.profile === TRIAL;
-    part("trial").hidden = !tried;
-    if (!tried) return;
-    write(part("trial-title"), `You are trying the alignment of ${personalise.name}.`);
-    part("trial-why").hidden = !personalise.why;
-    write(part("trial-why"), personalise.why ?? "");
+    const tried = personalise?.phase === "learned" && connection.state?.profile === TRIAL ? personalise : null;
+    byId("trial").hidden = tried === null;
+    if (tried === null) return;
+    setText(byId("trial-title"), say("trial.title", { name: tried.name }));
+    byId("trial-why").hidden = !tried.why;
+    setText(byId("trial-why"), tried.why ?? "");
   };
   connection.addEventListener("workshop", show);
   connection.addEventListener("state", show);

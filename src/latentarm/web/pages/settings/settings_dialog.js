@@ -1,19 +1,21 @@
-/** The settings' dialog: every change counts at once. */
+/** The dialog of the settings: every change counts at once. */
 
+import { byId, create } from "../layout/dom.js";
+import { say, sayNumber, sayPercent } from "../layout/words.js";
 import { attachLanguage } from "./language.js";
 import { NO_PROFILE } from "./settings.js";
 
-const TEXTS = /** @type {Record<string, (value: number) => string>} */ ({
-  sensitivity: (value) => `${Math.round(100 * value)} %`,
-  deadZone: (value) => `${Math.round(100 * value)} %`,
-  stepS: (value) => `${value.toFixed(1)} s`,
-  dwellS: (value) => `${value.toFixed(1)} s`,
-});
+/** @import {Settings, Values} from "./settings.js" */
+
+const seconds = (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 1) });
+
+/** What stands beside a slider. @type {Record<string, (value: number) => string>} */
+const TEXTS = { sensitivity: sayPercent, deadZone: sayPercent, stepS: seconds, dwellS: seconds };
 
 /**
  * @param {HTMLDialogElement} dialog
  * @param {HTMLElement} opener
- * @param {import("./settings.js").Settings} settings
+ * @param {Settings} settings
  */
 export function attachSettingsDialog(dialog, opener, settings) {
   const form = /** @type {HTMLFormElement} */ (dialog.querySelector("form"));
@@ -21,17 +23,16 @@ export function attachSettingsDialog(dialog, opener, settings) {
 
   const show = () => {
     for (const field of fields) {
-      const value = field.name === "name" ? settings.name : settings.values[/** @type {keyof import("./settings.js").Values} */ (field.name)];
+      const value = field.name === "name" ? settings.name : settings.values[/** @type {keyof Values} */ (field.name)];
       if (field.type === "checkbox") field.checked = Boolean(value);
       else if (field.type === "radio") field.checked = field.value === value;
       else if (document.activeElement !== field || field.type === "range") field.value = String(value);
     }
     for (const text of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-shows]"))) {
-      const name = /** @type {keyof typeof TEXTS} */ (text.dataset.shows);
-      text.textContent = TEXTS[name](Number(settings.values[/** @type {"stepS"} */ (name)]));
+      const name = text.dataset.shows ?? "";
+      text.textContent = TEXTS[name](Number(settings.values[/** @type {keyof Values} */ (name)]));
     }
-    const people = /** @type {HTMLElement} */ (form.querySelector("datalist"));
-    people.replaceChildren(...settings.people.map((value) => Object.assign(document.createElement("option"), { value })));
+    form.querySelector("datalist")?.replaceChildren(...settings.people.map((value) => create("option", { value })));
   };
 
   opener.addEventListener("click", () => {
@@ -54,20 +55,24 @@ export function attachSettingsDialog(dialog, opener, settings) {
     if (event.code === "Enter" && field.matches("input:not(.key)")) event.preventDefault();
     if (field.matches(".key")) askForKey(field, event, settings);
   });
-  /** @param {string[]} names people whose alignment can be chosen */
-  const offer = (names) => {
-    const choices = [["", "as the server was started"], [NO_PROFILE, "none"], ...names.map((name) => [name, name])];
-    /** @type {any} */ (form.elements).profile.replaceChildren(...choices.map(([value, textContent]) =>
-      Object.assign(document.createElement("option"), { value, textContent })));
-    show();
-  };
-  attachLanguage(/** @type {HTMLSelectElement} */ (form.querySelector("#language")));
+  attachLanguage(byId("language", HTMLSelectElement));
   form.querySelector("#settings-reset")?.addEventListener("click", () => settings.reset());
   settings.addEventListener("change", show);
-  return { offer };
+
+  return {
+    /** @param {string[]} names people whose alignment can be chosen */
+    offer(names) {
+      const choices = [["", say("settings.profile_standard")], [NO_PROFILE, say("settings.profile_none")]];
+      choices.push(...names.map((name) => [name, name]));
+      fields.find(({ name }) => name === "profile")?.replaceChildren(
+        ...choices.map(([value, textContent]) => create("option", { value, textContent })),
+      );
+      show();
+    },
+  };
 }
 
-/** Enter in a key's field, then the key itself. @param {HTMLInputElement} field @param {KeyboardEvent} event @param {import("./settings.js").Settings} settings */
+/** Enter in a key's field, then the key itself. @param {HTMLInputElement} field @param {KeyboardEvent} event @param {Settings} settings */
 function askForKey(field, event, settings) {
   if (event.code === "Tab" || event.code === "Escape" || event.code === "Space") {
     delete field.dataset.asking;
@@ -81,6 +86,6 @@ function askForKey(field, event, settings) {
     field.value = event.code;
   } else if (event.code === "Enter") {
     field.dataset.asking = "yes";
-    field.value = "Press the key …";
+    field.value = say("settings.press_key");
   }
 }

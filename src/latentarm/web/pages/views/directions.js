@@ -1,35 +1,41 @@
 /** Directions and places in the words of the person, who sits facing the arm or behind it. */
 
+import { say } from "../layout/words.js";
+
+/** @import {NamedGoal} from "../connection/messages.js" */
+/** @import {Values} from "../settings/settings.js" */
+
 const LEAST_M = 0.01;
 /** A part of a motion is named where it is at least this share of the largest part. */
 const NAMED_SHARE = 0.4;
 
 /**
  * @param {number[]} motion in the arm's base frame, m: x away from the base, y to its left, z up
- * @param {string} seat "facing" or "behind"
+ * @param {Values["seat"]} seat
  */
 export function motionWords(motion, seat) {
   const side = seat === "behind" ? 1 : -1;
   const [x, y, z] = motion;
-  const parts = /** @type {[number, string][]} */ ([
-    [Math.abs(z), z > 0 ? "up" : "down"],
-    [Math.abs(x), side * x > 0 ? "away from you" : "towards you"],
-    [Math.abs(y), side * y > 0 ? "left" : "right"],
-  ]).sort((a, b) => b[0] - a[0]);
   const length = Math.hypot(x, y, z);
-  if (length < LEAST_M) return "hardly moves, or turns";
-  const named = parts.filter(([size]) => size >= NAMED_SHARE * parts[0][0]).map(([, word]) => word);
-  return `${named.join(", ")}: ${Math.round(length * 100)} cm`;
+  if (length < LEAST_M) return say("motion.hardly");
+  const parts = [
+    { size: Math.abs(z), word: say(z > 0 ? "motion.up" : "motion.down") },
+    { size: Math.abs(x), word: say(side * x > 0 ? "motion.away" : "motion.towards") },
+    { size: Math.abs(y), word: say(side * y > 0 ? "motion.left" : "motion.right") },
+  ].sort((a, b) => b.size - a.size);
+  const named = parts.filter(({ size }) => size >= NAMED_SHARE * parts[0].size).map(({ word }) => word);
+  return say("motion.length", { directions: named.join(", "), centimetres: Math.round(length * 100) });
 }
 
 /**
  * @param {number[]} tool m
- * @param {{name: string, position: number[]}[]} goals
+ * @param {NamedGoal[]} goals
  */
 export function placeWords(tool, goals) {
-  const height = `The tool is ${Math.round(tool[2] * 100)} cm up`;
-  const near = goals
-    .map((goal) => ({ name: goal.name, away: Math.hypot(...goal.position.map((at, axis) => at - tool[axis])) }))
-    .sort((a, b) => a.away - b.away)[0];
-  return near ? `${height}, ${Math.round(near.away * 100)} cm from ${near.name}.` : `${height}.`;
+  const height = Math.round(tool[2] * 100);
+  const [nearest] = goals
+    .map(({ name, position }) => ({ name, away: Math.hypot(...position.map((at, axis) => at - tool[axis])) }))
+    .sort((a, b) => a.away - b.away);
+  if (!nearest) return say("place.height", { height });
+  return say("place.near", { height, away: Math.round(nearest.away * 100), name: nearest.name });
 }

@@ -2,9 +2,14 @@
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
-import { LOOKS } from "./predictions.js";
+import { DIRECTION_NAMES } from "../inputs/deflection.js";
+import { MARKS } from "./predictions.js";
 
-/** @typedef {import("../inputs/dpad.js").Direction} Direction */
+/** @import {Direction} from "../inputs/deflection.js" */
+/** @import {Labels} from "./labels.js" */
+/** @import {Paths} from "./predictions.js" */
+
+/** @typedef {ReturnType<typeof drawn>} Ghost */
 
 const THICK_M = 0.006;
 /** A path shorter than this, m, is not drawn. */
@@ -13,24 +18,13 @@ const BEADS = 9;
 
 export class Ghosts {
   /**
-   * @param {any} scene
-   * @param {import("./labels.js").Labels} labels
+   * @param {THREE.Scene} scene
+   * @param {Labels} labels
    */
   constructor(scene, labels) {
     this._labels = labels;
-    this._ghosts = /** @type {Direction[]} */ (Object.keys(LOOKS)).map((direction) => {
-      const material = new THREE.MeshBasicMaterial({ transparent: true, depthTest: false });
-      const body = new THREE.Mesh(new THREE.BufferGeometry(), material);
-      const head = new THREE.Mesh(new THREE.ConeGeometry(0.016, 0.034, 10), material);
-      const beads = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(0.0075, 1), material, BEADS);
-      beads.frustumCulled = body.frustumCulled = false;
-      for (const object of [body, head, beads]) {
-        object.renderOrder = 2;
-        object.visible = false;
-        scene.add(object);
-      }
-      return { direction, material, body, head, beads };
-    });
+    this._ghosts = DIRECTION_NAMES.map(drawn);
+    for (const { body, head, beads } of this._ghosts) scene.add(body, head, beads);
     this.repaint();
   }
 
@@ -39,7 +33,7 @@ export class Ghosts {
   }
 
   /**
-   * @param {Record<Direction, number[][] | null>} paths points of the tool, m, for the person's own directions
+   * @param {Paths} paths for the person's own directions
    * @param {Direction[]} pressed the directions that are pressed now; the others step back
    * @param {boolean} shown
    */
@@ -52,11 +46,11 @@ export class Ghosts {
       ghost.head.visible = visible;
       ghost.material.opacity = pressed.length === 0 || pressed.includes(ghost.direction) ? 0.95 : 0.3;
       this._labels.set(`ghost-${ghost.direction}`, visible ? this._lay(ghost, path) : null,
-        LOOKS[ghost.direction].mark, { shown: visible, ghost: ghost.direction });
+        MARKS[ghost.direction], { shown: visible, ghost: ghost.direction });
     }
   }
 
-  /** Up and down are tubes, left and right are beads; all end in a cone. @param {any} ghost @param {number[][]} path */
+  /** Up and down are tubes, left and right are beads; all end in a cone. @param {Ghost} ghost @param {number[][]} path */
   _lay({ direction, body, beads, head }, path) {
     const points = path.map(([x, y, z]) => new THREE.Vector3(x, y, z));
     const curve = new THREE.CatmullRomCurve3(points);
@@ -76,6 +70,21 @@ export class Ghosts {
     head.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), ahead);
     return end.addScaledVector(ahead, 0.05);
   }
+}
+
+/** What one path is drawn with. @param {Direction} direction */
+function drawn(direction) {
+  const material = new THREE.MeshBasicMaterial({ transparent: true, depthTest: false });
+  /** @type {THREE.Mesh} */
+  const body = new THREE.Mesh(new THREE.BufferGeometry(), material);
+  const head = new THREE.Mesh(new THREE.ConeGeometry(0.016, 0.034, 10), material);
+  const beads = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(0.0075, 1), material, BEADS);
+  beads.frustumCulled = body.frustumCulled = false;
+  for (const object of [body, head, beads]) {
+    object.renderOrder = 2;
+    object.visible = false;
+  }
+  return { direction, material, body, head, beads };
 }
 
 /** @param {Direction} direction */

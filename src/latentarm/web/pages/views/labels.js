@@ -1,20 +1,23 @@
 /** Small texts that stay beside points of the scene, in both views. */
 
+/** @import * as THREE from "three" */
+/** @import {Views} from "./views.js" */
+
 const LINE_PX = 22;
 const RAISED_PX = 24;
 
 export class Labels {
-  /** @param {import("./views.js").Views} views */
+  /** @param {Views} views */
   constructor(views) {
     this._views = views;
-    /** @type {Map<string, {point: any, shown: boolean, wide: number, elements: HTMLElement[]}>} */
+    /** @type {Map<string, {point: THREE.Vector3 | null, shown: boolean, wide: number, elements: HTMLElement[]}>} */
     this._all = new Map();
     views.beforeFrame.push(() => this._place());
   }
 
   /**
    * @param {string} key
-   * @param {any} point
+   * @param {THREE.Vector3 | null} point
    * @param {string} text
    * @param {{shown?: boolean, ghost?: string, share?: string}} [look] a share is left out where there is little room
    */
@@ -51,7 +54,7 @@ export class Labels {
       for (const { point, shown, elements, wide } of this._all.values()) {
         const element = elements[index];
         element.hidden = !shown;
-        if (!shown) continue;
+        if (!shown || point === null) continue;
         let { x, y } = this._views.project(view, point);
         if (!element.classList.contains("ghost")) {
           y -= RAISED_PX;

@@ -1,33 +1,33 @@
 /** What each direction will do: the tool's paths over the next second, for this person, and in words. */
 
-import { DIRECTIONS } from "../inputs/dpad.js";
+import { DIRECTIONS, DIRECTION_NAMES } from "../inputs/deflection.js";
+import { create, setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
 
-/** @typedef {import("../inputs/dpad.js").Direction} Direction */
+/** @import {State} from "../connection/messages.js" */
+/** @import {Direction} from "../inputs/deflection.js" */
 
-/** How each is marked, in the views and in the list. @type {Record<Direction, {mark: string, label: string}>} */
-export const LOOKS = {
-  up: { mark: "↑", label: "Up" },
-  down: { mark: "↓", label: "Down" },
-  left: { mark: "←", label: "Left" },
-  right: { mark: "→", label: "Right" },
-};
+/** Points of the tool, m, for each direction; null where nothing is known. @typedef {Record<Direction, number[][] | null>} Paths */
+
+/** How each is marked, in the views and in the list. @type {Record<Direction, string>} */
+export const MARKS = { up: "↑", down: "↓", left: "←", right: "→" };
+
 /**
  * The paths for the person's own directions, out of those for full inputs along each axis.
  *
- * @param {Record<Direction, number[][]> | null} ghosts what the server says
+ * @param {State["ghosts"]} ghosts what the server says
  * @param {number[]} tool where the paths begin, m
  * @param {(x: number, y: number) => number[]} shaped from stick to what is sent
- * @returns {Record<Direction, number[][] | null>}
+ * @returns {Paths}
  */
-export function personal(ghosts, tool, shaped) {
-  /** @type {any} */
-  const paths = {};
-  for (const [direction, [x, y]] of Object.entries(DIRECTIONS)) {
-    const [across = 0, along = 0] = shaped(x, y);
+export function personalPaths(ghosts, tool, shaped) {
+  /** @type {Paths} */
+  const paths = { up: null, down: null, left: null, right: null };
+  for (const direction of DIRECTION_NAMES) {
+    const [across = 0, along = 0] = shaped(...DIRECTIONS[direction]);
     const size = Math.max(Math.abs(across), Math.abs(along));
     const sent = Math.abs(across) >= Math.abs(along) ? (across > 0 ? "right" : "left") : along > 0 ? "up" : "down";
-    const path = size > 0 ? ghosts?.[sent] ?? null : null;
-    paths[direction] = path && shortened([tool, ...path], size);
+    if (ghosts && size > 0) paths[direction] = shortened([tool, ...ghosts[sent]], size);
   }
   return paths;
 }
@@ -48,30 +48,34 @@ function shortened(path, share) {
  *
  * @param {HTMLElement} list
  */
-export function listGhosts(list) {
-  const rows = Object.entries(LOOKS).map(([direction, { mark, label }]) => {
-    const item = document.createElement("li");
-    item.dataset.ghost = direction;
-    const sign = Object.assign(document.createElement("span"), { className: "ghost-mark", textContent: mark });
+export function attachPredictions(list) {
+  const rows = DIRECTION_NAMES.map((direction) => {
+    const sign = create("span", { className: "ghost-mark", textContent: MARKS[direction] });
     sign.setAttribute("aria-hidden", "true");
-    const words = document.createElement("span");
-    item.append(sign, Object.assign(document.createElement("span"), { textContent: label }), words);
+    const words = create("span");
+    const item = create("li");
+    item.dataset.ghost = direction;
+    item.append(sign, create("span", { textContent: say(`directions.${direction}`) }), words);
     list.append(item);
     return { direction, item, words };
   });
   return {
     /**
-     * @param {Record<Direction, number[][] | null>} paths
+     * @param {Paths} paths
      * @param {Direction[]} pressed
-     * @param {(motion: number[]) => string} say
+     * @param {(motion: number[]) => string} describe
      */
-    show(paths, pressed, say) {
+    show(paths, pressed, describe) {
       for (const { direction, item, words } of rows) {
-        const path = paths[/** @type {Direction} */ (direction)];
-        const text = path === null ? "–" : say(path[path.length - 1].map((end, axis) => end - path[0][axis]));
-        if (words.textContent !== text) words.textContent = text;
-        item.dataset.pressed = String(pressed.includes(/** @type {Direction} */ (direction)));
+        const path = paths[direction];
+        setText(words, path === null ? "–" : describe(displacement(path)));
+        item.dataset.pressed = String(pressed.includes(direction));
       }
     },
   };
+}
+
+/** From the first point of a path to its last, m. @param {number[][]} path */
+export function displacement(path) {
+  return path[path.length - 1].map((end, axis) => end - path[0][axis]);
 }

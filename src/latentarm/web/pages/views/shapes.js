@@ -2,13 +2,15 @@
 
 import { THREE } from "../three/index.js";
 
+/** @import {Geom, Obstacle} from "./scene_description.js" */
+/** @typedef {Map<number, THREE.BufferGeometry>} Meshes geometries by number */
+
 /**
  * One geom, placed in its body.
  *
- * @param {{type: string, size: number[], pos: number[], quat: number[], rgba: number[], mesh: number | null}} geom
- *   sizes as MuJoCo has them: half lengths and radii, m.
- * @param {Map<number, any>} meshes geometries by number
- * @returns {any} a mesh, or null for a kind that is not drawn
+ * @param {Geom} geom
+ * @param {Meshes} meshes
+ * @returns {THREE.Mesh | null} null for a kind that is not drawn
  */
 export function shapeOf(geom, meshes) {
   const geometry = geometryOf(geom, meshes);
@@ -25,10 +27,9 @@ export function shapeOf(geom, meshes) {
 }
 
 /**
- * Something that the arm must keep clear of; planes are drawn by the scene.
+ * Something that the arm must keep clear of; planes are drawn as the table.
  *
- * @param {any} obstacle as /scene.json has it
- * @returns {any} a mesh, or null
+ * @param {Obstacle} obstacle
  */
 export function obstacleOf(obstacle) {
   const material = new THREE.MeshLambertMaterial({ transparent: true, opacity: 0.6 });
@@ -54,7 +55,7 @@ export function obstacleOf(obstacle) {
   return null;
 }
 
-/** @param {any} geom @param {Map<number, any>} meshes */
+/** @param {Geom} geom @param {Meshes} meshes @returns {THREE.BufferGeometry | null} */
 function geometryOf({ type, size, mesh }, meshes) {
   const [a, b, c] = size;
   switch (type) {
@@ -69,14 +70,14 @@ function geometryOf({ type, size, mesh }, meshes) {
     case "box":
       return new THREE.BoxGeometry(2 * a, 2 * b, 2 * c);
     case "mesh":
-      return meshes.get(mesh) ?? null;
+      return (mesh !== null && meshes.get(mesh)) || null;
     default:
       return null;
   }
 }
 
 /**
- * @param {any} object
+ * @param {THREE.Object3D} object
  * @param {number[]} pose x, y, z (m) and a quaternion w, x, y, z
  */
 export function place(object, [x, y, z, w, i, j, k]) {
@@ -84,11 +85,7 @@ export function place(object, [x, y, z, w, i, j, k]) {
   object.quaternion.set(i, j, k, w);
 }
 
-/**
- * A mesh as the server sends it: two counts, vertices and faces, little-endian.
- *
- * @param {ArrayBuffer} bytes
- */
+/** A mesh as the server sends it: two counts, vertices and faces, little-endian. @param {ArrayBuffer} bytes */
 export function meshGeometry(bytes) {
   const [vertices, faces] = new Uint32Array(bytes, 0, 2);
   const geometry = new THREE.BufferGeometry();

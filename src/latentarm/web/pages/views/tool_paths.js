@@ -1,16 +1,16 @@
-/** The ways of the tools along a motion, each an arrow in both views. */
+/** The paths of the tools along a motion, each an arrow in both views. */
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
 
 const THICK_M = 0.009;
 
-export class Ways {
-  /** @param {any} scene */
+export class ToolPaths {
+  /** @param {THREE.Scene} scene */
   constructor(scene) {
     this._scene = scene;
     this._material = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.95 });
-    /** @type {any[]} */
+    /** @type {THREE.Mesh[]} */
     this._drawn = [];
     this.repaint();
   }
@@ -19,20 +19,21 @@ export class Ways {
     this._material.color.set(colour("way"));
   }
 
-  /** @param {number[][][]} ways points of each tool, m */
-  show(ways) {
+  /** @param {[number, number, number][][]} paths points of each tool, m */
+  show(paths) {
     for (const object of this._drawn) {
       this._scene.remove(object);
       object.geometry.dispose();
     }
-    this._drawn = ways.flatMap((way) => this._arrow(way.map((point) => new THREE.Vector3(...point))));
+    this._drawn = paths.flatMap((path) => this._arrow(path.map((point) => new THREE.Vector3(...point))));
     if (this._drawn.length) this._scene.add(...this._drawn);
   }
 
-  /** @param {any[]} points */
+  /** @param {THREE.Vector3[]} points */
   _arrow(points) {
     const start = new THREE.Mesh(new THREE.SphereGeometry(0.017, 14, 10), this._material);
     start.position.copy(points[0]);
+    /** @type {THREE.Mesh[]} */
     const parts = [start];
     if (points[0].distanceTo(points[points.length - 1]) > 1e-3) {
       const curve = new THREE.CatmullRomCurve3(points);

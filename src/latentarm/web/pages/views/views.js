@@ -14,20 +14,22 @@ const SOFTWARE_SHARE = 0.7;
 /** What can wait for the next frame waits no longer than this, ms. */
 const SOON_MS = 120;
 
-/** Where each camera looks from, as directions from the middle of the scene. */
+/** @import {ArmScene} from "./scene.js" */
+
+/** Where each camera looks from, as directions from the middle of the scene. @type {Record<string, Record<"front" | "side", [number, number, number]>>} */
 const DIRECTIONS = {
   facing: { front: [1, 0, 0.42], side: [0.08, -1, 0.22] },
   behind: { front: [-1, -0.55, 0.75], side: [0.08, -1, 0.22] },
   flat: { front: [0, -0.01, 1], side: [0, -1, 0.8] },
 };
 
-/** @typedef {{element: HTMLElement, labels: HTMLElement, camera: any, name: "front" | "side"}} View */
+/** @typedef {{element: HTMLElement, labels: HTMLElement, camera: THREE.PerspectiveCamera, name: "front" | "side"}} View */
 
 export class Views {
   /**
    * @param {HTMLCanvasElement} canvas lies under both views
    * @param {{front: HTMLElement, side: HTMLElement}} elements
-   * @param {import("./scene.js").ArmScene} scene
+   * @param {ArmScene} scene
    */
   constructor(canvas, elements, scene) {
     this._canvas = canvas;
@@ -38,10 +40,14 @@ export class Views {
     this._renderer = new THREE.WebGLRenderer({ canvas, antialias: !software, alpha: true, powerPreference: "low-power" });
     this._renderer.setScissorTest(true);
     this._ratio = Math.min(devicePixelRatio, 2) * (software ? SOFTWARE_SHARE : 1);
-    /** @type {any} Passed by the graphics processor when the last frame is done. */
+    /** @type {WebGL2RenderingContext} */
+    this._gl = /** @type {WebGL2RenderingContext} */ (this._renderer.getContext());
+    /** @type {WebGLSync | null} Passed by the graphics processor when the last frame is done. */
     this._fence = null;
     this._held = 0;
-    this._pending = this._soon = 0;
+    this._pending = 0;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this._soon = undefined;
     /** @type {"facing" | "behind"} */
     this.seat = "facing";
     /** @type {View[]} */
@@ -69,7 +75,7 @@ export class Views {
   /** Something has changed that may be drawn with whatever changes next, where each frame takes long. */
   invalidateSoon() {
     if (this.smooth) this.invalidate();
-    else this._soon ||= setTimeout(() => this.invalidate(), SOON_MS);
+    else this._soon ??= setTimeout(() => this.invalidate(), SOON_MS);
   }
 
   /** Fit the canvas and the cameras to the page. */
@@ -86,7 +92,7 @@ export class Views {
    * Where a point is in a view, CSS pixels from its left upper corner.
    *
    * @param {View} view
-   * @param {any} point
+   * @param {THREE.Vector3} point
    */
   project(view, point) {
     const seen = point.clone().project(view.camera);
@@ -135,7 +141,7 @@ export class Views {
     }
     this._held = Math.max(this._held - 1, 0);
     clearTimeout(this._soon);
-    this._soon = 0;
+    this._soon = undefined;
     const gliding = this._scene.advance(now);
     for (const call of this.beforeFrame) call();
     const canvas = this._canvas.getBoundingClientRect();
@@ -147,7 +153,7 @@ export class Views {
       this._renderer.setScissor(left, bottom, element.clientWidth, element.clientHeight);
       this._renderer.render(this._scene.scene, camera);
     }
-    const gl = this._renderer.getContext();
+    const gl = this._gl;
     this._fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     for (const call of this.afterFrame) call();
@@ -156,7 +162,7 @@ export class Views {
 
   _finished() {
     if (this._fence === null) return true;
-    const gl = this._renderer.getContext();
+    const gl = this._gl;
     if (gl.getSyncParameter(this._fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost()) return false;
     gl.deleteSync(this._fence);
     this._fence = null;

@@ -1,15 +1,39 @@
 /** What is pressed, by one source at a time: every way of pressing meets here. */
 
 /** @typedef {"pointer" | "dpad" | "keyboard" | "gamepad" | "switch"} Source */
+/** @typedef {"up" | "down" | "left" | "right"} Direction */
+/** @typedef {"focus_lost" | "page_closed" | "page_hidden" | "pointer_lost" | "gamepad_lost" | "not_enabled"} HaltReason */
+/** @typedef {import("./drive_input.js").DriveInput | import("../personalise/answer_input.js").AnswerInput} PersonInput */
+
+/** Full deflections: right, up. @type {Record<Direction, [number, number]>} */
+export const DIRECTIONS = { up: [0, 1], down: [0, -1], left: [-1, 0], right: [1, 0] };
+
+/** In the order in which people choose. */
+export const DIRECTION_NAMES = /** @type {Direction[]} */ (Object.keys(DIRECTIONS));
+
+/** A direction is pressed where its part is at least this share of the larger one. */
+const PRESSED_SHARE = 0.4;
 
 /** Events: "turned" when a deflection begins or ends, with its source; "change"; "dropped" when all must let go. */
-export class Held extends EventTarget {
+export class Deflection extends EventTarget {
   constructor() {
     super();
-    this.x = this.y = 0;
+    /** To the right, in [-1, 1]. */
+    this.x = 0;
+    /** Up, in [-1, 1]. */
+    this.y = 0;
     this.latched = false;
     /** @type {Source | null} */
     this.source = null;
+  }
+
+  /** The directions that are pressed now. @returns {Direction[]} */
+  get pressed() {
+    const least = PRESSED_SHARE * Math.max(Math.abs(this.x), Math.abs(this.y));
+    return DIRECTION_NAMES.filter((name) => {
+      const [x, y] = DIRECTIONS[name];
+      return x * this.x + y * this.y > least;
+    });
   }
 
   /**

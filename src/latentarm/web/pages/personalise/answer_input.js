@@ -1,6 +1,6 @@
 /** The stick as an answer: nothing is sent while it is pushed, and the push that was meant stays as a dot. */
 
-import { Held } from "../inputs/held.js";
+import { Deflection } from "../inputs/deflection.js";
 
 const PERIOD_MS = 20;
 /** A push that hardly moves for so long is meant, ms: a stick that springs back passes many places. */
@@ -10,10 +10,10 @@ const STEADY = 0.1;
 /** @typedef {{x: number, y: number, at: number}} Sample */
 
 /** Event "answer" when the dot has moved. */
-export class Answering extends Held {
+export class AnswerInput extends Deflection {
   constructor() {
     super();
-    /** Whether there is a question to answer. */
+    /** Whether there is a question to answer: only then is anything sampled. */
     this.live = false;
     /** @type {[number, number] | null} The push that was meant. */
     this.answer = null;
@@ -29,7 +29,7 @@ export class Answering extends Held {
     window.addEventListener("blur", () => this.drop());
   }
 
-  /** As for a drive: while there is a question, the arrow keys are the stick's. */
+  /** While there is a question, the arrow keys are the stick's. */
   get flowing() {
     return this.live;
   }

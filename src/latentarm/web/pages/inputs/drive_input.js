@@ -1,11 +1,14 @@
 /**
- * Where every way of pressing meets: one at a time, shaped for the person, and sent while the page can be trusted.
+ * The person's input while they drive: shaped for them, and sent while the page can be trusted.
  *
  * Inputs flow from Enable on until the arm is disengaged. Whatever makes the page doubtful (focus lost, hidden,
  * closed, a pointer or a gamepad taken away) sends neutral and a stop, and then nothing until Enable is pressed.
  */
 
-import { Held } from "./held.js";
+import { Deflection } from "./deflection.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {HaltReason, Source} from "./deflection.js" */
 
 const PERIOD_MS = 20;
 /** Neutral inputs that go ahead of `enable`, ms: the server must have seen the stick at rest. */
@@ -13,33 +16,35 @@ const NEUTRAL_FIRST_MS = 60;
 /** How long an unanswered Enable keeps sending, ms. */
 const PATIENCE_MS = 1500;
 
-/** @typedef {import("./held.js").Source} Source */
-
-export class Inputs extends Held {
+/** Events besides those of `Deflection`: "poll" before each input; "halted" with why this page stopped the arm, or null. */
+export class DriveInput extends Deflection {
   /**
-   * @param {import("../connection/connection.js").Connection} connection
+   * @param {Connection} connection
    * @param {(x: number, y: number) => number[]} shaped from stick (right, up) to what is sent
    */
   constructor(connection, shaped) {
     super();
     this._connection = connection;
     this._shaped = shaped;
-    this._timer = this._enabling = 0;
+    /** @type {ReturnType<typeof setInterval> | undefined} */
+    this._timer = undefined;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this._enabling = undefined;
     this._wasEngaged = false;
     this._askedAt = -Infinity;
-    this.addEventListener("turned", (event) => this._send(/** @type {CustomEvent} */ (event).detail));
+    this.addEventListener("turned", (event) => this._send(/** @type {CustomEvent<Source>} */ (event).detail));
     connection.addEventListener("state", () => this._onState());
-    connection.addEventListener("line", () => this.drop());
-    window.addEventListener("blur", () => this.halt("this window lost the focus"));
-    window.addEventListener("pagehide", () => this.halt("the page was closed"));
+    connection.addEventListener("open", () => this.drop());
+    window.addEventListener("blur", () => this.halt("focus_lost"));
+    window.addEventListener("pagehide", () => this.halt("page_closed"));
     document.addEventListener("visibilitychange", () => {
-      if (document.hidden) this.halt("the page was hidden");
+      if (document.hidden) this.halt("page_hidden");
     });
   }
 
   /** Whether inputs are going out. */
   get flowing() {
-    return this._timer !== 0;
+    return this._timer !== undefined;
   }
 
   /** Whether a press that begins now would move the arm. */
@@ -50,40 +55,36 @@ export class Inputs extends Held {
   /** The person's explicit action: neutral inputs first, then `enable`. */
   enable() {
     if (document.hidden) return;
-    this.dispatchEvent(new CustomEvent("halted", { detail: null }));
+    this._say(null);
     this._askedAt = performance.now();
     this._wasEngaged = false;
-    if (!this.flowing) this._timer = setInterval(() => this._tick(), PERIOD_MS);
+    this._timer ??= setInterval(() => this._tick(), PERIOD_MS);
     this._send(this.source ?? "pointer");
     clearTimeout(this._enabling);
-    this._enabling = setTimeout(() => this._connection.send("enable"), NEUTRAL_FIRST_MS);
+    this._enabling = setTimeout(() => this._connection.send({ type: "enable" }), NEUTRAL_FIRST_MS);
   }
 
   /**
    * Neutral, a stop, and then silence until the person enables again. Only a page whose inputs flow stops the arm so.
    *
-   * @param {string} why said to the person as "Stopped: …"
+   * @param {HaltReason} why
    */
   halt(why) {
     const flowed = this.flowing;
     this.drop();
     if (!flowed) return;
-    this._connection.send("stop");
-    this.dispatchEvent(new CustomEvent("halted", { detail: why }));
+    this._connection.send({ type: "stop" });
+    this._say(why);
   }
 
   /** Let go of everything, and send no more until the person enables again. */
   drop() {
     this.neutral();
     if (this.flowing) this._send("pointer");
-    this._end();
-  }
-
-  _end() {
     // An Enable that has not gone out yet must not come after a Stop.
     clearTimeout(this._enabling);
     clearInterval(this._timer);
-    this._timer = 0;
+    this._timer = undefined;
   }
 
   _tick() {
@@ -103,5 +104,10 @@ export class Inputs extends Held {
     const impatient = performance.now() - this._askedAt > PATIENCE_MS;
     if ((this._wasEngaged || impatient) && !engaged) this.drop();
     this._wasEngaged = engaged;
+  }
+
+  /** @param {HaltReason | null} why */
+  _say(why) {
+    this.dispatchEvent(new CustomEvent("halted", { detail: why }));
   }
 }

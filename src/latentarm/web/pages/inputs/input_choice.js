@@ -1,0 +1,28 @@
+/** Which way of pressing is shown: the stick, the buttons or the switch. */
+
+import { byId } from "../layout/dom.js";
+
+/** @import {PersonInput} from "./deflection.js" */
+/** @import {Settings, Values} from "../settings/settings.js" */
+
+/** @type {Values["panel"][]} */
+const PANELS = ["stick", "dpad", "switch"];
+
+/** Where another way is chosen, what is pressed is let go. @param {PersonInput} input @param {Settings} settings */
+export function attachInputChoice(input, settings) {
+  const radios = /** @type {NodeListOf<HTMLInputElement>} */ (document.querySelectorAll("input[name=panel]"));
+  let shown = settings.values.panel;
+
+  const show = () => {
+    const { panel } = settings.values;
+    if (panel !== shown) input.drop();
+    shown = panel;
+    for (const name of PANELS) byId(`panel-${name}`).hidden = name !== panel;
+    for (const radio of radios) radio.checked = radio.value === panel;
+  };
+  for (const radio of radios) {
+    radio.addEventListener("change", () => settings.change({ panel: /** @type {Values["panel"]} */ (radio.value) }));
+  }
+  settings.addEventListener("change", show);
+  show();
+}

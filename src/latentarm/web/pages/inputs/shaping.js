@@ -1,0 +1,56 @@
+/** From the stick to what is sent: the person's own dead zone, sensitivity and axes, and what the mode expects. */
+
+/** @import {State, Welcome} from "../connection/messages.js" */
+/** @import {Values} from "../settings/settings.js" */
+
+/** @typedef {Pick<Values, "deadZone" | "sensitivity" | "swapAxes" | "invertX" | "invertY">} StickSettings */
+
+/**
+ * From the stick to the person's own: dead zone, sensitivity, swapped and mirrored axes.
+ *
+ * @param {StickSettings} settings
+ * @param {number} x right
+ * @param {number} y up
+ * @returns {[number, number]} right, up
+ */
+export function shape({ deadZone, sensitivity, swapAxes, invertX, invertY }, x, y) {
+  const size = Math.hypot(x, y);
+  if (size <= deadZone) return [0, 0];
+  const reach = Math.max(Math.abs(x), Math.abs(y));
+  // Grows from zero at the edge of the dead zone to full at the edge of the pad.
+  const scale = (sensitivity * Math.min(1, (size - deadZone) / (size / reach - deadZone))) / reach;
+  const right = (invertX ? -x : x) * scale;
+  const up = (invertY ? -y : y) * scale;
+  return swapAxes ? [up, right] : [right, up];
+}
+
+/**
+ * What is sent while learned motions are driven: one axis or two.
+ *
+ * @param {Values} settings
+ * @param {Pick<Welcome, "latent_dim"> | null} welcome
+ * @param {number} x
+ * @param {number} y
+ */
+export function latentInput(settings, welcome, x, y) {
+  const [right, up] = shape(settings, x, y);
+  return welcome?.latent_dim === 1 ? [right] : [right, up];
+}
+
+/**
+ * What is sent in the mode that is on.
+ *
+ * @param {Values} settings
+ * @param {Pick<State, "mode" | "axes"> | null} state
+ * @param {Pick<Welcome, "latent_dim"> | null} welcome
+ * @param {number} x
+ * @param {number} y
+ * @returns {number[]}
+ */
+export function modeInput(settings, state, welcome, x, y) {
+  if (state?.mode !== "end_effector") return latentInput(settings, welcome, x, y);
+  const [right, up] = shape(settings, x, y);
+  // The server's axes are the base frame's: forward and left, up and turn, roll and pitch.
+  const facing = settings.seat === "facing" && state.axes === 0;
+  return (facing ? [-up, right] : [up, -right]).map((value) => value + 0);
+}

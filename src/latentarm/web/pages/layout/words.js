@@ -1,0 +1,55 @@
+/**
+ * The page's words: one catalogue per language, which the server puts into each page.
+ *
+ * An entry is a sentence with `{name}` where a parameter goes, or one sentence for each plural form of the parameter
+ * `count`, named as `Intl.PluralRules` names them.
+ */
+
+/** @typedef {keyof typeof import("../../words/en.json")} WordKey */
+/** @typedef {string | Record<string, string>} Entry */
+
+/** @type {Record<string, Entry>} */
+let catalogue = {};
+let language = "en";
+
+/** @param {string} newLanguage as in `<html lang>` @param {Record<string, Entry>} entries */
+export function useWords(newLanguage, entries) {
+  language = newLanguage;
+  catalogue = entries;
+}
+
+/** Take the catalogue that this page carries. */
+export function readWords() {
+  const element = document.getElementById("words");
+  useWords(document.documentElement.lang, JSON.parse(element?.textContent ?? "{}"));
+}
+
+/**
+ * A text of the catalogue.
+ *
+ * @param {WordKey} key
+ * @param {Record<string, string | number>} [parameters]
+ * @returns {string}
+ * @throws {Error} where the catalogue has no such key.
+ */
+export function say(key, parameters = {}) {
+  const entry = catalogue[key];
+  if (entry === undefined) throw new Error(`the catalogue has no words for ${key}`);
+  const text = typeof entry === "string" ? entry : entry[pluralForm(Number(parameters.count))] ?? entry.other;
+  return text.replace(/\{(\w+)\}/g, (_, name) => String(parameters[name]));
+}
+
+/** A number as the language writes it. @param {number} value @param {number} [digits] after the decimal point */
+export function sayNumber(value, digits = 0) {
+  return value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false });
+}
+
+/** A share as a percentage. @param {number} share @param {number} [digits] */
+export function sayPercent(share, digits = 0) {
+  return say("unit.percent", { value: digits ? sayNumber(100 * share, digits) : Math.round(100 * share) });
+}
+
+/** @param {number} count */
+function pluralForm(count) {
+  return new Intl.PluralRules(language).select(count);
+}

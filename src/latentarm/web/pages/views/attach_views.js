@@ -1,0 +1,28 @@
+/** The two views of a page. They are loaded after the page works: they are large, and all else works without them. */
+
+import { byId, setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Settings} from "../settings/settings.js" */
+/** @import {Drawing} from "./drawing.js" */
+
+/**
+ * @param {Settings} settings
+ * @param {string} without what is said where this browser cannot draw
+ * @param {(drawing: Drawing) => void} loaded
+ */
+export async function attachViews(settings, without, loaded) {
+  const caption = /** @type {HTMLElement} */ (byId("view-front").querySelector("figcaption"));
+  const name = () => setText(caption, say(settings.values.seat === "facing" ? "views.front" : "views.shoulder"));
+  settings.addEventListener("change", name);
+  name();
+  try {
+    const { Drawing } = await import("./drawing.js");
+    const elements = { canvas: byId("scene", HTMLCanvasElement), front: byId("view-front"), side: byId("view-side") };
+    loaded(await Drawing.load(elements));
+  } catch (error) {
+    byId("scene-lost").hidden = false;
+    setText(byId("scene-lost"), without);
+    console.error(error);
+  }
+}

@@ -1,0 +1,31 @@
+/** What `/scene.json` holds; see `latentarm.web.protocol.scene`. Lengths in m, quaternions w, x, y, z. */
+
+export type Vector = [number, number, number];
+export type Quaternion = [number, number, number, number];
+
+export interface Geom {
+  type: "sphere" | "capsule" | "ellipsoid" | "cylinder" | "box" | "mesh";
+  /** MuJoCo's: half lengths and radii. */
+  size: Vector;
+  pos: Vector;
+  quat: Quaternion;
+  rgba: [number, number, number, number];
+  mesh: number | null;
+}
+
+export type Obstacle =
+  | { name: string; type: "plane"; point: Vector; normal: Vector }
+  | { name: string; type: "sphere"; centre: Vector; radius: number }
+  | { name: string; type: "capsule"; start: Vector; end: Vector; radius: number }
+  | { name: string; type: "box"; pos: Vector; quat: Quaternion; half_extents: Vector };
+
+export interface Goal {
+  name: string;
+  position: Vector;
+}
+
+export interface SceneDescription {
+  bodies: { name: string; geoms: Geom[] }[];
+  goals: Goal[];
+  obstacles: Obstacle[];
+}

@@ -1,0 +1,127 @@
+/** What the Drive page says: modes, belief, recording, predicted paths, directions and places. */
+
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+
+import { isLikeliest } from "#pages/drive/belief.js";
+import { nextSteering } from "#pages/drive/modes.js";
+import { attachProfileChoice } from "#pages/drive/profile_choice.js";
+import { recordingWords } from "#pages/drive/recording.js";
+import { deflectionWords } from "#pages/inputs/stick.js";
+import { NO_PROFILE, Settings } from "#pages/settings/settings.js";
+import { motionWords, placeWords } from "#pages/views/directions.js";
+import { personalPaths } from "#pages/views/predictions.js";
+import { newBrowser, stateOf, welcomeOf } from "./browser.js";
+
+beforeEach(newBrowser);
+
+test("one button reaches every mode and every pair of axes, and comes round", () => {
+  const welcome = welcomeOf();
+  let now = { mode: "latent", axes: 0 };
+  const seen = [];
+  for (let press = 0; press < 5; press += 1) {
+    now = nextSteering(welcome, now);
+    seen.push(`${now.mode} ${now.axes}`);
+  }
+  assert.deepEqual(seen, ["assisted 0", "end_effector 0", "end_effector 1", "end_effector 2", "latent 0"]);
+});
+
+test("a mode that is not offered is followed by the first one", () => {
+  assert.deepEqual(nextSteering(welcomeOf({ modes: ["end_effector"] }), { mode: "latent", axes: 0 }), { mode: "end_effector", axes: 0 });
+});
+
+test("a goal is marked as the likeliest only where it stands out", () => {
+  assert.ok(!isLikeliest([0.34, 0.33, 0.33], 0));
+  assert.ok(isLikeliest([0.5, 0.3, 0.2], 0));
+  assert.ok(!isLikeliest([0.5, 0.3, 0.2], 1));
+  assert.ok(!isLikeliest([1], 0));
+  assert.ok(!isLikeliest(null, 0));
+});
+
+for (const [recording, you, words] of [
+  [null, true, "Nothing recorded yet."],
+  [null, false, "The person who drives can record."],
+  [{ on: false, samples: 0, episodes: 1, problem: null }, true, "1 episode recorded."],
+  [{ on: false, samples: 0, episodes: 2, problem: null }, true, "2 episodes recorded."],
+  [{ on: true, samples: 250, episodes: 2, problem: null }, true, "Recording episode 3: 2 s."],
+  [{ on: true, samples: 250, episodes: 2, problem: null }, false, "Recording episode 3: 2 s."],
+]) {
+  test(`recording: ${words}`, () => assert.equal(recordingWords({ recording, you }), words));
+}
+
+test("where the stick is, is said with its parts", () => {
+  assert.equal(deflectionWords(0, 0), "Centre");
+  assert.equal(deflectionWords(-0.25, 0.5), "up 50 %, left 25 %");
+  assert.equal(deflectionWords(1, 0.001), "right 100 %");
+});
+
+test("a motion is named as the person sees it", () => {
+  assert.equal(motionWords([0.1, 0, 0], "facing"), "towards you: 10 cm");
+  assert.equal(motionWords([0.1, 0, 0], "behind"), "away from you: 10 cm");
+  assert.equal(motionWords([0, 0.1, 0], "facing"), "right: 10 cm");
+  assert.equal(motionWords([0, 0.1, 0], "behind"), "left: 10 cm");
+});
+
+test("a motion is named by its large parts, the largest first", () => {
+  assert.equal(motionWords([0.01, 0.06, 0.1], "facing"), "up, right: 12 cm");
+  assert.equal(motionWords([0, 0, 0.004], "facing"), "hardly moves, or turns");
+});
+
+test("the tool's place is said from the table and from the nearest goal", () => {
+  const goals = [{ name: "tofu", position: [1, 0, 0] }, { name: "tea", position: [0.5, 0, 0.2] }];
+  assert.equal(placeWords([0.5, 0.1, 0.2], goals), "The tool is 20 cm up, 10 cm from tea.");
+  assert.equal(placeWords([0.5, 0.1, 0.2], []), "The tool is 20 cm up.");
+});
+
+const GHOSTS = {
+  up: [[0, 0, 0.1], [0, 0, 0.2]],
+  down: [[0, 0, -0.1], [0, 0, -0.2]],
+  left: [[0, 0.1, 0], [0, 0.2, 0]],
+  right: [[0, -0.1, 0], [0, -0.2, 0]],
+};
+const ends = (paths) => Object.fromEntries(Object.entries(paths).map(([name, path]) => [name, path && path[path.length - 1]]));
+
+test("predicted paths are those of the person's own directions", () => {
+  const swapped = personalPaths(GHOSTS, [0, 0, 0], (x, y) => [y, x]);
+  assert.deepEqual(ends(swapped), { up: [0, -0.2, 0], down: [0, 0.2, 0], left: [0, 0, -0.2], right: [0, 0, 0.2] });
+});
+
+test("a person with half the sensitivity is shown half the way", () => {
+  const paths = personalPaths(GHOSTS, [0, 0, 0], (x, y) => [x / 2, y / 2]);
+  assert.deepEqual(paths.up, [[0, 0, 0], [0, 0, 0.1]]);
+});
+
+test("a direction that a one-axis run does not have has no path", () => {
+  const paths = personalPaths(GHOSTS, [0, 0, 0], (x) => [x]);
+  assert.equal(paths.up, null);
+  assert.deepEqual(ends(paths).right, [0, -0.2, 0]);
+});
+
+test("nothing is predicted before the server has", () => {
+  assert.deepEqual(personalPaths(null, [0, 0, 0], (x, y) => [x, y]), { up: null, down: null, left: null, right: null });
+});
+
+/** What is asked of the server where the person's settings name an alignment. */
+function profilesAsked(profile, state, welcome = welcomeOf({ profiles: ["ada"] })) {
+  const sent = [];
+  const connection = Object.assign(new EventTarget(), {
+    state: stateOf(state), welcome, driving: true, engaged: false, send: (message) => sent.push(message.name),
+  });
+  const settings = new Settings();
+  settings.change({ profile });
+  attachProfileChoice(connection, settings);
+  for (let times = 0; times < 3; times += 1) connection.dispatchEvent(new Event("state"));
+  return sent;
+}
+
+test("the alignment of the person's choice is asked for once", () => {
+  assert.deepEqual(profilesAsked("ada", {}), ["ada"]);
+  assert.deepEqual(profilesAsked(NO_PROFILE, { profile: "bea" }), [null]);
+});
+
+test("no alignment is asked for without a choice, where it is on already, is not there, or another is tried", () => {
+  assert.deepEqual(profilesAsked("", { profile: "bea" }), []);
+  assert.deepEqual(profilesAsked("ada", { profile: "ada" }), []);
+  assert.deepEqual(profilesAsked("gone", {}), []);
+  assert.deepEqual(profilesAsked("ada", { profile: ".trial" }), []);
+});

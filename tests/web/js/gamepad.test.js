@@ -1,0 +1,136 @@
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+
+import { Deflection } from "#pages/inputs/deflection.js";
+import { attachGamepad } from "#pages/inputs/gamepad.js";
+import { Settings } from "#pages/settings/settings.js";
+import { event, newBrowser, pass } from "./browser.js";
+
+let fakes;
+let input;
+let settings;
+let pads;
+let done;
+let scanning;
+
+function plug(index = 0) {
+  const pad = { index, connected: true, axes: [0, 0], buttons: Array.from({ length: 4 }, () => ({ pressed: false })) };
+  pads[index] = pad;
+  return pad;
+}
+
+function press(pad, number) {
+  pad.buttons[number].pressed = true;
+  poll();
+  pad.buttons[number].pressed = false;
+  poll();
+}
+
+const poll = () => input.dispatchEvent(new Event("poll"));
+
+beforeEach(() => {
+  fakes = newBrowser();
+  pads = [null, null];
+  Object.defineProperty(globalThis.navigator, "getGamepads", { value: () => pads, configurable: true });
+  done = [];
+  scanning = false;
+  input = Object.assign(new Deflection(), { flowing: true, halt: (why) => done.push(why) });
+  settings = new Settings();
+  attachGamepad(input, settings, {
+    enable: () => done.push("enable"),
+    stop: () => done.push("stop"),
+    press: (number, down) => {
+      if (scanning && down) done.push(`switch ${number}`);
+      return scanning;
+    },
+  });
+});
+
+test("the stick moves the arm; up is up", () => {
+  plug().axes = [0.5, -0.75];
+  poll();
+  assert.deepEqual([input.x, input.y, input.source], [0.5, 0.75, "gamepad"]);
+});
+
+test("a stick that rests a little off its middle is at rest", () => {
+  const pad = plug();
+  pad.axes = [0.05, -0.05];
+  poll();
+  assert.equal(input.source, null);
+  pad.axes = [0.5, 0];
+  poll();
+  pad.axes = [0.05, -0.05];
+  poll();
+  assert.deepEqual([input.x, input.y, input.source], [0, 0, null]);
+});
+
+test("a resting gamepad does not let go of what another way presses", () => {
+  plug();
+  input.hold("keyboard", 0, 1);
+  poll();
+  assert.equal(input.source, "keyboard");
+});
+
+test("an axis that reports nonsense is at rest", () => {
+  plug().axes = [Number.NaN, 0];
+  poll();
+  assert.equal(input.source, null);
+});
+
+test("the button of the person's choice stops, the first enables, on press and not on release", () => {
+  press(plug(), 1);
+  press(pads[0], 0);
+  assert.deepEqual(done, ["stop", "enable"]);
+});
+
+test("any button can be the one that stops, the first too", () => {
+  settings.change({ gamepadStop: "any" });
+  press(plug(), 0);
+  press(pads[0], 3);
+  assert.deepEqual(done, ["stop", "stop"]);
+});
+
+test("where scanning is on, buttons are switches and neither stop nor enable", () => {
+  scanning = true;
+  press(plug(), 1);
+  press(pads[0], 0);
+  assert.deepEqual(done, ["switch 1", "switch 0"]);
+});
+
+test("a gamepad that is taken away stops the arm, however it is noticed", () => {
+  const pad = plug();
+  poll();
+  pad.connected = false;
+  poll();
+  plug();
+  poll();
+  fakes.window.dispatchEvent(event("gamepaddisconnected", { gamepad: { index: 0 } }));
+  assert.deepEqual(done, ["gamepad_lost", "gamepad_lost"]);
+});
+
+test("another gamepad that is taken away stops nothing", () => {
+  plug(0);
+  poll();
+  fakes.window.dispatchEvent(event("gamepaddisconnected", { gamepad: { index: 1 } }));
+  assert.deepEqual(done, []);
+});
+
+test("a second gamepad does not take over from the first", () => {
+  plug(0);
+  poll();
+  plug(1).axes = [1, 0];
+  poll();
+  assert.equal(input.source, null);
+});
+
+test("buttons are noticed within 0.1 s before the arm is enabled, but not on a hidden page", () => {
+  input.flowing = false;
+  const pad = plug();
+  pad.buttons[0].pressed = true;
+  pass(100);
+  assert.deepEqual(done, ["enable"]);
+  fakes.document.hidden = true;
+  pad.buttons[1].pressed = true;
+  pass(200);
+  assert.deepEqual(done, ["enable"]);
+});

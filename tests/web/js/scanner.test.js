@@ -1,0 +1,111 @@
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+
+import { Deflection } from "#pages/inputs/deflection.js";
+import { Scanner } from "#pages/inputs/scanner.js";
+import { Settings } from "#pages/settings/settings.js";
+import { newBrowser, pass } from "./browser.js";
+
+let input;
+let settings;
+let scanner;
+let done;
+
+function choices(...ids) {
+  return ids.map((id) => ({ id, label: id, act: () => done.push(id) }));
+}
+
+const lit = () => scanner.choices[scanner.lit].id;
+
+beforeEach(() => {
+  newBrowser();
+  input = new Deflection();
+  settings = new Settings();
+  settings.change({ panel: "switch", dwellS: 1 });
+  done = [];
+  scanner = new Scanner(input, settings);
+  scanner.offer(choices("up", "down", "mode", "stop"));
+});
+
+test("with one switch choices light up in turn, and begin again after the last", () => {
+  const seen = [];
+  for (let turn = 0; turn < 5; turn += 1) {
+    seen.push(lit());
+    pass(1000);
+  }
+  assert.deepEqual(seen, ["up", "down", "mode", "stop", "up"]);
+});
+
+test("with two switches nothing lights up by itself", () => {
+  settings.change({ switches: "2" });
+  pass(5000);
+  assert.equal(lit(), "up");
+  scanner.next();
+  assert.equal(lit(), "down");
+});
+
+test("nothing lights up while the person steers with something else", () => {
+  settings.change({ panel: "stick" });
+  pass(5000);
+  assert.equal(lit(), "up");
+});
+
+test("a direction moves until the next press, and the light waits meanwhile", () => {
+  pass(1000);
+  scanner.choose();
+  assert.deepEqual([input.x, input.y, input.source, input.latched], [0, -1, "switch", true]);
+  assert.equal(scanner.moving, "down");
+  pass(5000);
+  assert.equal(lit(), "down");
+  scanner.choose();
+  assert.equal(input.source, null);
+  assert.equal(scanner.moving, null);
+  pass(1000);
+  assert.equal(lit(), "mode");
+});
+
+test("other choices act once", () => {
+  scanner.next();
+  scanner.next();
+  scanner.choose();
+  assert.deepEqual(done, ["mode"]);
+  assert.equal(input.source, null);
+});
+
+test("a direction does not move while another way is pressed", () => {
+  input.hold("keyboard", 1, 0);
+  scanner.choose();
+  assert.equal(scanner.moving, null);
+  assert.deepEqual([input.x, input.y], [1, 0]);
+});
+
+test("a press just after the arm stopped by itself was meant to stop it, and chooses nothing", () => {
+  scanner.choose();
+  input.neutral();
+  scanner.offer(choices("enable", "mode"));
+  scanner.choose();
+  assert.deepEqual(done, []);
+  pass(900);
+  scanner.choose();
+  assert.deepEqual(done, ["enable"]);
+});
+
+test("other choices begin at the first one; the same ones leave the light where it is", () => {
+  scanner.next();
+  scanner.offer(choices("up", "down", "mode", "stop"));
+  assert.equal(lit(), "down");
+  scanner.offer(choices("enable", "mode"));
+  assert.equal(lit(), "enable");
+});
+
+test("a gamepad's first button chooses, and its second goes on only with two switches", () => {
+  assert.equal(scanner.press(1, true), false);
+  settings.change({ switches: "2" });
+  assert.equal(scanner.press(1, true), true);
+  assert.equal(lit(), "down");
+  assert.equal(scanner.press(0, true), true);
+  assert.equal(scanner.press(0, false), true);
+  assert.equal(scanner.moving, "down");
+  settings.change({ panel: "stick" });
+  assert.equal(scanner.press(0, true), false);
+});
