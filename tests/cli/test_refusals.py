@@ -39,7 +39,7 @@ REFUSED = {
     "more than all help": (("drive", "--controller", "latent_assist", "--alpha", "1.5"), r"in \[0, 1\]"),
     "alpha without measure": (("drive", "--controller", "latent_assist", "--alpha", "nan"), "alpha"),
     "nothing to time": (("bench", "--repeats", "0"), "at least 1"),
-    "table for another arm": (("drive", "--task", "table_top", "--robot", "planar"), "Panda"),
+    "table for another arm": (("drive", "--task", "table_top", "--robot", "planar"), "robot panda"),
     "held-out episodes of nothing": (("drive", "--task", "held_out"), "run"),
     "a study over something else": (
         ("reproduce", "properties", "--preset", "smoke", "--out", "."),

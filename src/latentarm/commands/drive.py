@@ -11,7 +11,7 @@ from tyro.conf import Positional, arg
 from latentarm.arms.catalogue import DEFAULT_ARM
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
-from latentarm.commands.choices import ArmName, BeliefName
+from latentarm.commands.choices import ArmName, BeliefName, TaskName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seed
 from latentarm.commands.output import note, say, show
@@ -34,11 +34,12 @@ from latentarm.robots.notices import notices
 from latentarm.runs.checks import check_count, check_positive, check_seed
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.results_folder import Study, write_json
-from latentarm.runs.tasks import TaskName, task_of_run, task_without_run
+from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.simulation.drive import RATE_HZ, Setup, Trace, simulate
 from latentarm.simulation.drive_figures import draw_drives
 from latentarm.simulation.drive_table import Planned, drive_entries, endings_in_words, write_drives_csv
 from latentarm.simulation.drives import DrivePlan, drive_all, drive_plan
+from latentarm.tasks.catalogue import HELD_OUT
 from latentarm.tasks.task import Task
 from latentarm.types import Row
 
@@ -48,8 +49,11 @@ ArbitrationName = Literal["fixed", "confidence"]
 MADE: Final = ("drives.json", "drives.csv", "paths.png")
 """Every file of the folder, apart from what was asked for and a recording's journal."""
 
-TIME_LIMITS_S = {"table_top": 60.0, "held_out": 300.0, "reach": 60.0}
-"""How long a drive may last, by task: held-out episodes are several metres long."""
+TIME_LIMIT_S: Final = 60.0
+"""How long a drive may last."""
+
+HELD_OUT_LIMIT_S: Final = 300.0
+"""The same along held-out episodes, which are several metres long."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,7 @@ class DriveConfig:
         arbitration: how alpha comes about where the robot helps; fixed where None.
         alpha: arbitration at full input, in [0, 1], the most of it for confidence; that of `FixedAlpha`
             or `ConfidenceAlpha` where None.
-        time_limit_s: a drive that lasts longer has failed; what `TIME_LIMITS_S` says where None.
+        time_limit_s: a drive that lasts longer has failed; `TIME_LIMIT_S` or `HELD_OUT_LIMIT_S` where None.
         seed: of everything random.
         jobs: processes side by side; -1 is one per core. A recording is driven by one.
         record: folder of a new dataset that the drives are exported to, or None.
@@ -87,7 +91,7 @@ class DriveConfig:
     run: Path | None
     controller: ControllerName
     out: Path
-    task: TaskName | None = None
+    task: str | None = None
     robot: str | None = None
     arm: str = DEFAULT_ARM
     end_effector: str | None = None
@@ -171,7 +175,7 @@ def drive_run(config: DriveConfig, tell: Callable[[Sequence[str]], None] = lambd
         controller=_controller(config, task),
         arbitration=arbitration,
         operator=BoltzmannConfig(beta=config.beta),
-        time_limit_s=TIME_LIMITS_S[task.name] if config.time_limit_s is None else config.time_limit_s,
+        time_limit_s=config.time_limit_s or (HELD_OUT_LIMIT_S if task.name == HELD_OUT else TIME_LIMIT_S),
         rule=BELIEFS.find(config.belief, "--belief"),
         planning=PLANNING[operator],
         arm=config.arm,
@@ -310,8 +314,11 @@ def drive(
         arg(help="Latent actions, with shared autonomy, or mode switching."),
     ] = None,
     task: Annotated[
-        Literal["table_top", "held_out", "reach"] | None,
-        arg(help="Items on a table, the way of held-out episodes, or poses in reach; by the run by default."),
+        TaskName | None,
+        arg(
+            help="What is to be done: items on a table, poses in reach, one of two cups, or to follow"
+            " held-out episodes; that of the run by default."
+        ),
     ] = None,
     robot: Annotated[
         str | None,

@@ -5,8 +5,6 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
-ModelName = Literal["pca", "ae", "vae", "cae", "cvae", "cae_zero", "scl", "isometric", "homogeneous"]
-
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
 Seed = Annotated[int, arg(help="Seed of everything random.")]
 RobotName = Annotated[

@@ -6,8 +6,9 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
+from latentarm.commands.choices import ModelName, TaskName
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Dataset, EndEffector, Json, ModelName, Seed
+from latentarm.commands.options import Dataset, EndEffector, Json, Seed
 from latentarm.commands.output import say, show
 
 
@@ -49,6 +50,9 @@ def train(
     ] = 0.0,
     device: Annotated[Literal["cpu", "cuda", "auto"], arg(help="Where to train.")] = "cpu",
     end_effector: EndEffector = None,
+    task: Annotated[
+        TaskName | None, arg(help="What the run is driven at later; by the goals of the dataset by default.")
+    ] = None,
     out: Annotated[
         Path | None, arg(metavar="DIR", help="Folder of the run; runs/<dataset>-<model> by default.")
     ] = None,
@@ -80,6 +84,7 @@ def train(
         goal_entropy=goal_entropy,
         device=device,
         end_effector=end_effector,
+        task=task,
         out=out or Path("runs") / f"{demonstrations.resolve().name}-{model}",
         resume=resume,
     )

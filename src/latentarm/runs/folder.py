@@ -8,7 +8,7 @@ import hashlib
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal, cast, get_args
+from typing import Final
 
 import numpy as np
 
@@ -24,10 +24,9 @@ from latentarm.robots.end_effector import AmbiguousEndEffectorError
 from latentarm.robots.limits_file import limits_document, parse_limits
 from latentarm.robots.model_copy import COPIES, load_copy
 from latentarm.robots.robot import Robot
+from latentarm.tasks.catalogue import HELD_OUT, TASKS
 from latentarm.types import Demonstrations, FloatArray, Goal, StatedLimits, StrPath
 from latentarm.untrusted.opening import is_missing, read_bytes
-
-TaskName = Literal["table_top", "held_out", "reach"]
 
 ROBOT: Final = "robot"
 """Folder of a run that holds the copy of its robot's model."""
@@ -68,7 +67,7 @@ class Run:
     fingerprint: str
     limits: StatedLimits | None = None
     robot_model: str | None = None
-    task: TaskName | None = None
+    task: str | None = None
     goals: tuple[Goal, ...] = ()
     routes: tuple[FloatArray, ...] | None = None
 
@@ -168,7 +167,7 @@ def read_run(folder: StrPath) -> Run:
         fingerprint=config.text("fingerprint"),
         limits=None if limits is None else parse_limits(limits, f"{path}, limits"),
         robot_model=config.choice("robot_model", COPIES) if "robot_model" in kept else None,
-        task=cast(TaskName, config.choice("task", get_args(TaskName))) if "task" in kept else None,
+        task=config.choice("task", (*TASKS, HELD_OUT)) if "task" in kept else None,
         goals=goals,
         routes=_routes(config, dof) if "routes" in kept else None,
     )

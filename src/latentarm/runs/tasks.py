@@ -9,17 +9,17 @@ import numpy as np
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
-from latentarm.runs.folder import Run, TaskName, robot_of
-from latentarm.tasks.reach import Reach
+from latentarm.runs.folder import Run, robot_of
+from latentarm.tasks.catalogue import HELD_OUT, make_task
 from latentarm.tasks.replay import Replay, routes_of
-from latentarm.tasks.table_top import ITEMS, TableTop
+from latentarm.tasks.table_top import ITEMS
 from latentarm.tasks.task import Task
 from latentarm.types import Goal, StatedLimits
 
 
 def task_of_run(
     run: Run,
-    name: TaskName | None = None,
+    name: str | None = None,
     robot: str | None = None,
     end_effector: str | None = None,
     limits: StatedLimits | None = None,
@@ -45,34 +45,30 @@ def task_of_run(
         UserError: the robot or the dataset cannot be loaded, or the task does not suit the robot, or has
             other goals than those that the run's decoder sees a belief over.
     """
-    if run.task is None:
+    kept = run.task
+    if kept is None:
         goals = run.dataset(dataset, "its task", option).goals
-        run = replace(run, goals=goals, task=usual_task(goals))
-    chosen = name or run.task
-    if chosen == "table_top":
-        task: Task = _table_top(robot, end_effector, limits)
+        kept = usual_task(goals)
+        run = replace(run, goals=goals, task=kept)
+    chosen = name or kept
+    stated = replace(run, end_effector=end_effector or run.end_effector, limits=limits or run.limits)
+    if chosen == HELD_OUT:
+        arm = robot_of(stated) if robot is None else load_robot(robot, end_effector, limits)
+        own = robot is None and end_effector in (None, run.end_effector)
+        routes = run.routes if own else None
+        if routes is None:
+            demonstrations = run.dataset(dataset, "its held-out episodes", option)
+            routes = routes_of(arm, select_episodes(demonstrations, run.held_out))
+        task: Task = Replay(arm, routes)
     else:
-        if robot is None:
-            stated = replace(run, end_effector=end_effector or run.end_effector, limits=limits or run.limits)
-            arm = robot_of(stated)
-        else:
-            arm = load_robot(robot, end_effector, limits)
-        if chosen == "reach":
-            task = Reach(arm)
-        else:
-            own = robot is None and end_effector in (None, run.end_effector)
-            routes = run.routes if own else None
-            if routes is None:
-                demonstrations = run.dataset(dataset, "its held-out episodes", option)
-                routes = routes_of(arm, select_episodes(demonstrations, run.held_out))
-            task = Replay(arm, routes)
+        task = make_task(chosen, robot, end_effector, limits, usual=lambda: robot_of(stated))
     if run.context == "state_belief":
         _check_goals(run, task)
     return task
 
 
 def task_without_run(
-    name: TaskName | None = None,
+    name: str | None = None,
     robot: str | None = None,
     end_effector: str | None = None,
     limits: StatedLimits | None = None,
@@ -89,26 +85,14 @@ def task_without_run(
         UserError: the robot is not to be had, or the task does not suit it, or belongs to a run.
     """
     chosen = name or ("table_top" if robot in (None, "panda") else "reach")
-    if chosen == "table_top":
-        return _table_top(robot, end_effector, limits)
-    if chosen == "reach":
-        return Reach(load_robot(robot or "panda", end_effector, limits))
-    raise UserError("Held-out episodes belong to a run: name one, as in `latentarm drive RUN`.")
+    if chosen == HELD_OUT:
+        raise UserError("Held-out episodes belong to a run: name one, as in `latentarm drive RUN`.")
+    return make_task(chosen, robot, end_effector, limits)
 
 
-def _table_top(robot: str | None, end_effector: str | None, limits: StatedLimits | None) -> TableTop:
-    if robot not in (None, "panda"):
-        raise UserError(f"The table-top task is set for the Panda, not for {robot}: use --task reach.")
-    if end_effector is not None or limits is not None:
-        raise UserError(
-            "The table-top task has a Panda of its own: for another tool or limits use --task reach."
-        )
-    return TableTop()
-
-
-def usual_task(goals: Sequence[Goal]) -> TaskName:
+def usual_task(goals: Sequence[Goal]) -> str:
     """The task of a dataset with these goals."""
-    return "table_top" if {goal.name for goal in goals} == set(ITEMS) else "held_out"
+    return "table_top" if {goal.name for goal in goals} == set(ITEMS) else HELD_OUT
 
 
 def _check_goals(run: Run, task: Task) -> None:

@@ -62,6 +62,7 @@ class TrainConfig:
         goal_entropy: lambda_2 of equation 16; 0 leaves the entropy over goals out of the loss.
         device: where to train.
         end_effector: site, body or link of the robot's model file; the dataset's where None.
+        task: what the run is driven at, a task of the catalogue; by the dataset's goals where None.
         resume: go on with a training that was cut off.
     """
 
@@ -82,6 +83,7 @@ class TrainConfig:
     goal_entropy: float = 0.0
     device: Literal["cpu", "cuda", "auto"] = "cpu"
     end_effector: str | None = None
+    task: str | None = None
     resume: bool = False
 
     def __post_init__(self) -> None:
@@ -146,7 +148,7 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
         end_effector=demonstrations.end_effector if robot is None else robot.end_effector,
         fingerprint=fingerprint(demonstrations),
         limits=demonstrations.limits,
-        task=usual_task(demonstrations.goals),
+        task=config.task or usual_task(demonstrations.goals),
         goals=demonstrations.goals,
     )
     facts: dict[str, object] = {"goal_entropy": config.goal_entropy}

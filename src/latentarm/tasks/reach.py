@@ -37,6 +37,8 @@ class Reach(Task):
         UserError: fewer than one goal is asked for, or the tool hardly moves.
     """
 
+    any_robot = True
+
     def __init__(self, robot: Robot, goals: int = 3, seed: int = 0) -> None:
         if goals < 1:
             raise UserError(f"Reaching needs at least one goal, not {goals}.")

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,7 +13,14 @@ from latentarm.types import Demonstrations, FloatArray, Goal, Pose
 
 
 class Task(ABC):
-    """A robot in a place with discrete goals, and ways (manners) of doing something at each."""
+    """A robot in a place with discrete goals, and ways (manners) of doing something at each.
+
+    Attributes:
+        any_robot: whether the task is made with a robot, any one; else it is made without arguments and has
+            a robot of its own.
+    """
+
+    any_robot: ClassVar[bool] = False
 
     @property
     @abstractmethod
