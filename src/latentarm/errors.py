@@ -1,9 +1,9 @@
-"""The one error that is the user's to mend."""
+"""The error for problems that the user can fix."""
 
 
 class UserError(Exception):
-    """Bad input, said in one clear sentence.
+    """Raised for problems the user can fix.
 
-    The sentence names the file, the episode or the field, and what to do about it.
+    The message is one sentence that names the file, the episode or the field, and says what to do.
     The command line prints it without a traceback and exits with code 2.
     """

@@ -131,7 +131,7 @@ class StatedLimits:
 
 @dataclass(frozen=True)
 class Demonstrations:
-    """The dataset ``D`` as it lies on disk: whole episodes of one robot.
+    """The dataset ``D`` as stored on disk: whole episodes of one robot.
 
     Attributes:
         episodes: the episodes, all with the same n.
@@ -227,7 +227,7 @@ class Command:
 
     Attributes:
         velocity: (n,), rad/s, finite and within limits.
-        duration_s: the robot must stop by itself when no new command came for this long.
+        duration_s: the robot must stop by itself if no new command arrives within this time.
         stop: why the arm is being stopped, or None.
         limited_by: names of the filters that changed what was asked for.
     """

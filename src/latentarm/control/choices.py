@@ -1,4 +1,4 @@
-"""What the person's input, and others that they could give, would do at one moment."""
+"""What the person's input would do now, and what other inputs would do."""
 
 import itertools
 import math
@@ -10,20 +10,20 @@ from latentarm.control.controller import Controller
 from latentarm.types import Context, FloatArray
 
 _MOST_CORNERS_OF = 6
-"""Axes of input up to which all corners of the stick are looked at; there are 2^d of them."""
+"""Up to this many input axes, all 2^d corners of the stick are considered."""
 
 
 @final
 class Choices:
-    """Lines 6 and 7 of Algorithm 1 for any inputs, asking the controller in as few calls as can be.
+    """Lines 6 and 7 of Algorithm 1 for any inputs, asking the controller in as few calls as possible.
 
-    A belief asks about the person's own input together with others: their action is then known already.
+    A belief asks about the person's own input together with others, so its action is then already known.
 
     Args:
         controller: what turns inputs into actions.
         context: of this moment.
         mode: index of the controller's mode.
-        beside: (K, d), inputs to decode together with the first that are asked about; maybe none.
+        beside: (K, d), inputs to decode along with the first ones asked about; may be empty.
     """
 
     __slots__ = ("_actions", "_asked", "_beside", "_context", "_controller", "_latents", "_mode")
@@ -63,7 +63,7 @@ class Choices:
         return self._decoded(u)
 
     def largest_beside(self) -> float:
-        """Largest ‖a‖ of the inputs beside, rad/s; NaN where an action is no number."""
+        """Largest ‖a‖ of the additional inputs, rad/s; NaN if an action is not finite."""
         if self._asked is None:
             self(self._beside[:0])
         actions = self._actions[len(self._actions) - len(self._beside) :]

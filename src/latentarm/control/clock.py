@@ -21,10 +21,10 @@ class Clock(ABC):
 
 @final
 class MonotonicClock(Clock):
-    """The machine's own monotonic clock; all processes of a machine share it.
+    """The machine's monotonic clock, shared by all its processes.
 
-    It goes on while the computer sleeps, where the system has such a clock (Linux): a loop that wakes up
-    must see that its last command has long run out.
+    Where the system has such a clock (Linux), it keeps counting while the computer sleeps, so that a loop
+    that wakes up sees that its last command has expired.
     """
 
     def now_s(self) -> float:
@@ -46,7 +46,7 @@ def _monotonic_s() -> float:
 
 @final
 class SimulatedClock(Clock):
-    """Time that passes only when somebody waits, so that a minute's drive takes as long as it computes.
+    """Time that passes only while something waits: a one-minute drive takes as long as it computes.
 
     Args:
         followers: called with every span that passes, s, such as a simulated arm's ``advance``.

@@ -1,4 +1,4 @@
-"""The contract of whatever turns a person's input into an action."""
+"""The interface of everything that turns a person's input into an action."""
 
 from abc import ABC, abstractmethod
 
@@ -9,8 +9,8 @@ class Controller(ABC):
     """Turns inputs into actions; stateless, and batched over the leading axes of its input.
 
     Batches matter: the belief asks what *other* inputs would have done, and a simulated operator
-    asks the same of every mode. Somebody who plans asks it of states that are only imagined: the state of the
-    context may then have leading axes (..., n) too, which broadcast against those of the input.
+    asks the same of every mode. A planner asks about hypothetical states, so the context's state may have
+    leading axes (..., n) too, which broadcast against those of the input.
     """
 
     @property

@@ -1,4 +1,4 @@
-"""How punctual a loop was."""
+"""How well a loop met its deadlines."""
 
 from dataclasses import dataclass
 from typing import final
@@ -30,7 +30,7 @@ class DeadlineStatistics:
 
 @final
 class DeadlineLog:
-    """Gathers the lateness of ticks in bounded memory.
+    """Collects how late ticks were, in bounded memory.
 
     Args:
         period_s: the loop's period, s.
@@ -51,7 +51,7 @@ class DeadlineLog:
         return self._ticks
 
     def add(self, started_s: float, sent_s: float, *, overrun: bool) -> None:
-        """Take note of one tick.
+        """Record one tick.
 
         Args:
             started_s: when it began, after it was due, s.

@@ -28,19 +28,19 @@ class Engagement:
             self._stopped = stop
 
     def replace(self, stop: Stop) -> None:
-        """Disengage for a reason that people must hear of, whatever the arm was stopped for before."""
+        """Disengage, and replace any earlier reason: this one must be shown."""
         self._neutral = False
         self._stopped = stop
 
     def saw(self, neutral: bool) -> None:
-        """Take note of a fresh, valid input: was it neutral?"""
+        """Record whether a fresh, valid input was neutral."""
         self._neutral = neutral
 
     def enable(self) -> Stop | None:
-        """Engage, where the newest input is neutral.
+        """Engage if the newest input is neutral.
 
         Returns:
-            None where the arm is engaged now, else why it is not.
+            None if the arm is now engaged, otherwise the reason why it is not.
         """
         if self._stopped is None:
             return None

@@ -24,7 +24,7 @@ _SHORTEST = 2
 
 @final
 class ImplausibleWarning(UserWarning):
-    """Samples of an episode cannot be true, and are not exported."""
+    """Some samples of an episode are impossible and were not exported."""
 
 
 def demonstrations_of(
@@ -36,8 +36,8 @@ def demonstrations_of(
     ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief``, ``assist.bound``
     (rad; -1 where nothing helps) and ``observation.environment_state`` (position and rotation matrix of
     every goal, row by row).
-    Time starts at each episode's first sample. What was cut short stays in the journal, unless asked for.
-    An episode is cut before its first sample that cannot be true (see `first_implausible`).
+    Time starts at each episode's first sample. Incomplete episodes are skipped unless asked for. An episode
+    is cut before its first impossible sample (see `first_implausible`).
 
     Args:
         episodes: what `read_journal` returned.
@@ -45,7 +45,7 @@ def demonstrations_of(
         incomplete: take episodes that were cut short too.
 
     Warns:
-        ImplausibleWarning: an episode was cut, or left out because too little was left of it.
+        ImplausibleWarning: an episode was cut, or skipped because too little of it remained.
 
     Raises:
         UserError: no episode is complete and long enough, or the episodes are of different robots or goals.
@@ -86,7 +86,7 @@ def export_journal(journal: Path, dataset: Path) -> int:
     Raises:
         UserError: see `read_journal`, `demonstrations_of` and `write_dataset`.
     """
-    # pyarrow is slow to load and needless for driving.
+    # pyarrow is slow to load, and driving does not need it.
     from latentarm.demonstrations.dataset import write_dataset
 
     episodes = read_journal(journal)
@@ -113,10 +113,10 @@ def _until_implausible(recorded: JournalEpisode) -> JournalEpisode:
 
 
 def _limits(header: EpisodeHeader) -> JointLimits | None:
-    """Limits of the joints; journals from before they were kept name a robot at least."""
+    """Limits of the joints. Older journals do not store them but name the robot."""
     if header.joint_limits is not None:
         return header.joint_limits
-    # MuJoCo is slow to load, and journals of today do not need it here.
+    # MuJoCo is slow to load, and current journals do not need it here.
     from latentarm.robots.catalogue import ROBOTS
 
     if header.robot not in ROBOTS:

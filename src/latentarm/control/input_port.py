@@ -1,4 +1,4 @@
-"""Where inputs arrive from another thread: the latest wins, and only fresh ones count."""
+"""A latest-value slot for inputs from other threads, with a freshness check."""
 
 import math
 import secrets
@@ -13,7 +13,7 @@ from latentarm.control.clock import Clock
 from latentarm.types import FloatArray, Input
 
 NONCE_LIFE_S = 0.2
-"""An input must echo a nonce that was issued no longer ago than this."""
+"""An input must echo a nonce no older than this."""
 
 _KEPT_NONCES = 1024
 
@@ -35,11 +35,11 @@ class InputSource(ABC):
 
 @final
 class InputPort(InputSource):
-    """Takes inputs from any thread; freshness is judged by this side's clock alone.
+    """Accepts inputs from any thread and judges their freshness by the loop's clock alone.
 
     The loop's side issues nonces. Whoever sends inputs echoes the newest nonce that it has seen, with a
-    sequence number that grows. So a message that was held up anywhere on its way, there or back, is
-    recognised without believing a sender's time stamp. At most one input is kept. A press of the
+    sequence number that grows. A message that was delayed in either direction is thus detected without
+    trusting the sender's clock. At most one input is kept. A press of the
     mode switch is not lost when a later input replaces it before the loop has looked.
 
     Args:
@@ -75,9 +75,9 @@ class InputPort(InputSource):
             sequence: number of this input; must grow.
 
         Returns:
-            Whether it was taken; False where it is stale, or its nonce or number is none.
+            Whether it was accepted; False if it is stale, or its nonce or number is invalid.
         """
-        # A NaN would compare with nothing, and every number after it would seem to grow.
+        # Comparisons with NaN are false, so every later number would seem to be larger.
         if not _is_stamp(nonce, sequence):
             return False
         u = np.array(given.u)
@@ -86,7 +86,7 @@ class InputPort(InputSource):
             issued_s = self._issued.get(nonce)
             if issued_s is None or sequence <= self._sequence:
                 return False
-            # A nonce of the future is one from before the clock went back.
+            # A nonce from the future was issued before the clock went back.
             if not 0.0 <= now_s - issued_s <= NONCE_LIFE_S:
                 return False
             self._sequence = sequence
@@ -99,7 +99,7 @@ class InputPort(InputSource):
     def latest(self, now_s: float) -> tuple[Input, float]:
         """See the base class. An input whose nonce has grown too old in the meantime is infinitely old.
 
-        So is one that arrived later than it is now: the clock has gone back.
+        So is one that arrived in the future: the clock has gone back.
         """
         with self._lock:
             switch = self._switch or self._pressed

@@ -25,7 +25,7 @@ class JournalFullError(UserError):
 
 @final
 class JournalLostError(UserError):
-    """The journal's file is gone or another one: what was recorded in it is lost."""
+    """The journal's file was deleted or replaced: what was recorded in it is lost."""
 
 
 @final
@@ -67,7 +67,7 @@ class JournalLimits:
 
 @final
 class JournalWatch:
-    """Looks after a journal's files while they are written.
+    """Watches a journal's files while they are written.
 
     Args:
         path: the journal, which exists.
@@ -80,7 +80,7 @@ class JournalWatch:
         self._known: dict[str, tuple[int, int]] = {}
 
     def check(self) -> None:
-        """See that the files are there, are the same as before, and have room.
+        """Check that the files exist, are still the same files, and have room.
 
         Raises:
             JournalLostError: a file was deleted, moved or replaced, or the folder has gone.
@@ -123,7 +123,7 @@ class JournalWatch:
     def _lost(self) -> JournalLostError:
         return JournalLostError(
             f"The journal {self._path} was deleted, moved or replaced while it was in use: what was recorded"
-            " in it is not here any more. Record it again."
+            " in it is lost. Record it again."
         )
 
 

@@ -20,13 +20,13 @@ class ControlLoop:
 
     Tick k is due at ``start + k period``: a late tick does not shift the ones after it. A tick that begins
     after the last command has run out, or is done only then, finds an arm that has already stopped by
-    itself: the watchdog stops it for good, until the person enables it again. Ticks that were missed
-    altogether are skipped, never caught up.
+    itself: the watchdog stops it for good, until the person enables it again. Missed ticks are skipped; the
+    loop never catches up on them.
 
     The command is sent before observers see the record, so that a slow recorder costs slack, not lag.
 
-    `enable`, `stop` and `finish` may be called from any thread. They wait for nothing; a stop is
-    looked at first in the next tick, whatever else is queued.
+    `enable`, `stop` and `finish` may be called from any thread. They never block. The next tick handles a
+    stop before anything else in the queue.
 
     Args:
         step: Algorithm 1.
@@ -69,7 +69,7 @@ class ControlLoop:
         return self._refusal
 
     def enable(self) -> None:
-        """The person's explicit action; carried out after the next tick's input is known."""
+        """The person's explicit action, carried out once the next tick's input is known."""
         self._enable_asked.set()
 
     def stop(self, reason: str) -> None:
@@ -107,7 +107,7 @@ class ControlLoop:
                 self._tick(self._observers)
             self._come_to_rest(self._observers)
         finally:
-            # Also when an observer or the person's Ctrl-C has broken in: ramped, never a step.
+            # Ramp down even after an observer's exception or Ctrl-C; never jump to zero.
             try:
                 self._come_to_rest(())
             finally:
@@ -129,7 +129,7 @@ class ControlLoop:
         return True
 
     def _enabled(self, stopped: bool) -> Stop | None:
-        """Enable the arm, unless somebody has stopped it in this very tick or the loop is ending."""
+        """Enable the arm, unless it was stopped in the same tick or the loop is ending."""
         if self._ending:
             return Stop("The loop is ending.")
         if stopped:
@@ -149,7 +149,7 @@ class ControlLoop:
             now_s = self._clock.now_s()
             if due_s - now_s < 0.5 * self._period_s:
                 return due_s, now_s
-        # `Step` stops the arm for it. To keep to the old times would mean to wait for ever.
+        # `Step` stops the arm in that case. Keeping the old schedule could mean waiting for ever.
         now_s = self._clock.now_s()
         self._start_s, self._next = now_s, 0
         return now_s, now_s
@@ -166,7 +166,7 @@ class ControlLoop:
         record = self._step(given, age_s, self._arm.state(), now_s)
         ready_s = self._clock.now_s()
         if not overrun and self._ran_out(ready_s):
-            # The step itself took too long: what it decided is about an arm that was still moving.
+            # The step itself took too long: it decided for an arm that was still moving.
             overrun = True
             record = self._step(given, math.inf, self._arm.state(), ready_s)
             ready_s = self._clock.now_s()
@@ -178,7 +178,7 @@ class ControlLoop:
         if self._enable_asked.is_set():
             self._enable_asked.clear()
             self._refusal = self._enabled(stopped)
-        # Before observers: one that fails must not make this tick come twice.
+        # Before observers: if one fails, this tick must not run twice.
         self._next += 1
         for observe in observers:
             observe(record)

@@ -1,4 +1,4 @@
-"""Which recorded samples can be true: those of a dataset must be, whatever a journal holds."""
+"""Which recorded samples are physically possible; only those may go into a dataset."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -12,14 +12,14 @@ _OUTSIDE: Final = 0.01
 """Readings this far past a limit are noise, rad."""
 
 _JUMP: Final = 0.03
-"""So much farther than the joint can move between two samples a reading may lie: sensors that are slower than
-the loop move in steps, and have noise, rad."""
+"""Tolerance on how far a joint can move between two samples, rad: sensors that are slower than the loop move
+in steps, and are noisy."""
 
 
 def first_implausible(
     records: Sequence[StepRecord], joint_names: Sequence[str], limits: JointLimits | None
 ) -> tuple[int, str] | None:
-    """The first sample of an episode that cannot be true.
+    """The first impossible sample of an episode.
 
     Args:
         records: the episode, in order.
@@ -27,7 +27,7 @@ def first_implausible(
         limits: of the joints; None checks only that the readings are numbers and that time goes on.
 
     Returns:
-        Its index, and why in a few words; None where all can be true.
+        Its index and a short reason; None if every sample is possible.
     """
     if not records:
         return None
@@ -51,7 +51,7 @@ def _beyond(
     state: np.ndarray, elapsed_s: np.ndarray, joint_names: Sequence[str], limits: JointLimits
 ) -> list[tuple[int, str]]:
     found: list[tuple[int, str]] = []
-    # Samples that are not numbers are found before these; nothing here must fail on them.
+    # NaN samples are reported above; they must not raise here.
     outside = np.nan_to_num(limits.violation(state)) > _OUTSIDE
     if outside.any():
         index, joint = np.argwhere(outside)[0]

@@ -21,7 +21,7 @@ LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
 """What a header says of the joints' limits."""
 
 SCHEMA_VERSION = 2
-"""Since version 2 samples are compact; version 1 can be read, and gone on with."""
+"""Version 2 made samples compact. Version 1 can still be read and appended to."""
 
 _READABLE = (1, 2)
 
@@ -29,7 +29,7 @@ _PAGE_BYTES = 2048
 """Each sample is a transaction, and each transaction writes one or two whole pages to the log."""
 
 _LOG_PAGES = 2000
-"""When the log has grown so long (4 MB), a commit folds it into the file and it begins anew."""
+"""Once the log reaches this length (4 MB), a commit checkpoints it into the file and the log restarts."""
 
 _SCHEMA = """
 CREATE TABLE episodes (
@@ -68,7 +68,7 @@ class EpisodeHeader:
         provenance: who and what records it.
         end_effector: site, body or link of the robot's model file, or None.
         limits: what was stated of the robot's limits, or None.
-        joint_limits: of the joints: samples outside them cannot be true. None where they are not known.
+        joint_limits: of the joints: samples outside them are impossible. None if unknown.
     """
 
     robot: str
@@ -96,7 +96,7 @@ class Recorder:
     waits for the disk, which takes tens of milliseconds: a loop in real time records in another thread, as
     the page's does.
 
-    About once a second the recorder looks whether the journal is still there and has room.
+    About once a second the recorder checks that the journal still exists and has room.
 
     Args:
         path: the journal, a new file or one that `Recorder` wrote.
@@ -142,7 +142,7 @@ class Recorder:
                 f"BEGIN IMMEDIATE; {_SCHEMA} PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;"
             )
         elif version != SCHEMA_VERSION:
-            # What follows is beyond programs that know the old version alone.
+            # Programs that know only the old version cannot read what follows.
             self._database.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
 
     @property
@@ -193,7 +193,7 @@ class Recorder:
         """Write one step; it is acknowledged when this returns.
 
         Raises:
-            JournalFullError: there is no room for more; the episode was ended before this step, complete.
+            JournalFullError: there is no room for more; the episode was completed before this step.
             JournalLostError: the journal has gone, and the episode with it.
             UserError: the journal cannot be written (the disk is full; the episode then stays incomplete), or
                 no episode is under way, or the record's shapes differ from those before.
@@ -224,7 +224,7 @@ class Recorder:
         self._number += 1
 
     def check(self) -> None:
-        """See that the journal is still there and has room; for when no samples come.
+        """Check that the journal still exists and has room, when no samples are arriving.
 
         Raises:
             JournalFullError: there is no room for more; an episode under way was ended and is complete.
@@ -283,7 +283,7 @@ def _limits_as_json(limits: JointLimits) -> dict[str, list[float]]:
 
 
 def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: bool) -> None:
-    """See that an open database is a journal of ours.
+    """Check that an open database is one of our journals.
 
     Raises:
         UserError: it is not, or of a later version.
@@ -292,11 +292,11 @@ def check_is_journal(database: sqlite3.Connection, path: Path, *, may_be_empty: 
     (tables,) = database.execute("SELECT count(*) FROM sqlite_master").fetchone()
     if may_be_empty and version == 0 and tables == 0:
         return
-    # Views, triggers and virtual tables would have SQLite compute what a stranger wrote.
+    # Views, triggers and virtual tables would make SQLite run code from an untrusted file.
     (plain,) = database.execute(
         "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND sql LIKE 'CREATE TABLE %'"
     ).fetchone()
-    # Other programs count their versions too: the tables tell whose file it is.
+    # Other programs use version numbers too; the tables show whose file it is.
     if (
         version in _READABLE
         and plain == tables == len(_COLUMNS)

@@ -1,4 +1,4 @@
-"""What was recorded, in one journal or in a folder of them, and its way into a dataset."""
+"""Episodes recorded in one journal or in a folder of journals, and their export to a dataset."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How a journal writes the numbers of a step: exactly, and with nothing written twice."""
+"""How a journal encodes the numbers of a step: exactly, without repetition."""
 
 import struct
 from collections.abc import Sequence
@@ -9,13 +9,13 @@ import numpy as np
 from latentarm.types import FloatArray, StepRecord
 
 COMPACT: Final = b"\x02"
-"""How a compact sample begins. Older ones begin with a small whole number as a float64: with a byte of 0."""
+"""First byte of a compact sample. Older ones begin with a small integer as a float64: a byte of 0."""
 
 _ZERO: Final = 0x8000
 _SAME: Final = 0x4000
 _WIDEST: Final = 0x3FFF
 _LEFT_OUT_MOST: Final = 64
-"""A wider part is always written: few bytes must not become many when a stranger's journal is read."""
+"""Wider parts are always written in full: a small untrusted journal must not expand into a large one."""
 
 
 def figures_of(record: StepRecord) -> Sequence[FloatArray]:

@@ -1,4 +1,4 @@
-"""The robot's part of Algorithm 1: belief over goals, help towards them, and how far that help constrains."""
+"""The robot's part of Algorithm 1: belief over goals, assistance, and the bound on that assistance."""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from latentarm.errors import UserError
 from latentarm.types import Context, FloatArray, Goal
 
 _BOUND_PERIOD_S = 0.05
-"""The bound is worked out no more often than this, s: people read it, the loop does not."""
+"""The bound is computed at most this often, s: people read it, the loop does not use it."""
 
 
 @final
@@ -82,7 +82,7 @@ class SharedAutonomy:
         self._bound_rad: float | None = None
 
     def rest(self) -> None:
-        """Take note of a step without help: the bound is worked out anew when there is help again."""
+        """Record a step without help: the bound is computed again when help resumes."""
         self._bound_rad = None
 
     def help(self, u: FloatArray, state: FloatArray) -> tuple[FloatArray, float]:
@@ -106,7 +106,7 @@ class SharedAutonomy:
         return assistive_action(state, self._belief, self._goals), alpha
 
     def update(self, u: FloatArray, context: Context, mode: int, alpha: float) -> tuple[Choices, float]:
-        """Line 10 at the belief's own rate, and with it, where that is not too often, the bound.
+        """Line 10 at the belief's own rate, and the bound at most every `_BOUND_PERIOD_S`.
 
         Args:
             u: (d,), the input.

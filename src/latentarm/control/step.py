@@ -21,13 +21,13 @@ from latentarm.robots.robot import Robot
 from latentarm.types import Command, Context, FloatArray, Goal, Input, StepRecord, Stop
 
 _ABSURD = 2.0
-"""Inputs a little past 1 are a stick's corner and are cut off; past this the interface is broken."""
+"""Inputs slightly above 1 come from a stick's corners and are clipped; above this the interface is broken."""
 
 _ASTRAY = 2.0 * math.pi
-"""Joints this far past their limits, rad, were never there: the reading is wrong."""
+"""A reading this far outside the limits is wrong, rad."""
 
 STEADY_S = 1.0
-"""After a jump of the readings they must be steady for so long before the arm can be enabled, s."""
+"""After a jump, readings must be steady for this long before the arm can be enabled, s."""
 
 _FALTERING = (Freshness().name,)
 """What limits an arm whose inputs are missing for a moment."""
@@ -49,17 +49,17 @@ class Step:
         step(neutral, 0.0, arm.state(), now)
         step.enable()
 
-    An input within the dead zone wants no motion, whatever the decoder makes of zero, and no help, save
-    from an arbitration that acts at rest. An enabled arm then moves by itself while inputs are fresh.
-    No input of any kind and no failing controller raises an exception here. Controllers and observers see
-    arrays that they cannot write to: what they are shown is what the safety filters go by.
+    An input within the dead zone means no motion, whatever the decoder returns for zero, and no help, unless
+    the arbitration acts at rest. An enabled arm then moves by itself while inputs are fresh.
+    No input of any kind and no failing controller raises an exception here. Controllers and observers get
+    read-only arrays, because the safety filters use the same ones.
 
     Controllers see the joints as they were measured, and so does the record: NaN where a reading could not be
     used. The safety filters see the same, except that a joint whose reading repeats counts as moved as
     commanded since (see `Plausibility.estimate`).
 
     A clock that stands still, goes back, or jumps farther than a command lasts stops the arm without a ramp:
-    it is not known for how long the last command was really in force.
+    nobody can know how long the last command was in force.
 
     Args:
         robot: the arm.
@@ -174,7 +174,7 @@ class Step:
         return self._engagement.enable()
 
     def sent(self, time_s: float) -> None:
-        """The last command left at this time, which is later than its tick began.
+        """Set when the last command was sent, which is later than its tick began.
 
         Args:
             time_s: the loop's clock, s.
@@ -182,7 +182,7 @@ class Step:
         self._timekeeping.sent(time_s)
 
     def choose_mode(self, mode: int) -> None:
-        """Go on in another mode from the next step on; the motion under way is ramped over to it.
+        """Switch to another mode from the next step on; the current motion is ramped over to it.
 
         Args:
             mode: index of the controller's mode.
@@ -203,7 +203,7 @@ class Step:
         self._engagement.stop(Stop(reason))
 
     def halted(self, reason: str) -> None:
-        """The arm has come to rest by itself, for a command ran out: take note, and stay stopped.
+        """Record that a command ran out and the arm stopped by itself; stay stopped.
 
         Args:
             reason: one short sentence for the person.
@@ -256,7 +256,7 @@ class Step:
         driven = jumped is None and self._engagement.stopped is None
         astray = self._plausibility.follow(q, self._stack.velocity, time_s, driven=driven)
         if jumped is not None:
-            # Said also where the arm is disengaged already: nobody must enable it unawares.
+            # Reported even if the arm is already disengaged: nobody may enable it without knowing.
             self._steady_s = time_s + STEADY_S
             self._engagement.replace(Stop(jumped, untrusted=True))
         elif astray is not None:
@@ -264,7 +264,7 @@ class Step:
         return jumped is not None or astray is not None
 
     def _falters(self, age_s: float) -> bool:
-        """Whether fresh inputs are missing, but not yet for so long that the arm is disengaged."""
+        """Whether fresh inputs are missing, but not for long enough to disengage the arm."""
         timeout_s = self._config.input_timeout_s
         try:
             late = timeout_s < age_s <= timeout_s + self._config.input_grace_s
@@ -273,7 +273,7 @@ class Step:
             return False
 
     def _driven(self, u: FloatArray, input_age_s: float, q: FloatArray, time_s: float) -> StepRecord:
-        """Lines 6 to 10 for an input that wants motion, or at rest for a robot that helps there too."""
+        """Lines 6 to 10 for an input that asks for motion, or at rest if the robot helps there too."""
         shared = self._shared
         context = Context(state=q, belief=shared.belief)
         a_r, alpha, bound_rad = self._no_motion, 0.0, math.nan
@@ -341,7 +341,7 @@ class Step:
         return _sealed(q.astype(np.float64))
 
     def _switch(self, wanted: bool) -> None:
-        """Next mode when the switch goes down; holding it changes nothing more."""
+        """Advance the mode when the switch is pressed; holding it has no further effect."""
         if wanted and not self._switch_held:
             self._mode = (self._mode + 1) % len(self._controller.modes)
         self._switch_held = wanted
@@ -375,7 +375,7 @@ def _sealed(array: FloatArray) -> FloatArray:
 
 
 def _said(error: Exception) -> str:
-    """What an error says, where it can say anything."""
+    """The message of an error, if it has one."""
     try:
         return f"{type(error).__name__}: {error}"
     except Exception:  # noqa: BLE001 - an error that cannot even be printed

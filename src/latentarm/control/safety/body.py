@@ -1,4 +1,4 @@
-"""The arm as the safety filters see it: points that ride on links, and how far joints can move them."""
+"""The arm as the safety filters see it: points fixed to links, and how far joints can move them."""
 
 from functools import cached_property
 from typing import final
@@ -27,7 +27,7 @@ class Body:
     ``lever[p, j]`` bounds the speed of point p per unit speed of joint j in *every* configuration:
     the point lies in a ball about the nearest point of the joint's axis, whose radius grows from link
     to link by what lies between their axes. With it the second derivative of p(q + t d) over t is
-    at most ``Σ_jk |d_j| |d_k| R[p, j, k]`` with ``R[p, j, k] = lever[p, the outer one of j and k]``,
+    at most ``Σ_jk |d_j| |d_k| R[p, j, k]`` with ``R[p, j, k] = lever[p, the outer of j and k]``,
     because ``∂²p/∂q_j∂q_k = w_j × (w_k × (p - o_k))`` for a joint k further out than j.
 
     Args:

@@ -1,4 +1,4 @@
-"""The configured limits together with a robot and the loop's period: what the filters work with."""
+"""The configured limits resolved for one robot and loop period, as the filters use them."""
 
 import math
 from typing import final
@@ -14,10 +14,10 @@ STOPPED_WITHIN_S = 0.15
 """From the last fresh input to a command of zero."""
 
 LATE_PERIODS = 5
-"""Readings may be so many periods of the loop late."""
+"""Readings may be late by this many periods of the loop."""
 
 BUFFER_M = 1e-3
-"""Shaping aims this far short of every distance, so that the check behind it rarely has to act."""
+"""Margin that shaping adds to every distance, so that the guard after it rarely has to act."""
 
 BUFFER_RAD = 2e-3
 """The same for joint positions."""
@@ -42,7 +42,7 @@ class Bounds:
         upper: (n,), highest joint position, margin taken off, rad.
         positions: (2, n), `lower` and `upper` together.
         acceleration: (n,), for ordinary motion, rad/s².
-        quickening: (n,), what ordinary motion may gain in one period, rad/s.
+        quickening: (n,), the most that ordinary motion may speed up in one period, rad/s.
         jerk: (n,), for ordinary motion, rad/s³.
         release_acceleration: (n,), once the person has let go, rad/s².
         release_jerk: (n,), once the person has let go, rad/s³.
@@ -52,9 +52,9 @@ class Bounds:
         lag_s: how far readings may lag behind commands, s.
         stop_s: the longest stop, s.
         reach_s: an upper bound of the distance that a command and its brake cover, over its speed, s.
-        damping_per_s: approach speed per distance left; ordinary motion can always slow down this fast.
+        damping_per_s: approach speed per remaining distance; ordinary motion can always slow down this fast.
         nearest_m: distance that shaping keeps from obstacles and from the arm itself, m.
-        horizon_s: a distance that a speed does not use up in this time does not limit that speed, s.
+        horizon_s: a distance that lasts longer than this at the current speed does not limit it, s.
 
     Raises:
         UserError: a figure is above what the hardware can do, or stopping takes too long.
@@ -136,7 +136,7 @@ class Bounds:
         return Brake(velocity, acceleration, self.stop_acceleration, self.stop_jerk)
 
     def _longest_stop_s(self) -> float:
-        """All joints at full speed is the longest phase two, full deceleration the longest phase one."""
+        """Phase two is longest with all joints at full speed, phase one at full deceleration."""
         settle = float((self.stop_acceleration / self.stop_jerk).max())
         return settle + self.brake(self.speed, np.zeros(self.dof)).ramp_s
 

@@ -13,8 +13,7 @@ def box_separation(
     Along a segment the squared distance to a box is convex and piecewise quadratic, so its derivative
     is piecewise linear and rises: the minimum is found exactly between the parameters at which the
     segment crosses the planes of the box's faces. A segment that touches the box has no such
-    direction; there the normal of the face with the least penetration stands in, so that the way out
-    stays known.
+    direction; the normal of the face with the least penetration is used instead, so the way out stays known.
 
     Args:
         start: (N, 3), m.

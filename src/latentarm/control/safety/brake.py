@@ -10,7 +10,7 @@ from latentarm.control.safety.small import largest, some
 from latentarm.types import FloatArray
 
 AT_REST_S = 1e-9
-"""A brake shorter than this moves nothing that a float64 can tell from standing still."""
+"""A brake shorter than this is, in float64, indistinguishable from standing still."""
 
 
 @final
@@ -97,7 +97,7 @@ class Brake:
             velocity = self._velocity + (self._acceleration + 0.5 * jerk * since) * since
             return velocity, self._acceleration + jerk * since
         if self._fall is None:
-            # Found when first needed: most brakes are only checked.
+            # Computed when first needed: most brakes are only checked.
             self._fall = _Fall(1.0 / (self.rate * self.onset_s))
         sigma, slope = self._fall.at((time_s - self.settle_s) * self.rate)
         return sigma * self.settled, slope * self.rate * self.settled
@@ -107,8 +107,8 @@ class Brake:
 class _Fall:
     """The ramp sigma from 1 to 0, at a plateau of -1 per unit of time.
 
-    In units of its own length, whatever that is in seconds: Ruckig's arithmetic is not for deceleration of
-    many thousands per second, as the ramp of an arm that hardly moves has it.
+    Time is in units of the ramp's own length, because Ruckig is inaccurate for the decelerations of many
+    thousands per second that an almost motionless arm would need.
 
     Args:
         jerk: per unit of time squared; at least 1.

@@ -1,4 +1,4 @@
-"""Room between the arm and everything else, itself included."""
+"""Clearance between the arm and everything else, itself included."""
 
 from typing import final
 
@@ -13,9 +13,9 @@ from latentarm.types import FloatArray
 
 @final
 class Clearance(SafetyFilter):
-    """Damps the approach to obstacles and to the arm itself with the distance left; the rest goes through.
+    """Limits the speed towards obstacles, and of the arm towards itself, by the remaining distance.
 
-    Where a distance is already too small, only motion that does not make it smaller is left.
+    Where a distance is already too small, only motion that does not reduce it is allowed.
     """
 
     @property
@@ -33,7 +33,7 @@ class Clearance(SafetyFilter):
         if not contacts.fresh:
             height = proximity.heights(contacts, np.zeros(bounds.dof))
             if smallest(height.ravel()) <= bounds.nearest_m:
-                # So close to the limit, what is a little too low a bound would be in the way.
+                # This close to the limit, a slightly conservative bound would block motion.
                 contacts = situation.contacts_now()
                 if not contacts.pair.size:
                     return velocity

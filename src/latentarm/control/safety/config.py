@@ -74,9 +74,9 @@ class SafetyConfig:
         following_error: how far a joint's displacement may differ from the commanded one within the last
             following_window_s, beyond what lag explains, rad.
         following_lag_s: the arm's own lag behind its commands, s. Readings may be five periods of the loop
-            late on top of it. Longer makes faults be noticed later by as much.
-        following_window_s: over what time displacements are compared, s. Longer notices slower joints
-            that do not follow, but takes drift that adds up over it for an error.
+            late on top of it. A longer lag delays the detection of faults by as much.
+        following_window_s: time over which displacements are compared, s. A longer window detects slower
+            joints that do not follow, but mistakes drift that accumulates over it for an error.
         workspace: where the arm may be, or None for anywhere.
         obstacles: what the arm must keep clear of.
 

@@ -12,7 +12,7 @@ from latentarm.control.safety.small import largest, smallest, some
 from latentarm.types import FloatArray, Stop
 
 _DRIFT_RAD = 0.05
-"""A placement from a configuration further away than this is of no use."""
+"""A placement computed farther away than this is not reused."""
 
 
 @final
@@ -41,7 +41,7 @@ class Surroundings:
 
 @final
 class Situation:
-    """What the filters know at one tick; what costs time is worked out once, when first asked for.
+    """What the filters know at one tick; expensive quantities are computed once, on first use.
 
     Args:
         surroundings: the arm and what is about it.
@@ -86,7 +86,7 @@ class Situation:
         return reference
 
     def nearby(self) -> tuple[Placement, FloatArray]:
-        """A placement of the arm that may be a few ticks old, for bounds that allow for it.
+        """A placement of the arm that may be a few ticks old, for bounds that account for its age.
 
         Returns:
             The placement, and how far each joint has moved since, (n,), rad, zero or more.
@@ -100,13 +100,13 @@ class Situation:
         return self._nearby
 
     def contacts(self, speed: FloatArray) -> Contacts:
-        """What the arm could come too near to when no joint is faster than this; perhaps a few ticks old.
+        """What the arm could come too close to if no joint is faster than this; may be a few ticks old.
 
         Args:
             speed: (n,), rad/s, zero or more.
         """
         if self._contacts is None or some(speed > self._asked):
-            # Also what ordinary motion passes through next is asked for, so that this is worked out once.
+            # Include what ordinary motion passes through next, so that this is computed once.
             self._asked = np.maximum(speed, np.abs(self.velocity)) + self.bounds.quickening
             self._contacts = self.surroundings.proximity.held(self.state, self._asked)
             if self._contacts is None:
@@ -121,7 +121,7 @@ class Situation:
 
 
 class SafetyFilter(ABC):
-    """Makes a velocity safe in one respect, or refuses it."""
+    """Makes a velocity safe in one respect, or rejects it."""
 
     @property
     @abstractmethod

@@ -1,4 +1,4 @@
-"""Nobody at the stick, no motion."""
+"""Stops the arm when inputs are stale."""
 
 from typing import final
 
@@ -10,8 +10,8 @@ from latentarm.types import FloatArray, Stop
 class Freshness(SafetyFilter):
     """Stops where the newest input is too old (or its age is not a number).
 
-    A stop is ramped, and to go on the person lets go of the stick and enables the arm again: nobody is
-    surprised by an arm that starts to move when a connection comes back.
+    The stop is ramped. To continue, the person releases the stick and enables the arm again, so that the arm
+    never starts to move by surprise when a connection returns.
     """
 
     @property

@@ -1,4 +1,4 @@
-"""The check behind the filters: a command leaves only if the stop after it is proven safe."""
+"""The final check: a command is sent only if the stop after it is proven safe."""
 
 from typing import final
 
@@ -16,7 +16,7 @@ _NUMERIC_RAD = 1e-12
 
 @final
 class Path:
-    """What a command leads to if nothing better follows: it lasts as long as it may, then the brake.
+    """The path of a command with no successor: it is held for its full duration, then the brake follows.
 
     The arm's joints move by ``way = v hold + v+ stop`` along a line that is straight but for a kink of
     ``v+ - v`` and the short settling of acceleration; ``stray`` bounds, joint by joint, how far the true
@@ -117,7 +117,7 @@ class Guard:
         nearby, drift = situation.nearby()
         if not self._exceeds(velocity, path, nearby, drift, situation.bounds.config.link_speed):
             return False
-        # Perhaps only because that placement was a few ticks old.
+        # The placement was a few ticks old, which may be the only reason.
         here = situation.placement
         return here is nearby or self._exceeds(
             velocity, path, here, np.zeros_like(drift), situation.bounds.config.link_speed
@@ -127,7 +127,7 @@ class Guard:
     def _exceeds(
         velocity: FloatArray, path: Path, placement: Placement, drift: FloatArray, limit: float
     ) -> bool:
-        """Whether a point could be too fast, seen from a placement that is ``drift`` away."""
+        """Whether a point could be too fast, judged from a placement that is ``drift`` away."""
         body, brake = placement.body, path.brake
         steady_s = path.before_s + brake.onset_s
         bend = body.bent(path.fastest)
@@ -157,7 +157,7 @@ class Guard:
             now = proximity.heights(contacts, np.zeros_like(path.way)) - stray
             if smallest(np.minimum(now, after).ravel()) >= clearance:
                 return False
-            # Perhaps only because the contacts were a few ticks old.
+            # The contacts were a few ticks old, which may be the only reason.
             contacts = situation.contacts_now()
             if not contacts.pair.size:
                 return False

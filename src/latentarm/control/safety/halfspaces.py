@@ -1,4 +1,4 @@
-"""Keeping a velocity from using up distances faster than it may."""
+"""Projections that keep a velocity from closing distances too fast."""
 
 import math
 
@@ -10,11 +10,11 @@ _PASSES = 12
 _ENOUGH = 1e-9
 
 _LEAN = 0.2
-"""Past a limit motion must lead away from it by this much of its size, and not only along it."""
+"""Beyond a limit, at least this share of the motion must lead away from it."""
 
 
 def slide(velocity: FloatArray, rows: FloatArray, floor: FloatArray, passed: BoolArray) -> FloatArray:
-    """Take out of a velocity what goes too fast towards something, and keep the rest.
+    """Remove from a velocity whatever approaches something too fast, and keep the rest.
 
     The worst half-space ``rows @ v >= floor`` is projected onto, in turn, so that an arm pushed obliquely
     at a table slides along it. Where a limit is passed already, what is left leans away from it a little,
@@ -51,7 +51,7 @@ def slide(velocity: FloatArray, rows: FloatArray, floor: FloatArray, passed: Boo
     if slid is velocity:
         return velocity
     if slid @ velocity <= 0.0 or (rate[passed] < 0.0).any():
-        # Wedged in between several things: what was asked for may still be the narrow way out.
+        # Wedged between several things: the requested velocity may still be the way out.
         slid, rate = velocity, rows @ velocity
         if (rate[passed] <= 0.0).any():
             return np.zeros_like(velocity)
@@ -65,7 +65,7 @@ def slide(velocity: FloatArray, rows: FloatArray, floor: FloatArray, passed: Boo
 def unbent(
     velocity: FloatArray, rows: FloatArray, room: FloatArray, bend: FloatArray, time_s: float
 ) -> float:
-    """How much of a velocity is slow enough for the paths to be taken as straight.
+    """The share of a velocity that is slow enough to treat paths as straight.
 
     Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with
     its rate g and its bend c. That must not use up more than the room left; where there is no room,

@@ -1,4 +1,4 @@
-"""No joint past its limits."""
+"""Keeps joints within their position limits."""
 
 from typing import final
 

@@ -1,4 +1,4 @@
-"""No joint faster than allowed."""
+"""Keeps joints within their speed limits."""
 
 from typing import final
 

@@ -1,4 +1,4 @@
-"""No point of the arm faster than allowed."""
+"""Keeps every point of the arm within the speed limit."""
 
 from typing import final
 

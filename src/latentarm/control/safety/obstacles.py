@@ -1,4 +1,4 @@
-"""Obstacles as the safety filters take them: checked, and the usual ones by name."""
+"""Validation of obstacles for the safety filters, and common obstacles by name."""
 
 from dataclasses import replace
 from typing import Any
@@ -26,15 +26,15 @@ def table(height: float) -> HalfSpace:
 
 
 def checked_obstacle(obstacle: object) -> Obstacle:
-    """The obstacle with float arrays, or a sentence about what is wrong with it.
+    """The obstacle with float arrays, validated.
 
     Raises:
         UserError: a figure is not finite or absurd, a size is not positive, a normal is not of unit
             length, or a rotation is not one.
     """
-    # What has no case below would be left out in silence.
+    # An obstacle without a case below would be ignored silently.
     if not isinstance(obstacle, Obstacle):
-        raise UserError(f"{obstacle!r} is no obstacle: use HalfSpace, Sphere, Capsule or Box.")
+        raise UserError(f"{obstacle!r} is not an obstacle: use HalfSpace, Sphere, Capsule or Box.")
     name = obstacle.name
     match obstacle:
         case HalfSpace():

@@ -1,4 +1,4 @@
-"""Whether the readings of the joints can be true, given what the arm was commanded to do."""
+"""Whether the joint readings are plausible, given what the arm was commanded to do."""
 
 from collections import deque
 from typing import final
@@ -11,8 +11,8 @@ from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray
 
 _BUCKETS = 9
-"""The commands of the last `Bounds.lag_s` are kept as lowest and highest positions in so many spans of time,
-so that a check costs the same at every rate. One of them is still being filled."""
+"""The commands of the last `Bounds.lag_s` are kept as lowest and highest positions in this many time bins,
+so that a check costs the same at every rate. The newest bin is still being filled."""
 
 
 _BOTH_SIGNS = np.array([[1.0], [-1.0]])
@@ -66,11 +66,11 @@ class Plausibility:
         self._anchor_at_change = self._commanded_at_change = self._commanded
 
     def reset(self) -> None:
-        """Forget everything, for an arm that stands still."""
+        """Forget all history, for an arm at rest."""
         self._reading = None
 
     def jump(self, reading: FloatArray, time_s: float) -> str | None:
-        """Whether a reading lies too far from the one before it; call this first, on every tick.
+        """Whether a reading is too far from the previous one; call this first, on every tick.
 
         Args:
             reading: (n,), measured joint positions, rad, finite.
@@ -95,7 +95,7 @@ class Plausibility:
         )
 
     def follow(self, reading: FloatArray, velocity: FloatArray, time_s: float, *, driven: bool) -> str | None:
-        """Take in a reading, and see whether it agrees with the commands.
+        """Add a reading and check whether it agrees with the commands.
 
         Args:
             reading: (n,), measured joint positions, rad, finite.
@@ -137,10 +137,11 @@ class Plausibility:
         return None
 
     def estimate(self, reading: FloatArray) -> FloatArray:
-        """Where the joints are if those whose readings repeat have moved as commanded.
+        """The joint positions, assuming that joints whose readings repeat moved as commanded.
 
-        A reading that repeats exactly is old, or its encoder is frozen. Until `follow` can tell which, the
-        joint has moved: whatever depends on where the arm is must not wait for the next reading.
+        A reading that repeats exactly is either old or from a frozen encoder. Until `follow` can tell which,
+        assume that the joint has moved: nothing that depends on the arm's position may wait for the next
+        reading.
 
         Args:
             reading: (n,), rad, as it was given to `follow`.
@@ -163,7 +164,7 @@ class Plausibility:
         self._anchors.append((time_s, self._anchor_at_change))
 
     def _integrate(self, velocity: FloatArray, time_s: float) -> None:
-        """Go on with the commanded position, and with its extremes over the last ``lag_s``."""
+        """Advance the commanded position and its extremes over the last ``lag_s``."""
         before = self._commanded
         passed_s = min(time_s - self._time_s, self._hold_s)
         self._commanded = before + (passed_s * _BOTH_SIGNS) * velocity
@@ -173,14 +174,14 @@ class Plausibility:
             return
         ended = 1 + int((time_s - self._span_ends_s) / self._bucket_s)
         self._span_ends_s += ended * self._bucket_s
-        # Several spans end at once where they are shorter than a tick: in all of them the arm was on its way.
+        # Bins shorter than a tick end together: the arm was moving in all of them.
         passed = self._commanded if ended == 1 else np.maximum(before, self._commanded)
         for _ in range(min(ended, _BUCKETS)):
             self._span = (self._span + 1) % _BUCKETS
             self._spans[self._span] = passed
 
     def _oldest(self, time_s: float, anchor: FloatArray) -> FloatArray:
-        """The anchor at the beginning of the window; now and then the newest is kept for later."""
+        """The anchor at the start of the window; new anchors are stored at intervals."""
         anchors = self._anchors
         while len(anchors) > 1 and time_s - anchors[1][0] >= self._window_s:
             anchors.popleft()

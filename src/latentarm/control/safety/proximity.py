@@ -1,4 +1,4 @@
-"""What the arm is near: obstacles and the arm itself, as heights above supporting planes."""
+"""What the arm is close to, obstacles and itself, as heights above supporting planes."""
 
 from dataclasses import dataclass, replace
 from typing import final
@@ -13,10 +13,10 @@ from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sp
 from latentarm.types import BoolArray, FloatArray, IntArray
 
 _CROSSING_M = 1e-9
-"""Segments nearer than this cross, and the line between their closest points says nothing."""
+"""Segments closer than this intersect, so the line between their closest points has no direction."""
 
 _STALE_RAD = 0.02
-"""Contacts that are older than this are measured anew: their planes stand a little askew."""
+"""Contacts older than this are measured again, because their planes have tilted."""
 
 _STILL_M = 1e-9
 """A capsule whose points no joint moves further than this per rad cannot approach anything."""
@@ -30,7 +30,7 @@ class Contacts:
     For a unit vector n that points from shape A to capsule B, ``min over the ends b of B of n·b -
     radius_B - max over A of n·a`` is a lower bound of their distance in any configuration, and equal
     to it where n joins their closest points. n is fixed in the frame of A's link where that link carries
-    B (so only the joints between them matter), else in the base frame. Both ends have a height,
+    B (so only the joints between them matter), otherwise in the base frame. Both ends have a height,
     because a capsule may come down with either.
 
     Attributes:
@@ -50,7 +50,7 @@ class Contacts:
 
 @final
 class Proximity:
-    """All pairs that could come near each other, and which of them matter now.
+    """All pairs that could come close to each other, and which of them matter now.
 
     Pairs that do not matter are skipped by proof: a distance known from an earlier configuration has
     shrunk by at most ``Σ_j lever_j |q_j - q_j'|`` since, and will shrink by at most ``Σ_j lever_j |v_j|`` per
@@ -59,7 +59,7 @@ class Proximity:
 
     Args:
         body: the arm.
-        obstacles: what else is there, checked.
+        obstacles: the obstacles, already validated.
         link_speed: the fastest that any point of the arm may move, m/s.
         nearest_m: distance to be kept, m.
         horizon_s: for how long the arm may go on towards something, s.
@@ -123,7 +123,7 @@ class Proximity:
         # What is known: this distance at that configuration. Nothing at first.
         self._distance = np.full(len(self._b), -np.inf)
         self._at = np.zeros((len(self._b), body.robot.dof))
-        # What was measured last, and how much further away the other pairs were than they had to be.
+        # The last measurement, and the smallest slack of the pairs that were left out.
         self._held: Contacts | None = None
         self._spare: FloatArray = np.zeros(0)
         self._held_at = self._held_speed = np.zeros(body.robot.dof)
@@ -230,7 +230,7 @@ class Proximity:
     def _between_segments(
         self, points: FloatArray, start: FloatArray, end: FloatArray, a: IntArray
     ) -> tuple[FloatArray, FloatArray]:
-        """The plane stands across the line between the closest points."""
+        """The plane is perpendicular to the line between the closest points."""
         count = self._body.count
         a_start = np.concatenate([points[:count], self._stay_start])[a]
         a_end = np.concatenate([points[count : 2 * count], self._stay_end])[a]

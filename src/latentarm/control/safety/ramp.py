@@ -1,4 +1,4 @@
-"""No jumps: acceleration and jerk stay within their limits."""
+"""Limits acceleration and jerk."""
 
 from typing import final
 
@@ -11,7 +11,7 @@ from latentarm.types import FloatArray, Stop
 
 @final
 class Ramp(SafetyFilter):
-    """Leads from the last command towards the wanted one at limited acceleration and jerk.
+    """Moves from the last command towards the requested one at limited acceleration and jerk.
 
     All joints arrive together: in proportion where the way is straight, so that no mix of old and new
     velocity moves any point faster than the faster of the two.
@@ -64,9 +64,9 @@ class Ramp(SafetyFilter):
         try:
             result = self._generator.calculate(wanted, self._trajectory)
         except RuckigError:
-            # It happens in the middle of a stop, whose acceleration is above that of ordinary motion.
+            # This happens during a stop, whose acceleration exceeds that of ordinary motion.
             result = Result.Error
         if result not in (Result.Working, Result.Finished):
-            return Stop("No smooth way to the wanted velocity was found.")
+            return Stop("No smooth path to the requested velocity was found.")
         _, velocities, accelerations = self._trajectory.at_time(self._dt_s)
         return np.array(velocities), np.array(accelerations)

@@ -1,4 +1,4 @@
-"""The filters in their order, and the check behind them."""
+"""The filters in order, and the final check after them."""
 
 from dataclasses import dataclass
 from typing import final
@@ -24,7 +24,7 @@ from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, Stop
 
 _SAME_RAD_S = 1e-9
-"""Velocities that differ by no more than this differ by rounding."""
+"""Velocities closer than this differ by rounding only."""
 
 
 @final
@@ -45,10 +45,10 @@ class Passed:
 
 @final
 class SafetyStack:
-    """Shapes what is wanted, ramps it, and lets it out only with a proven stop.
+    """Shapes and ramps the requested velocity, and sends it only with a proven stop.
 
-    Three things may leave, in this order of preference: the shaped and ramped velocity; an ordinary
-    slowing down; the stop that was proven with the command before. See `Guard` for the proof.
+    The output is the first of these that is proven safe: the shaped and ramped velocity; an ordinary
+    deceleration; the stop that was proven with the previous command. See `Guard` for the proof.
 
     Args:
         config: the limits.
@@ -73,7 +73,7 @@ class SafetyStack:
         self._release = Ramp(dt_s, bounds.release_acceleration, bounds.release_jerk)
         self._guard = Guard()
         self._rest = np.zeros(robot.dof)
-        # What leaves is also what the next tick goes by: nobody may write to it.
+        # The next tick starts from this array, so it must be read-only.
         self._rest.flags.writeable = False
         self._velocity = self._rest
         self._acceleration = self._rest
@@ -93,7 +93,7 @@ class SafetyStack:
         return self._velocity
 
     def reset(self) -> None:
-        """Begin anew from an arm that stands still."""
+        """Start again from an arm at rest."""
         self._velocity = self._acceleration = self._rest
         self._brake = None
 
@@ -133,7 +133,7 @@ class SafetyStack:
                 continue
             velocity, acceleration = ramped
             if not some(target) and largest(np.abs(velocity)) <= _SAME_RAD_S:
-                # Rounding leaves ever smaller traces of motion, and an arm that never quite rests.
+                # Without this, rounding leaves ever smaller motion and the arm never quite rests.
                 velocity, acceleration = np.zeros_like(velocity), np.zeros_like(acceleration)
             objection = self._guard.objection(velocity, self.bounds.brake(velocity, acceleration), situation)
             if objection is None:
@@ -171,7 +171,7 @@ class SafetyStack:
         return velocity
 
     def stop(self) -> FloatArray:
-        """Begin the proven stop, or go on with it.
+        """Start or continue the proven stop.
 
         It was proven to go on in real time, so a late tick takes up the ramp where it should be by now.
 

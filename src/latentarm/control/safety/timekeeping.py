@@ -7,25 +7,25 @@ from typing import final
 class Timekeeping:
     """Notices a clock that stands still, goes back, or jumps farther than one command lasts.
 
-    How much time has really passed is not known after any of these, so nobody knows either whether the arm
-    still moves or has stopped by itself. A command that goes on from the last one could then be a step.
+    After any of these the elapsed time is unknown, and so is whether the arm still moves or has stopped by
+    itself. A command that continues from the last one could then be a jump.
 
     Args:
         hold_s: how long one command lasts, s.
     """
 
     def __init__(self, hold_s: float) -> None:
-        # Rounding must not make a tick late that comes exactly as the command ends.
+        # A tick exactly at the end of a command must not count as late because of rounding.
         self._hold_s = hold_s + 1e-9
         self._tick_s: float | None = None
         self._sent_s = 0.0
 
     def reset(self) -> None:
-        """Begin anew: any time may come next."""
+        """Start again: any time may come next."""
         self._tick_s = None
 
     def sent(self, time_s: float) -> None:
-        """The command left at this time, s; until told otherwise, at the tick's own time."""
+        """Set when the command was sent, s; by default that is the tick's own time."""
         self._sent_s = time_s
 
     def refusal(self, time_s: float) -> str | None:
