@@ -60,11 +60,11 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "List what was recorded, and export it to a native dataset (LeRobotDataset v3.0).",
     ),
     "reproduce properties": (
-        "reproduce_properties:properties",
+        "reproduce:properties",
         "Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.",
     ),
     "reproduce shared-autonomy": (
-        "reproduce_shared_autonomy:shared_autonomy",
+        "reproduce:shared_autonomy",
         "Let simulated people reach and change goals with help and without (section 8.2).",
     ),
     "reproduce alignment": (

@@ -8,7 +8,8 @@ from latentarm.metrics.results import read_results
 from latentarm.models.catalogue import MODELS
 from latentarm.studies.properties.preset import PRESETS, Preset
 from latentarm.studies.shared_autonomy.cell import TASKS
-from latentarm.studies.shared_autonomy.figures.draw import FIGURES
+from latentarm.studies.shared_autonomy.study import STUDY as SHARED_AUTONOMY
+from latentarm.studies.study import Report
 from latentarm.types import Row
 
 Run = Callable[..., tuple[int, str, str]]
@@ -35,7 +36,7 @@ def test_the_properties_for_people(run: Run, workplace: Path, monkeypatch: pytes
     assert code == 0
     assert "reach, simulated" in out
     assert "reproduced/properties/results.md" in out
-    assert f"{len(MODELS)} models on reach" in err
+    assert f"{len(MODELS)} cells" in err
     assert read_results(Path("reproduced/properties/results.json"))
 
 
@@ -50,30 +51,42 @@ def test_the_smallest_study_of_shared_autonomy_runs_from_end_to_end(run: Run, wo
     folder = Path("reproduced/shared-autonomy")
     written = read_results(folder / "results.json")
     assert {row.task for row in written} == set(TASKS)
-    assert {path.stem for path in folder.glob("*.png")} == {*FIGURES} - {"entropy_weight"}
+    assert {path.stem for path in folder.glob("*.png")} == {*SHARED_AUTONOMY.figures} - {"entropy_weight"}
 
 
-@pytest.mark.parametrize(("name", "task"), [("shared_autonomy", "planar_two_cups"), ("alignment", "plane")])
-def test_one_task_for_machines(
-    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch, name: str, task: str
-) -> None:
+def asked_for_one_task(run: Run, asked: list, rows: list[Row], name: str, task: str) -> None:
     """What is asked for reaches the study, and its rows are printed; tests/studies runs the studies."""
-    asked = []
-    rows = [Row(name, "drift", "1", 0.5, 0.1, 3, task=task, model="cae")]
-    study = f"latentarm.studies.{name}"
-    monkeypatch.setattr(f"{study}.run.run_{name}", lambda config: asked.append(config) or rows)
-    monkeypatch.setattr(f"{study}.summary.summary_tables", lambda *figures: [])
-    words = name.replace("_", "-")
-    folder = Path("reproduced") / words
+    folder = Path("reproduced") / name
     folder.mkdir(parents=True)
     options = ("--preset", "smoke", "--task", task, "--seed", 5, "--jobs", 1, "--json")
-    code, out, err = run("reproduce", words, *options)
+    code, out, err = run("reproduce", name, *options)
     assert code == 0
     assert json.loads(out) == [row.as_json() for row in rows]
     assert f"{folder}/results.md" in err
-    (config,) = asked
-    assert (config.out, config.preset.name, config.tasks) == (folder, "smoke", (task,))
-    assert (config.seed, config.jobs, config.backend, config.quiet) == (5, 1, "joblib", True)
+    (request,) = asked
+    assert (request.out, request.preset.name, request.tasks) == (folder, "smoke", (task,))
+    assert (request.seed, request.jobs, request.backend, request.quiet) == (5, 1, "joblib", True)
+
+
+def test_one_task_for_machines(run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+    rows = [Row("shared_autonomy", "drift", "1", 0.5, 0.1, 3, task="planar_two_cups", model="cae")]
+    report = Report(rows, "", {})
+    monkeypatch.setattr(
+        "latentarm.studies.study.run_study", lambda study, request: asked.append(request) or report
+    )
+    asked_for_one_task(run, asked, rows, "shared-autonomy", "planar_two_cups")
+
+
+def test_one_task_of_alignment_for_machines(
+    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+    rows = [Row("alignment", "drift", "1", 0.5, 0.1, 3, task="plane", model="cae")]
+    study = "latentarm.studies.alignment"
+    monkeypatch.setattr(f"{study}.run.run_alignment", lambda config: asked.append(config) or rows)
+    monkeypatch.setattr(f"{study}.summary.summary_tables", lambda *figures: [])
+    asked_for_one_task(run, asked, rows, "alignment", "plane")
 
 
 @pytest.mark.slow

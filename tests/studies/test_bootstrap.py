@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy import stats
 
-from latentarm.studies.bootstrap import bootstrap_interval, reach_of_interval
+from latentarm.studies.statistics import bootstrap_interval, reach_of_interval
 
 probabilities = arrays(float, st.integers(1, 12), elements=st.floats(0, 1))
 

@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.errors import UserError
-from latentarm.runs.results_folder import CONFIG, Study, write_json
-from latentarm.studies.pages import listed, markdown_table, shown
+from latentarm.runs.results_folder import CONFIG, ResultsFolder, write_json
+from latentarm.studies.page import listed, markdown_table
 from latentarm.studies.statistics import compare_means, format_p, holm, one_sample, spreads
 from latentarm.studies.streams import integer, sequence
 
-STUDY = Study("tides", ("tides.png",))
+STUDY = ResultsFolder("tides", ("tides.png",))
 
 
 def test_a_folder_says_what_was_asked_for_and_with_what(tmp_path):
@@ -30,7 +30,7 @@ def test_an_earlier_run_makes_room_and_another_study_stays(tmp_path):
     STUDY.claim(tmp_path, {"study": "tides"})
     assert {path.name for path in tmp_path.iterdir()} == {CONFIG, "mine.txt"}
     with pytest.raises(UserError, match="no earlier run of this command"):
-        Study("winds", ("tides.png",)).claim(tmp_path, {"study": "winds"})
+        ResultsFolder("winds", ("tides.png",)).claim(tmp_path, {"study": "winds"})
 
 
 def test_the_results_of_another_run_are_not_replaced(tmp_path):
@@ -85,7 +85,6 @@ def test_streams_hang_on_seed_task_and_use_alone():
 
 def test_parts_of_a_page():
     assert markdown_table(["a", "b"], [["1", "2"]]) == "| a | b |\n| --- | ---: |\n| 1 | 2 |\n"
-    assert shown(["two_cups.png"]) == ["![two cups, simulated](two_cups.png)\n"]
     assert [listed(names) for names in (["a"], ["a", "b", "a"], ["a", "b", "c"])] == [
         "a",
         "a and b",

@@ -9,6 +9,7 @@ import inspect
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final, get_type_hints
 
@@ -45,27 +46,40 @@ def configurable(command: Command, name: str, defaults: Mapping[str, object]) ->
         name: the words that run it, such as ``reproduce properties``.
         defaults: by parameter, of the parameter's type.
     """
-    signature = inspect.signature(command)
-    hints = get_type_hints(command, include_extras=True)
+    known = options_of(command)
+    groups = _groups(command)
 
     def run(**options: Any) -> int:
         del options[OPTION]
-        _ASKED.set((name, options))
+        _ASKED.set((name, dict(options)))
+        for group, kind in groups.items():
+            options[group] = kind(**{one.name: options.pop(one.name) for one in fields(kind)})
         return command(**options)
 
-    parameters = [
-        parameter.replace(
-            kind=inspect.Parameter.KEYWORD_ONLY,
-            default=defaults.get(parameter.name, parameter.default),
-            annotation=hints[parameter.name],
-        )
-        for parameter in signature.parameters.values()
-    ]
+    parameters = [one.replace(default=defaults.get(one.name, one.default)) for one in known.values()]
     option = inspect.Parameter(OPTION, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=ConfigFile)
     run.__name__, run.__doc__ = command.__name__, command.__doc__
-    run.__signature__ = signature.replace(parameters=[*parameters, option])  # pyright: ignore[reportFunctionMemberAccess]
-    run.__annotations__ = {**hints, OPTION: ConfigFile}
+    run.__signature__ = inspect.Signature([*parameters, option])  # pyright: ignore[reportFunctionMemberAccess]
+    run.__annotations__ = {one.name: one.annotation for one in (*parameters, option)}
     return run
+
+
+def options_of(command: Command) -> dict[str, inspect.Parameter]:
+    """A command's options by name: its parameters, and the fields of those that are dataclasses."""
+    groups = _groups(command)
+    hints = get_type_hints(command, include_extras=True)
+    found: dict[str, inspect.Parameter] = {}
+    for name, parameter in inspect.signature(command).parameters.items():
+        if name in groups:
+            found |= options_of(groups[name])
+        else:
+            found[name] = parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY, annotation=hints[name])
+    return found
+
+
+def _groups(command: Command) -> dict[str, type[Any]]:
+    """Those of a command's parameters that are dataclasses of options."""
+    return {name: hint for name, hint in get_type_hints(command).items() if is_dataclass(hint)}  # pyright: ignore[reportReturnType]
 
 
 def file_named_in(words: Sequence[str]) -> Path | None:
@@ -98,19 +112,21 @@ def read_options(path: Path, command: Command, name: str) -> dict[str, object]:
 
     from latentarm.commands.yaml_file import read_mapping
 
-    hints = {key: hint for key, hint in get_type_hints(command).items() if key != "return"}
+    known = options_of(command)
     options: dict[str, object] = {}
     for key, value in read_mapping(path).items():
         parameter = key.replace("-", "_")
-        if parameter not in hints:
-            near = difflib.get_close_matches(parameter, hints, n=1, cutoff=0.0)
+        if parameter not in known:
+            near = difflib.get_close_matches(parameter, known, n=1, cutoff=0.0)
             raise UserError(
                 f"{path}: `latentarm {name}` has no option {key!r}; the nearest one is {near[0]!r}."
             )
         if parameter in options:
             raise UserError(f"{path}: the option {key!r} is given twice.")
         try:
-            options[parameter] = TypeAdapter(hints[parameter]).validate_json(json.dumps(value), strict=True)
+            options[parameter] = TypeAdapter(known[parameter].annotation).validate_json(
+                json.dumps(value), strict=True
+            )
         except ValidationError as error:
             said = error.errors()[0]["msg"].replace("array", "list")
             raise UserError(f"{path}: the option {key!r} is {value!r}. {said}.") from error

@@ -34,7 +34,7 @@ from latentarm.models.training import epoch_bar
 from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.runs.evaluating import evaluate_run
-from latentarm.runs.results_folder import Study, vacant_name
+from latentarm.runs.results_folder import ResultsFolder, vacant_name
 from latentarm.runs.training import TrainConfig, train_run
 from latentarm.simulation.arm_figure import draw_task
 from latentarm.simulation.drive import STATE_NOISE_RAD, Setup, Trace
@@ -217,7 +217,7 @@ def _claim(config: DemoConfig) -> None:
                 f"{run} holds the profiles of people ({', '.join(profile_names(run))}), and the demo would"
                 f" train it anew: choose another folder with --out, such as {vacant_name(config.out)}."
             )
-    Study("demo", MADE).claim(config.out, _about(config))
+    ResultsFolder("demo", MADE).claim(config.out, _about(config))
     for made in (config.out / "demonstrations", *runs):
         shutil.rmtree(made, ignore_errors=True)
 

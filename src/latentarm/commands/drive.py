@@ -33,7 +33,7 @@ from latentarm.robots.limits_file import read_limits
 from latentarm.robots.notices import notices
 from latentarm.runs.checks import check_count, check_positive, check_seed
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
-from latentarm.runs.results_folder import Study, write_json
+from latentarm.runs.results_folder import ResultsFolder, write_json
 from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.simulation.drive import RATE_HZ, Setup, Trace, simulate
 from latentarm.simulation.drive_figures import draw_drives
@@ -183,7 +183,7 @@ def drive_run(config: DriveConfig, tell: Callable[[Sequence[str]], None] = lambd
     about = _about(config, setup, operator, run, arbitration)
     if config.record is not None:
         check_vacant(config.record)
-    Study("drive", MADE).claim(config.out, about)
+    ResultsFolder("drive", MADE).claim(config.out, about)
     if config.record is None:
         traces = drive_all([setup], config.drives, config.seed, config.jobs, bars=config.bars)
     else:

@@ -1,5 +1,6 @@
 """Options that several commands share."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -33,3 +34,22 @@ PresetName = Annotated[
     Literal["paper", "smoke"],
     arg(help="The sizes of the paper, or small ones that only show that it runs."),
 ]
+
+
+@dataclass(frozen=True)
+class StudyOptions:
+    """What every study is asked for; the command line says the same of each field.
+
+    Attributes:
+        preset: sizes.
+        seed: of everything random.
+        jobs: processes side by side.
+        backend: where they run.
+        json: print one JSON document.
+    """
+
+    preset: PresetName = "paper"
+    seed: Seed = 0
+    jobs: Jobs = -1
+    backend: Backend = "joblib"
+    json: Json = False

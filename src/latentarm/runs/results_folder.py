@@ -25,8 +25,8 @@ SHORT: Final = 40
 
 
 @dataclass(frozen=True)
-class Study:
-    """A study, or a command with results of its own, as its folder knows it.
+class ResultsFolder:
+    """The folder of a study, or of a command with results of its own.
 
     Attributes:
         name: as in `CONFIG` and in every row of ``results.json``.

@@ -1,1 +1,15 @@
-"""What the studies of `latentarm reproduce` have in common."""
+"""The studies: the paper's three simulations, and all models on recorded demonstrations.
+
+A study is a package with these modules:
+
+- ``preset.py``: a frozen dataclass of sizes, and ``PRESETS``, at least ``paper`` and ``smoke``.
+- ``cell.py``: a frozen ``Cell`` that carries everything it depends on, its seed too, and a function that
+  measures it. Models are fitted by `fitting.fit_quietly`, randomness comes from `streams`.
+- ``hypotheses.py``: the claims, as `hypotheses.Comparison` from `hypotheses.compared`.
+- ``figures.py`` and ``page.md``: the drawings, and the page as a Jinja template (`page.render_page`).
+- ``study.py``: ``STUDY``, a `study.Study`: which grids of cells are run, and the `study.Report` on them.
+
+`study.run_study` does the rest, the same for all of them: it claims the folder, runs the grids and writes
+``results.json``, ``results.md``, ``hypotheses.json``, ``timings.json``, the study's own documents and its
+figures. A command (``commands/reproduce.py``) calls it.
+"""

@@ -1,4 +1,4 @@
-"""What the tests of all studies have in common."""
+"""Tests of means, corrections for many tests, and intervals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,6 +15,12 @@ LEVEL: Final = 0.05
 
 NO_SPREAD: Final = 1e-9
 """SD, in the largest figure, below which several figures are the same but for rounding."""
+
+
+CONFIDENCE: Final = 0.95
+RESAMPLES: Final = 4000
+BOOTSTRAP_SEED: Final = 95
+"""Always the same, so that a figure is the same whenever it is drawn."""
 
 
 def spreads(values: FloatArray) -> bool:
@@ -40,6 +46,9 @@ class Statistic:
     dof: float | None = None
     p: float | None = None
     hedges_g: float | None = None
+
+
+NO_DIFFERENCE: Final = Statistic("none: no spread")
 
 
 def compare_means(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
@@ -73,6 +82,15 @@ def one_sample(values: FloatArray, fixed: float, direction: Direction) -> Statis
     return _statistic("one-sample", result, direction, g)
 
 
+def paired(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
+    """Test whether figures (n,) are less, or greater, than others of the same seeds (n,), on average."""
+    if len(values) < 2:
+        return Statistic("none: too few seeds")
+    more = values - reference
+    # Of a paired test this is the one-sample test of the differences.
+    return replace(one_sample(more, 0.0, direction), test="paired t") if spreads(more) else NO_DIFFERENCE
+
+
 def _welch(values: FloatArray, reference: FloatArray, direction: Direction) -> Statistic:
     from scipy.stats import ttest_ind  # takes a second, and only a finished study needs it
 
@@ -103,6 +121,36 @@ def holm(p: Sequence[float | None]) -> list[float | None]:
         return list(p)
     corrected = iter(cast(FloatArray, multipletests(tested, alpha=LEVEL, method="holm")[1]))
     return [None if one is None else float(next(corrected)) for one in p]
+
+
+def bootstrap_interval(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The 95 % percentile bootstrap interval for the mean of independent units (Efron 1979).
+
+    Every resampled mean lies between the lowest and the highest value: an interval for a probability
+    stays within [0, 1] and one for a positive quantity above 0, which mean ± t SE does not.
+
+    Args:
+        values: (N, ...), one of N units along the first axis.
+
+    Returns:
+        Lower and upper ends, (...); both the value itself for one unit.
+    """
+    units = len(values)
+    draws = (
+        np.random.default_rng(BOOTSTRAP_SEED).multinomial(units, np.full(units, 1.0 / units), RESAMPLES)
+        / units
+    )
+    means = np.tensordot(draws, values, axes=1)
+    tail = (1.0 - CONFIDENCE) / 2.0
+    low, high = np.quantile(means, (tail, 1.0 - tail), axis=0)
+    # A mean of equal values differs from them by rounding.
+    return np.clip(low, values.min(axis=0), None), np.clip(high, None, values.max(axis=0))
+
+
+def reach_of_interval(values: FloatArray) -> tuple[float, float]:
+    """How far the interval for the mean of values (N,) reaches below and above it, as error bars want it."""
+    mean, (low, high) = float(values.mean()), bootstrap_interval(values)
+    return max(mean - float(low), 0.0), max(float(high) - mean, 0.0)
 
 
 def format_p(p: float | None) -> str:

@@ -17,3 +17,8 @@ def sequence(seed: int, task: str, *use: int) -> np.random.SeedSequence:
 def integer(source: np.random.SeedSequence) -> int:
     """A seed for those who take whole numbers; there is room above it for those of many models."""
     return int(source.generate_state(1)[0]) >> 2
+
+
+def generator(seed: int, task: str, *use: int) -> np.random.Generator:
+    """A source of randomness of its own for one use, see `sequence`."""
+    return np.random.default_rng(sequence(seed, task, *use))

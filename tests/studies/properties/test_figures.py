@@ -5,17 +5,18 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from figure_faults import faults
-from latentarm.errors import UserError
 from latentarm.metrics.effects import held_paths
 from latentarm.robots.planar import planar
-from latentarm.studies.planar_arms import arm_line
-from latentarm.studies.properties.cell import Cell, CellResult
-from latentarm.studies.properties.figures.beside_paper import beside_paper_figure
-from latentarm.studies.properties.figures.controllability import controllability_figure
-from latentarm.studies.properties.figures.draw import TASK_FIGURES, draw_figures
-from latentarm.studies.properties.figures.noise import condition, noise_figure
-from latentarm.studies.properties.figures.panels import in_mm, points
-from latentarm.studies.properties.figures.shown import as_trained, spread_states, turned
+from latentarm.studies.drawing import arm_line
+from latentarm.studies.properties.cell import Cell, CellResult, condition
+from latentarm.studies.properties.figures import (
+    beside_paper_figure,
+    controllability_figure,
+    in_mm,
+    noise_figure,
+    points,
+)
+from latentarm.studies.properties.motions import TASK_FIGURES, as_trained, spread_states, turned
 from latentarm.studies.properties.preset import PRESETS
 from latentarm.style import LOOKS, MM_PER_INCH, TWO_COLUMNS_MM, shade
 from latentarm.tasks.planar.catalogue import MOTIONS
@@ -134,23 +135,6 @@ def test_only_models_that_the_paper_has_and_ours_stand_beside_it():
     words = words_of(beside_paper_figure(rows, ["sine"]))
     assert {"cVAE", "isometric"} <= words
     assert not {"SCL", "cAE, zero penalty", "PCA"} & words  # these rows carry no figure of the paper
-
-
-def test_every_figure_of_the_tasks_present_is_written_the_same_each_time(tmp_path):
-    results, rows = results_of(["reach"], MODELS), rows_of(["reach"], MODELS)
-    first = draw_figures(results, rows, tmp_path / "first")
-    second = draw_figures(results, rows, tmp_path / "second")
-    names = [path.name for path in first]
-    assert names == ["beside_paper.png", "controllability.png", "noise.png", "reach.png"]
-    assert sorted(names) == sorted(path.name for path in (tmp_path / "first").iterdir())
-    for one, other in zip(first, second, strict=True):
-        assert one.read_bytes() == other.read_bytes()
-
-
-def test_a_folder_that_cannot_be_written_is_named(tmp_path):
-    (tmp_path / "out").write_text("in the way")
-    with pytest.raises(UserError, match="cannot be written"):
-        draw_figures(results_of(["reach"], ["pca"]), rows_of(["reach"], ["pca"]), tmp_path / "out")
 
 
 def test_lengths_stand_in_millimetres_without_the_papers_which_has_no_unit():

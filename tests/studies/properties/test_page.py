@@ -1,24 +1,25 @@
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from latentarm.errors import UserError
-from latentarm.metrics.summary import Subject, summarise
+from latentarm.studies.hypotheses import comparison_table
 from latentarm.studies.properties.cell import Cell, CellResult
-from latentarm.studies.properties.hypotheses import compare_models
-from latentarm.studies.properties.page import TASKS, write_page
 from latentarm.studies.properties.paper import with_paper
 from latentarm.studies.properties.preset import PRESETS
+from latentarm.studies.properties.study import STUDY
 from latentarm.studies.properties.tables import (
     OURS,
     as_good_as_paper,
-    comparison_table,
     noise_table,
     paper_table,
 )
+from latentarm.studies.study import Request
 from latentarm.tasks.planar.catalogue import MOTIONS
 from latentarm.types import Row
+
+from .test_figures import Turning
 
 ERROR = "error_percent_of_pca"
 
@@ -97,28 +98,27 @@ def results_of(seeds=3, noises=(0.0, 0.1), tasks=tuple(MOTIONS)):
                 figures = {ERROR: mean + rng.random(seeds), "r2": rng.uniform(0.95, 1.0, seeds)}
                 results.append(
                     CellResult(
-                        Cell(task, model, noise, PRESETS["smoke"], 0), figures, decoder=None, fit_s=0.0
+                        Cell(task, model, noise, PRESETS["smoke"], 0),
+                        figures,
+                        Turning(MOTIONS[task]().latent_dim, MOTIONS[task]().robot.dof),
+                        fit_s=0.0,
                     )
                 )
     return results
 
 
-def written(out, results, tasks):
-    rows = [
-        summarise(Subject("properties", result.cell.task, result.cell.model, condition), measure, values)
-        for result in results
-        for condition in (None, f"noise {result.cell.noise_rad:g} rad")
-        for measure, values in result.figures.items()
-    ]
-    tests = compare_models(results)
-    write_page(out, results, with_paper(rows), tests, PRESETS["smoke"], tasks, 3)
-    return (out / "results.md").read_text(), tests
+def page_of(results, tasks):
+    request = Request(Path("out"), PRESETS["smoke"], tasks, seed=3)
+    return STUDY.report(request, results)
 
 
-def test_the_page_has_every_part(tmp_path):
-    for name in ("sine_effects.png", "overview.png"):
-        (tmp_path / name).touch()
-    page, tests = written(tmp_path, results_of(), tuple(MOTIONS))
+@pytest.fixture(scope="module")
+def report():
+    return page_of(results_of(), tuple(MOTIONS))
+
+
+def test_the_page_has_every_part(report):
+    page = report.page
     assert "latentarm reproduce properties --preset smoke --seed 3" in page
     assert "**simulated**" in page
     assert re.findall(r"^## (.*)", page, flags=re.MULTILINE) == [
@@ -134,36 +134,22 @@ def test_the_page_has_every_part(tmp_path):
     assert "**H1**" in page
     assert "**H2**" in page
     assert "\n- sine: supported\n" in page
-    assert page.index("(overview.png)") < page.index("## Sine") < page.index("(sine_effects.png)")
-    assert page.count("(sine_effects.png)") == 1
-    assert comparison_table(tests) in page
-    assert len(lines(comparison_table(tests))) == 2 + len(tests)
+    assert page.index("(noise.png)") < page.index("## Sine") < page.index("(sine.png)")
+    assert page.count("(sine.png)") == 1
+    assert comparison_table(report.tests) in page
+    assert len(lines(comparison_table(report.tests))) == 2 + len(report.tests)
+    assert set(report.figures) == set(STUDY.figures)
 
 
-def test_every_table_of_the_page_has_as_many_cells_in_every_line(tmp_path):
-    page, _ = written(tmp_path, results_of(), tuple(MOTIONS))
-    for table in re.findall(r"(?:^\|.*\n)+", page, flags=re.MULTILINE):
+def test_every_table_of_the_page_has_as_many_cells_in_every_line(report):
+    for table in re.findall(r"(?:^\|.*\n)+", report.page, flags=re.MULTILINE):
         assert len({len(line) for line in lines(table)}) == 1
 
 
-def test_a_part_of_the_study_names_its_tasks_and_leaves_out_what_was_not_done(tmp_path):
-    page, _ = written(tmp_path, results_of(noises=(0.0,), tasks=("circle",)), ("circle",))
+def test_one_seed_of_one_task_leaves_out_what_was_not_done():
+    page = page_of(results_of(seeds=1, noises=(0.0,), tasks=("circle",)), ("circle",)).page
     assert "--task circle --seed 3" in page
     assert "## Sine" not in page
     assert "## Noise" not in page
-
-
-def test_one_seed_makes_a_page_too(tmp_path):
-    page, _ = written(tmp_path, results_of(seeds=1), tuple(MOTIONS))
     assert "nan" not in page
     assert "could not be tested" in page
-
-
-def test_every_task_is_described():
-    assert list(TASKS) == list(MOTIONS)
-
-
-def test_a_page_that_cannot_be_written_is_the_users_to_mend(tmp_path):
-    (tmp_path / "file").touch()
-    with pytest.raises(UserError, match="cannot be written"):
-        write_page(tmp_path / "file", [], [], [], PRESETS["smoke"], (), 0)

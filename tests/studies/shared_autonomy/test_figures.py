@@ -2,19 +2,20 @@ import numpy as np
 import pytest
 
 from figure_faults import faults
-from latentarm.errors import UserError
 from latentarm.studies.shared_autonomy.cell import METHODS, TASKS, Cell, CellResult, Entropy, Outcome
 from latentarm.studies.shared_autonomy.drive import steps_of
-from latentarm.studies.shared_autonomy.figures.changes import changes_figure
-from latentarm.studies.shared_autonomy.figures.draw import FIGURES, draw_figures
-from latentarm.studies.shared_autonomy.figures.expertise import expertise_figure
-from latentarm.studies.shared_autonomy.figures.learners import learners_figure
-from latentarm.studies.shared_autonomy.figures.models import models_figure
-from latentarm.studies.shared_autonomy.figures.tasks import task_figure
-from latentarm.studies.shared_autonomy.figures.weights import weights_figure
+from latentarm.studies.shared_autonomy.figures import (
+    changes_figure,
+    expertise_figure,
+    learners_figure,
+    models_figure,
+    task_figure,
+    weights_figure,
+)
 from latentarm.studies.shared_autonomy.preset import PRESETS, Preset
 from latentarm.studies.shared_autonomy.rows import figures
-from latentarm.studies.shared_autonomy.run import MODELS, SharedAutonomyConfig, _cells
+from latentarm.studies.shared_autonomy.study import MODELS, cells_of
+from latentarm.studies.study import Request
 from latentarm.style import COLUMN_MM, LOOKS, MM_PER_INCH, TWO_COLUMNS_MM
 
 
@@ -36,7 +37,7 @@ def results_of(tmp_path, preset, tasks=tuple(TASKS), drives=2):
             1.0,
             1.0,
         )
-        for cell in _cells(SharedAutonomyConfig(tmp_path, preset, tasks))
+        for cell in cells_of(Request(tmp_path, preset, tasks))
     ]
 
 
@@ -84,16 +85,6 @@ def test_a_task_is_drawn_with_its_arm_and_both_goals(task):
     figure = task_figure(TASKS[task]())
     assert_well_drawn(figure, COLUMN_MM)
     assert {"before the left cup", "before the right cup", "cups"} <= words_of(figure)
-
-
-def test_all_files_are_written_and_no_others(tmp_path):
-    preset = Preset("tiny", seeds=3, betas=(0.0, 75.0), changes_s=(1.0,))
-    results = results_of(tmp_path, preset)
-    draw_figures(results, figures(results), preset, tuple(TASKS), tmp_path / "out")
-    assert {path.stem for path in (tmp_path / "out").iterdir()} == set(FIGURES)
-    (tmp_path / "in the way").write_text("a file")
-    with pytest.raises(UserError, match="cannot be written"):
-        draw_figures(results, figures(results), preset, tuple(TASKS), tmp_path / "in the way")
 
 
 def test_conditions_are_told_apart_without_colour():

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from latentarm.studies.hypotheses import verdicts
 from latentarm.studies.shared_autonomy.cell import METHODS, Cell, CellResult, Entropy, Outcome
 from latentarm.studies.shared_autonomy.hypotheses import REACHED, TRAPPED, compare_methods
 from latentarm.studies.shared_autonomy.preset import Preset
-from latentarm.studies.shared_autonomy.verdicts import verdicts
 
 PRESET = Preset("tiny", betas=(0.0, 75.0, 1e4), learners={"slow": 10.0}, changes_s=(0.0, 8.0))
 TASK = "panda_two_cups"
@@ -38,7 +38,7 @@ def one(comparisons, hypothesis, method, against):
     (found,) = [
         test
         for test in comparisons
-        if (test.hypothesis, test.method, test.against) == (hypothesis, method, against)
+        if (test.hypothesis, test.subject, test.against) == (hypothesis, method, against)
     ]
     return found
 
@@ -50,7 +50,7 @@ def test_methods_are_compared_seed_by_seed():
     errors = dict(zip([(method, "beta 75") for method in METHODS], (ALONE, HELPED, OPENED), strict=True))
     tests = compare_methods(results_of(errors), PRESET)
     h1 = [test for test in tests if test.hypothesis == "H1"]
-    assert [(test.method, test.against) for test in h1] == [("LA+SA", "LA"), ("LA+SA+Entropy", "LA")]
+    assert [(test.subject, test.against) for test in h1] == [("LA+SA", "LA"), ("LA+SA+Entropy", "LA")]
     raw = [stats.ttest_rel(values, ALONE, alternative="less") for values in (HELPED, OPENED)]
     for test, expected in zip(h1, raw, strict=True):
         assert test.test == "paired t"
@@ -117,4 +117,4 @@ def test_models_are_families_of_their_own_and_ablations_no_part_of_it():
     tests = compare_methods(both, PRESET)
     assert {test.model for test in tests} == {"cae", "cvae"}
     assert len(tests) == 2 * len(compare_methods(results_of({}), PRESET))
-    assert [verdict.about for verdict in verdicts(tests)] == ["cae"] * 3 + ["cvae"] * 3
+    assert [verdict.family for verdict in verdicts(tests)] == ["cae"] * 3 + ["cvae"] * 3

@@ -1,16 +1,17 @@
 import re
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from latentarm.studies.shared_autonomy.ablations import LETTER
 from latentarm.studies.shared_autonomy.cell import METHODS, TASKS
-from latentarm.studies.shared_autonomy.hypotheses import compare_methods
-from latentarm.studies.shared_autonomy.page import HYPOTHESES, write_page
 from latentarm.studies.shared_autonomy.paper import EXTRA_TIME
 from latentarm.studies.shared_autonomy.preset import PRESETS
 from latentarm.studies.shared_autonomy.rows import Figure, figures, rows_of
-from latentarm.studies.shared_autonomy.summary import summary_tables
-from latentarm.studies.shared_autonomy.tables import by_place, extra_time_table, people_table
+from latentarm.studies.shared_autonomy.study import STUDY
+from latentarm.studies.shared_autonomy.tables import Tables, summary_tables
+from latentarm.studies.study import Request
 
 from .test_figures import results_of
 
@@ -19,19 +20,14 @@ def lines(table):
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
 
 
-def written(out, preset, tasks):
-    results = results_of(out, preset, tasks)
-    tests = compare_methods(results, preset)
-    found = figures(results)
-    write_page(out, results, found, tests, preset, tasks, 3)
-    return (out / "results.md").read_text(), tests, found
+def report_of(out, preset, tasks):
+    return STUDY.report(Request(out, preset, tasks, seed=3), results_of(out, preset, tasks))
 
 
 @pytest.mark.parametrize("tasks", [tuple(TASKS), ("panda_two_cups",)])
 def test_the_page_has_every_part(tmp_path, tasks):
-    for name in (*tasks, "models"):
-        (tmp_path / f"{name}.png").touch()
-    page, tests, _ = written(tmp_path, PRESETS["paper"], tasks)
+    report = report_of(tmp_path, PRESETS["paper"], tasks)
+    page = report.page
     only = f" --task {tasks[0]}" if len(tasks) == 1 else ""
     assert f"latentarm reproduce shared-autonomy --preset paper{only} --seed 3" in page
     assert "**simulated**" in page
@@ -44,17 +40,18 @@ def test_the_page_has_every_part(tmp_path, tasks):
         "How to read the tables",
         "Tests of the hypotheses",
     ]
-    for hypothesis in HYPOTHESES:
+    for hypothesis in ("H1", "H2", "H3"):
         assert page.count(f"**{hypothesis}**") == 3  # once for each model
-    assert f"All {len(tests)} tests" in page
+    assert f"All {len(report.tests)} tests" in page
     assert page.count("<details>") == page.count("</details>") == 3 * len(tasks) + 1
     assert page.index(f"({tasks[0]}.png)") < page.index("## In short") < page.index("(models.png)")
     for variant in ("lambda_2 0.3", "kappa 8", LETTER, "contexts any belief"):
         assert page.count(f"| {variant} |") == len(tasks)
+    assert set(report.figures) == set(STUDY.figures) - (set(TASKS) - set(tasks))
 
 
 def test_a_page_without_ablation(tmp_path):
-    page, _, _ = written(tmp_path, PRESETS["smoke"], tuple(TASKS))
+    page = report_of(tmp_path, PRESETS["smoke"], tuple(TASKS)).page
     assert "What the entropy is made of" not in page
     assert "over all drives" in page
 
@@ -64,12 +61,10 @@ def figure(condition, measure, values, model="cae", task="panda_two_cups"):
 
 
 def test_people_stand_below_each_other_and_methods_side_by_side():
-    import numpy as np
-
     values = np.array([[1.0], [2.0], [3.0]])
-    found = by_place([figure(f"{method}, beta 75", "final_state_error", values) for method in METHODS])
-    table = people_table(found, "panda_two_cups", "cae", ["beta 75", "beta 3"], "final_state_error")
-    assert lines(table) == [
+    found = [figure(f"{method}, beta 75", "final_state_error", values) for method in METHODS]
+    preset = replace(PRESETS["smoke"], betas=(75.0, 3.0), learners={}, changes_s=())
+    assert lines(Tables(found, preset).people("panda_two_cups", "cae", "final_state_error")) == [
         ["final state error", *METHODS],
         ["---", "---:", "---:", "---:"],
         ["beta 75", "2.0 ± 2.5", "2.0 ± 2.5", "2.0 ± 2.5"],  # 4.30 / root 3
@@ -88,22 +83,22 @@ def test_the_paper_stands_beside_what_it_prints(tmp_path):
         ("panda_two_cups", "cae", EXTRA_TIME, "beta 75"): 45.0,
         ("panda_two_cups", "cae", EXTRA_TIME, "beta 1000"): 30.0,
     }
-    table = extra_time_table(by_place(found), "panda_two_cups", ["cae", "cvae"], ["beta 75", "beta 3"])
-    _, _, first, second = lines(table)
+    preset = replace(PRESETS["paper"], betas=(75.0, 3.0), learners={}, changes_s=())
+    _, _, first, second = lines(Tables(found, preset).extra_time("panda_two_cups"))
     assert first[1].endswith("(paper: 45)")
     assert not any("paper" in cell for cell in (*first[2:], *second))
 
 
 def test_how_much_longer_without_help_is_taken_seed_by_seed(tmp_path):
     results = results_of(tmp_path, PRESETS["paper"], ("panda_two_cups",))
-    found = by_place(figures(results))
+    found = {(one.condition, one.measure): one for one in figures(results) if one.model == "cae"}
     cell = next(result for result in results if (result.cell.model, result.cell.entropy) == ("cae", None))
     times = {
         one.method: one.figures["time_s"].mean(axis=1)
         for one in cell.outcomes
         if one.person.label == "beta 75"
     }
-    extra = found["panda_two_cups", "cae", "beta 75", EXTRA_TIME].values[:, 0]
+    extra = found["beta 75", EXTRA_TIME].values[:, 0]
     assert extra == pytest.approx(100.0 * (times["LA"] - times["LA+SA"]) / times["LA+SA"])
 
 

@@ -7,18 +7,12 @@ import pytest
 from latentarm.errors import UserError
 from latentarm.metrics.measures import MEASURES
 from latentarm.metrics.results import read_results
-from latentarm.parallel.grid import CellError
 from latentarm.runs.results_folder import CONFIG
-from latentarm.studies.shared_autonomy import run as study
 from latentarm.studies.shared_autonomy.ablations import variants
 from latentarm.studies.shared_autonomy.cell import METHODS, TASKS, Entropy, measure_cell
 from latentarm.studies.shared_autonomy.preset import PRESETS, Ablation, Preset
-from latentarm.studies.shared_autonomy.run import (
-    MADE,
-    MODELS,
-    SharedAutonomyConfig,
-    run_shared_autonomy,
-)
+from latentarm.studies.shared_autonomy.study import MODELS, STUDY, cells_of
+from latentarm.studies.study import ALWAYS_MADE, Request, run_study
 
 TINY = Preset(
     "tiny",
@@ -34,18 +28,17 @@ TINY = Preset(
     ablation=Ablation(seeds=2, drives=2, weights=(0.0, 2.0), sharpness=(8.0,), contexts=("demonstrated",)),
 )
 TASK = "planar_two_cups"
-SAME_EVERYWHERE = ("results.json", "results.md", "seeds.json", "courses.json", "hypotheses.json")
 
 
-def tiny(out: Path, **changes) -> SharedAutonomyConfig:
-    return replace(SharedAutonomyConfig(out, TINY, (TASK,), jobs=1, quiet=True), **changes)
+def tiny(out: Path, **changes) -> Request:
+    return replace(Request(out, TINY, (TASK,), jobs=1, quiet=True), **changes)
 
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
     """A run on this process alone: its rows and its folder."""
     out = tmp_path_factory.mktemp("alone") / "run"
-    return run_shared_autonomy(tiny(out)), out
+    return run_study(STUDY, tiny(out)).rows, out
 
 
 def test_every_method_and_person_has_every_measure(done):
@@ -96,7 +89,7 @@ def test_every_variant_of_the_entropy_has_its_rows(done):
 
 def test_what_is_varied_by_nothing_is_the_study_itself(tmp_path):
     """Two of the three seeds, and the first drives of each: the same models, starts and chances."""
-    whole = study._cells(tiny(tmp_path))
+    whole = cells_of(tiny(tmp_path))
     proper = next(cell for cell in whole if (cell.model, cell.entropy) == ("cae", Entropy(2.0)))
     varied = next(cell for cell in whole if cell.variant == "lambda_2 2")
     latest = TINY.latest_change.label
@@ -117,7 +110,12 @@ def test_rows_stand_in_one_order_wherever_they_were_measured(done):
 def test_the_folder_holds_what_is_promised(done):
     _, out = done
     made = {path.name for path in out.iterdir()}
-    assert made == {CONFIG, *MADE} - {f"{task}.png" for task in TASKS if task != TASK}
+    assert made == {
+        CONFIG,
+        *ALWAYS_MADE,
+        *STUDY.documents,
+        *(f"{name}.png" for name in STUDY.figures if name not in TASKS or name == TASK),
+    }
     config = json.loads((out / CONFIG).read_text())
     assert config["preset"]["name"] == "tiny"
     assert config["preset"]["learners"] == {"slow": 10.0}
@@ -130,55 +128,9 @@ def test_the_folder_holds_what_is_promised(done):
     assert all(course["belief_mean"][0] == 0.5 for course in courses)
 
 
-@pytest.mark.parametrize(
-    ("backend", "jobs"), [("joblib", 2), ("dask", 2), pytest.param("ray", 2, marks=pytest.mark.slow)]
-)
-def test_the_same_bytes_wherever_the_cells_run(done, tmp_path, backend, jobs):
-    run_shared_autonomy(tiny(tmp_path, backend=backend, jobs=jobs))
-    for name in SAME_EVERYWHERE:
-        assert (tmp_path / name).read_bytes() == (done[1] / name).read_bytes(), name
-
-
-def test_an_earlier_run_makes_room_and_another_study_stays(done, tmp_path, monkeypatch):
-    out = tmp_path / "run"
-    out.mkdir()
-    (out / CONFIG).write_bytes((done[1] / CONFIG).read_bytes())
-    (out / "models.png").write_text("of the earlier run")
-    (out / "notes.txt").write_text("mine")
-    monkeypatch.setattr(study, "measure_cell", _faulty)
-    with pytest.raises(CellError, match=r"planar_two_cups, isometric, without entropy[\s\S]*no way"):
-        run_shared_autonomy(tiny(out))
-    assert {path.name for path in out.iterdir()} == {CONFIG, "notes.txt"}
-    (out / CONFIG).write_text('{"study": "properties"}')
-    with pytest.raises(UserError, match="no earlier run of this command"):
-        run_shared_autonomy(tiny(out))
-    assert (out / CONFIG).read_text() == '{"study": "properties"}'
-
-
-def _faulty(cell):
-    raise ZeroDivisionError("no way")
-
-
 def test_sizes_that_make_no_sense_name_the_cell(tmp_path):
     with pytest.raises(UserError, match=r"planar_two_cups, isometric, without entropy: .*demonstration"):
-        run_shared_autonomy(tiny(tmp_path, preset=replace(TINY, demonstrations=0)))
-
-
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"tasks": ("three_cups",)}, "three_cups.*planar_two_cups, panda_two_cups"),
-        ({"tasks": ()}, "at least one task"),
-        ({"tasks": (TASK, TASK)}, "twice"),
-        ({"seed": -1}, "seed"),
-        ({"jobs": 0}, "jobs"),
-        ({"backend": "slurm"}, "slurm"),
-    ],
-)
-def test_refused_before_anything_is_written(tmp_path, changes, said):
-    with pytest.raises(UserError, match=said):
-        tiny(tmp_path / "run", **changes)
-    assert not (tmp_path / "run").exists()
+        run_study(STUDY, tiny(tmp_path, preset=replace(TINY, demonstrations=0)))
 
 
 def test_presets_have_their_own_names_and_the_paper_s_has_everyone():

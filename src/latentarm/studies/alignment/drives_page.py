@@ -20,7 +20,7 @@ from latentarm.studies.alignment.drives_comparison import (
     misses,
 )
 from latentarm.studies.alignment.drives_learning import TURN_RAD
-from latentarm.studies.pages import listed, markdown_table
+from latentarm.studies.page import listed, markdown_table
 from latentarm.studies.statistics import LEVEL, format_p
 from latentarm.style import look_of
 from latentarm.tasks.table_top import TableTop

@@ -33,7 +33,8 @@ from latentarm.studies.alignment.tables import (
 )
 from latentarm.studies.alignment.targets import PAPER_MODEL, Target
 from latentarm.studies.alignment.verdicts import verdicts
-from latentarm.studies.pages import listed, shown
+from latentarm.studies.page import listed
+from latentarm.studies.pages import shown
 from latentarm.studies.statistics import LEVEL
 from latentarm.studies.verdicts import Verdict
 from latentarm.style import look_of

@@ -9,7 +9,7 @@ from typing import Final
 from latentarm.metrics.results import write_results
 from latentarm.parallel.grid import check_processes, run_grid
 from latentarm.runs.checks import check_seed
-from latentarm.runs.results_folder import Study, write_json
+from latentarm.runs.results_folder import ResultsFolder, write_json
 from latentarm.studies.alignment.cell import Cell, CellResult, measure_cell
 from latentarm.studies.alignment.curves import CurveCell, CurveResult, measure_curve
 from latentarm.studies.alignment.decoder import DecoderCell, LearnedDecoder, learn_decoder
@@ -102,7 +102,7 @@ def run_alignment(config: AlignmentConfig) -> list[Row]:
         UserError: the folder holds something else or cannot be written, the backend is not to be had, or a
             cell cannot be measured as asked; then it says which.
     """
-    Study(STUDY, MADE).claim(config.out, _about(config))
+    ResultsFolder(STUDY, MADE).claim(config.out, _about(config))
     console = VisibleConsole(stderr=True, quiet=config.quiet)
     began = perf_counter()
     wanted = [

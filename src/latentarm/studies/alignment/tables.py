@@ -9,7 +9,7 @@ from latentarm.studies.alignment.curves import CHOICES, CurveResult
 from latentarm.studies.alignment.hypotheses import Comparison
 from latentarm.studies.alignment.rows import ENCODED
 from latentarm.studies.alignment.targets import Target
-from latentarm.studies.pages import markdown_table
+from latentarm.studies.page import markdown_table
 from latentarm.studies.statistics import format_p
 from latentarm.style import look_of
 from latentarm.types import FloatArray

@@ -14,7 +14,7 @@ from latentarm.studies.alignment.conditions import (
 )
 from latentarm.studies.alignment.curves import AT_RANDOM, BY_DISAGREEMENT, BY_NOVELTY, CurveResult
 from latentarm.studies.alignment.hypotheses import NEAR
-from latentarm.studies.pages import listed
+from latentarm.studies.page import listed
 from latentarm.style import look_of
 from latentarm.types import FloatArray
 

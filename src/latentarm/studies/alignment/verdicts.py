@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from latentarm.studies import verdicts as of_study
 from latentarm.studies.alignment.hypotheses import Comparison
-from latentarm.studies.pages import listed
+from latentarm.studies.page import listed
 from latentarm.studies.verdicts import Verdict
 
 

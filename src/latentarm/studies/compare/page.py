@@ -13,7 +13,7 @@ from latentarm.studies.compare.preset import REFERENCE, Preset
 from latentarm.studies.compare.rows import condition
 from latentarm.studies.compare.tables import CORNER, drive_table, page_table, target_table
 from latentarm.studies.compare.targets import Verdict
-from latentarm.studies.pages import listed
+from latentarm.studies.page import listed
 from latentarm.style import look_of
 from latentarm.types import Row
 

@@ -13,7 +13,7 @@ from latentarm.models.catalogue import MODELS
 from latentarm.parallel.grid import check_processes, run_grid
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import fingerprint
-from latentarm.runs.results_folder import Study, write_json
+from latentarm.runs.results_folder import ResultsFolder, write_json
 from latentarm.studies.compare.cell import Cell, CellResult, measure_cell
 from latentarm.studies.compare.datasets import Dataset, read_datasets
 from latentarm.studies.compare.drives import (
@@ -112,7 +112,7 @@ def run_compare(config: CompareConfig) -> list[Row]:
     """
     datasets = read_datasets(config.demonstrations, config.preset.folds, config.seed)
     about = _about(config, datasets)
-    Study(STUDY, MADE).claim(config.out, about)
+    ResultsFolder(STUDY, MADE).claim(config.out, about)
     console, preset = VisibleConsole(stderr=True, quiet=config.quiet), config.preset
     cells = _cells(config, datasets)
     console.print(

@@ -9,7 +9,7 @@ from rich.console import RenderableType
 from latentarm.metrics.table import ABSENT, format_figure, measure_name, rich_figures
 from latentarm.studies.compare.rows import OVER_FOLDS, condition
 from latentarm.studies.compare.targets import Verdict
-from latentarm.studies.pages import markdown_table
+from latentarm.studies.page import markdown_table
 from latentarm.style import look_of
 from latentarm.types import Row
 

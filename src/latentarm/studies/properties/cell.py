@@ -1,20 +1,18 @@
 """One cell of the study: one model, on one task, under one noise, all its seeds."""
 
-import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import IntEnum
 from time import perf_counter
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.demonstrations.split import select_episodes
-from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
-from latentarm.models.scaling import CollapseWarning
+from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.properties.measures import (
     accuracy_figures,
     control_figures,
@@ -24,16 +22,13 @@ from latentarm.studies.properties.measures import (
     start_goal_pairs,
 )
 from latentarm.studies.properties.preset import Preset
-from latentarm.studies.streams import integer, sequence
+from latentarm.studies.streams import generator, integer, sequence
 from latentarm.tasks.planar.catalogue import MOTIONS
 from latentarm.tasks.planar.reach import ReachRegion
 from latentarm.types import Demonstrations, FloatArray
 
 BASELINE: Final = "pca"
 """What others are measured against. Nothing in it is random, so it is fitted once, not once per seed."""
-
-VALIDATION_SHARE: Final = 0.2
-"""Of the training episodes: these say which epoch was best."""
 
 
 class Stream(IntEnum):
@@ -65,6 +60,11 @@ class Cell:
     noise_rad: float
     preset: Preset
     seed: int
+
+
+def condition(noise_rad: float) -> str:
+    """How rows name a noise."""
+    return f"noise {noise_rad:g} rad"
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +107,7 @@ def _measure(cell: Cell) -> CellResult:
     fit_s = perf_counter() - began
 
     pairs = recorded_pairs(test, cell.noise_rad, _generator(cell, Stream.TEST_NOISE))
-    chosen = select_episodes(training, range(len(training.episodes) - _validation(training)))
+    chosen = select_episodes(training, range(validation_episodes(training).start))
     # Of these only the actions count, so no noise is drawn.
     fitted = recorded_pairs(chosen, 0.0, _generator(cell, Stream.TRAINING_NOISE))
     decoders = [model.decoder(seed) for seed in range(model.seeds)]
@@ -123,41 +123,24 @@ def _measure(cell: Cell) -> CellResult:
 
 
 def _fit(cell: Cell, kind: str, training: Demonstrations) -> LatentActionModel:
-    """The model fitted to all but the last episodes, which say when it was best."""
-    preset, model_class = cell.preset, MODELS[kind]
-    parameters: dict[str, Any] = {
-        "latent_dim": MOTIONS[cell.task]().latent_dim,
-        "actions": "recorded",
-        "state_noise_rad": cell.noise_rad,
-        "data_seed": _integer(cell, Stream.TRAINING_NOISE),
-        "seeds": 1 if kind == BASELINE else preset.seeds,
-        "seed": _integer(cell, Stream.NETWORKS),
-        "hidden": preset.hidden,
-        "epochs": preset.epochs,
-        "batch_size": preset.batch_size,
-        "patience": preset.epochs,
-    }
-    if "kl_weight" in {entry.name for entry in fields(model_class)}:
-        parameters["kl_weight"] = preset.kl_weight
-    episodes = len(training.episodes)
-    with warnings.catch_warnings():
-        # The study is to show what models fail at; a dead axis shows in every figure.
-        warnings.simplefilter("ignore", CollapseWarning)
-        return model_class(**parameters).fit(
-            training, validation=range(episodes - _validation(training), episodes)
-        )
-
-
-def _validation(training: Demonstrations) -> int:
-    """Number of episodes, at the end, that the weights are not fitted to."""
-    return max(1, round(VALIDATION_SHARE * len(training.episodes)))
+    preset = cell.preset
+    return fit_model(
+        kind,
+        training,
+        latent_dim=MOTIONS[cell.task]().latent_dim,
+        actions="recorded",
+        state_noise_rad=cell.noise_rad,
+        data_seed=integer(sequence(cell.seed, cell.task, Stream.TRAINING_NOISE)),
+        seeds=1 if kind == BASELINE else preset.seeds,
+        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        hidden=preset.hidden,
+        epochs=preset.epochs,
+        batch_size=preset.batch_size,
+        patience=preset.epochs,
+        kl_weight=preset.kl_weight,
+    )
 
 
 def _generator(cell: Cell, stream: Stream) -> np.random.Generator:
     """The same for every model and noise."""
-    return np.random.default_rng(sequence(cell.seed, cell.task, stream))
-
-
-def _integer(cell: Cell, stream: Stream) -> int:
-    """A seed for those who take whole numbers; the same for every model and noise."""
-    return integer(sequence(cell.seed, cell.task, stream))
+    return generator(cell.seed, cell.task, stream)

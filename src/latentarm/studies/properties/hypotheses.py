@@ -16,18 +16,21 @@ seeds are tested against.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from latentarm.models.catalogue import KINDS
+from latentarm.studies.hypotheses import Comparison, corrected
+from latentarm.studies.properties.cell import CellResult
 from latentarm.studies.properties.paper import MODELS_OF_THE_PAPER
-from latentarm.studies.statistics import LEVEL, Direction, compare_means, holm
+from latentarm.studies.statistics import Direction, Statistic, compare_means
 from latentarm.types import FloatArray
 
-if TYPE_CHECKING:
-    from latentarm.studies.properties.cell import CellResult
+PAPERS_MODELS: Final = "the paper's models"
+FURTHER_MODELS: Final = "conditioned models that the paper does not have"
+"""The families of tests."""
 
 LINEAR: Final = 0.9
 """R^2 above which effects count as consistent and scalable. The paper calls 0.94 ± 0.04 "roughly linear", the
@@ -63,65 +66,12 @@ CLAIMS: Final = (
 )
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """One test.
-
-    Attributes:
-        hypothesis: ``H1`` or ``H2``.
-        in_paper: whether the model is one of the paper's.
-        task: name of the task.
-        measure: what is compared.
-        model: the conditioned model.
-        against: the unconditioned model, or None for a threshold.
-        direction: whether the model should have less or more of it.
-        mean: of the model's seeds.
-        mean_against: of the other's seeds, or the threshold; None where none of them has a figure.
-        n: seeds of the model that have a figure.
-        n_against: the same of the other; 1 for a threshold.
-        test: ``Welch``, ``one-sample``, or why there is none.
-        t: its statistic, or None; below 0 where the model has less.
-        dof: degrees of freedom, or None.
-        p: one-sided, before correction, or None.
-        p_holm: after Holm's correction over the family, or None.
-        hedges_g: effect size, above 0 where the difference has the direction of the hypothesis; None where
-            there is no test, or no unbiased estimate (a one-sample test of two seeds).
-    """
-
-    hypothesis: str
-    in_paper: bool
-    task: str
-    measure: str
-    model: str
-    against: str | None
-    direction: Direction
-    mean: float | None
-    mean_against: float | None
-    n: int
-    n_against: int
-    test: str
-    t: float | None = None
-    dof: float | None = None
-    p: float | None = None
-    p_holm: float | None = None
-    hedges_g: float | None = None
-
-    @property
-    def holds(self) -> bool:
-        """Whether this speaks for the hypothesis. What could not be tested does not."""
-        return self.p_holm is not None and self.p_holm < LEVEL
-
-    def as_json(self) -> dict[str, object]:
-        """Plain mapping, ready for ``json.dumps``."""
-        return {**asdict(self), "holds": self.holds}
-
-
 def conditioned(model: str) -> bool:
     """Whether a model's decoder sees the context."""
     return KINDS[model].sees_context
 
 
-def compare_models(results: Sequence["CellResult"]) -> list[Comparison]:
+def compare_models(results: Sequence[CellResult]) -> list[Comparison]:
     """Every test of H1 and H2 that the results allow.
 
     Args:
@@ -134,18 +84,13 @@ def compare_models(results: Sequence["CellResult"]) -> list[Comparison]:
     for result in results:
         if result.cell.noise_rad == 0.0:
             figures.setdefault(result.cell.task, {})[result.cell.model] = result.figures
-    comparisons: list[Comparison] = []
-    for hypothesis in dict.fromkeys(claim.hypothesis for claim in CLAIMS):
-        claims = [claim for claim in CLAIMS if claim.hypothesis == hypothesis]
-        every = [
-            comparison
-            for task, models in figures.items()
-            for claim in claims
-            for comparison in _test_claim(claim, task, models)
-        ]
-        for in_paper in (True, False):
-            comparisons += _corrected([one for one in every if one.in_paper is in_paper])
-    return comparisons
+    comparisons = [
+        one
+        for task, models in figures.items()
+        for claim in CLAIMS
+        for one in _test_claim(claim, task, models)
+    ]
+    return corrected(sorted(comparisons, key=lambda one: one.family != PAPERS_MODELS))
 
 
 def _test_claim(claim: Claim, task: str, models: Mapping[str, Mapping[str, FloatArray]]) -> list[Comparison]:
@@ -171,30 +116,24 @@ def _test(
 ) -> Comparison:
     """One test, without correction."""
     known, known_reference = values[np.isfinite(values)], reference[np.isfinite(reference)]
-    comparison = Comparison(
+    if len(known) < len(values):
+        # Leaving such seeds out would let a model pass by the seeds that did not fail.
+        statistic = Statistic("none: a seed has no figure")
+    elif not len(known) or not len(known_reference):
+        statistic = Statistic("none: no figures to compare with")
+    else:
+        statistic = compare_means(known, known_reference, claim.direction)
+    return Comparison(
         hypothesis=claim.hypothesis,
-        in_paper=model in MODELS_OF_THE_PAPER,
+        family=PAPERS_MODELS if model in MODELS_OF_THE_PAPER else FURTHER_MODELS,
         task=task,
-        measure=claim.measure,
         model=model,
+        measure=claim.measure,
+        subject=model,
         against=against,
         direction=claim.direction,
         mean=float(known.mean()) if len(known) else None,
         mean_against=float(known_reference.mean()) if len(known_reference) else None,
         n=len(known),
         n_against=len(known_reference),
-        test="none: no figures to compare with",
-    )
-    if len(known) < len(values):
-        # Leaving such seeds out would let a model pass by the seeds that did not fail.
-        return replace(comparison, test="none: a seed has no figure")
-    if not len(known) or not len(known_reference):
-        return comparison
-    found = compare_means(known, known_reference, claim.direction)
-    return replace(comparison, **asdict(found))
-
-
-def _corrected(family: Sequence[Comparison]) -> list[Comparison]:
-    """The comparisons of one family with Holm's correction over those that could be tested."""
-    corrected = holm([comparison.p for comparison in family])
-    return [replace(comparison, p_holm=p) for comparison, p in zip(family, corrected, strict=True)]
+    ).tested(statistic)

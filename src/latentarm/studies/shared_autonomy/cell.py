@@ -1,11 +1,10 @@
 """One cell of the study: one model for one arm, with entropy or without, all its seeds and their drives."""
 
-import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import IntEnum
 from time import perf_counter
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -16,9 +15,8 @@ from latentarm.assistance.entropy import GoalEntropy, Where
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
 from latentarm.metrics.accuracy import pca_error, percent_of, reconstruction_error
-from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
-from latentarm.models.scaling import CollapseWarning
+from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.shared_autonomy.drive import HELP, NO_HELP, RULE, STEP_S, Scene, drive, steps_of
 from latentarm.studies.shared_autonomy.measures import measure, state_error, true_belief
 from latentarm.studies.shared_autonomy.people import Person
@@ -26,9 +24,6 @@ from latentarm.studies.shared_autonomy.preset import Preset
 from latentarm.studies.streams import integer, sequence
 from latentarm.tasks.two_cups import TWO_CUPS, TwoCups
 from latentarm.types import Demonstrations, FloatArray, Pairs
-
-VALIDATION_SHARE: Final = 0.2
-"""Of the training demonstrations: these say which epoch was best."""
 
 WITHOUT_HELP: Final = "LA"
 WITH_HELP: Final = "LA+SA"
@@ -161,7 +156,7 @@ def _measure(cell: Cell) -> CellResult:
     began = perf_counter()
     model = _fit(cell, task, training)
     fitted = perf_counter()
-    chosen = select_episodes(training, range(len(training.episodes) - _validation(training)))
+    chosen = select_episodes(training, range(validation_episodes(training).start))
     scene = _scene(task, recorded_pairs(chosen))
     outcomes = tuple(
         outcome
@@ -190,33 +185,24 @@ def _scene(task: TwoCups, fitted: Pairs) -> Scene:
 
 
 def _fit(cell: Cell, task: TwoCups, training: Demonstrations) -> LatentActionModel:
-    """The model fitted to all but the last demonstrations, which say when it was best."""
-    preset, model_class = cell.preset, MODELS[cell.model]
-    parameters: dict[str, Any] = {
-        "latent_dim": 1,
-        "context": "state_belief",
-        "actions": "recorded",
-        "state_noise_rad": preset.state_noise_rad,
-        "data_seed": integer(sequence(cell.seed, cell.task, Stream.STATE_NOISE)),
-        "seeds": cell.seeds,
-        "seed": integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
-        "hidden": preset.hidden,
-        "epochs": preset.epochs,
-        "batch_size": preset.batch_size,
-        "patience": preset.epochs,
-    }
-    if "kl_weight" in {entry.name for entry in fields(model_class)}:
-        parameters["kl_weight"] = preset.kl_weight
-    episodes = len(training.episodes)
-    with warnings.catch_warnings():
-        # A dead latent action shows in every figure.
-        warnings.simplefilter("ignore", CollapseWarning)
-        return model_class(**parameters).fit(
-            training,
-            validation=range(episodes - _validation(training), episodes),
-            chain=task.robot.chain,
-            term=_term(cell.entropy, task),
-        )
+    preset = cell.preset
+    return fit_model(
+        cell.model,
+        training,
+        latent_dim=1,
+        context="state_belief",
+        actions="recorded",
+        state_noise_rad=preset.state_noise_rad,
+        data_seed=integer(sequence(cell.seed, cell.task, Stream.STATE_NOISE)),
+        seeds=cell.seeds,
+        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        hidden=preset.hidden,
+        epochs=preset.epochs,
+        batch_size=preset.batch_size,
+        patience=preset.epochs,
+        kl_weight=preset.kl_weight,
+        fit={"chain": task.robot.chain, "term": _term(cell.entropy, task)},
+    )
 
 
 def _term(entropy: Entropy | None, task: TwoCups) -> GoalEntropy | None:
@@ -231,11 +217,6 @@ def _term(entropy: Entropy | None, task: TwoCups) -> GoalEntropy | None:
         where=entropy.where,
         chain=task.robot.chain if entropy.sees_tool else None,
     )
-
-
-def _validation(training: Demonstrations) -> int:
-    """Number of episodes, at the end, that the weights are not fitted to."""
-    return max(1, round(VALIDATION_SHARE * len(training.episodes)))
 
 
 def _reconstruction(model: LatentActionModel, fitted: Pairs, pairs: Pairs) -> FloatArray:

@@ -5,7 +5,7 @@ from typing import Final, Literal, NamedTuple
 
 from scipy import stats
 
-from latentarm.studies.bootstrap import bootstrap_interval
+from latentarm.studies.statistics import bootstrap_interval
 from latentarm.types import FloatArray
 
 CONFIDENCE: Final = 0.95

@@ -1,117 +1,115 @@
-"""The study's tables in Markdown."""
+"""The study's tables: in Markdown for the page, and at a glance for a terminal."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from typing import final
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
 
 from latentarm.metrics.measures import label_of, unit_of
-from latentarm.metrics.table import ABSENT, format_figure
-from latentarm.studies.pages import markdown_table
+from latentarm.metrics.table import ABSENT, format_figure, measure_name
+from latentarm.studies.page import markdown_table
 from latentarm.studies.shared_autonomy.ablations import variants
 from latentarm.studies.shared_autonomy.cell import METHODS
-from latentarm.studies.shared_autonomy.hypotheses import Comparison
-from latentarm.studies.shared_autonomy.paper import EXTRA_TIME, PAPER
+from latentarm.studies.shared_autonomy.hypotheses import MEASURE
+from latentarm.studies.shared_autonomy.paper import EXTRA_TIME, MODEL, PAPER
 from latentarm.studies.shared_autonomy.preset import Preset
 from latentarm.studies.shared_autonomy.rows import RECONSTRUCTION, Figure
-from latentarm.studies.statistics import format_p
 from latentarm.style import look_of
-
-Found = dict[tuple[str, str, str, str], Figure]
-"""Figures by task, model, condition and measure."""
+from latentarm.types import Row
 
 
-def by_place(found: Iterable[Figure]) -> Found:
-    """Figures by what they are of."""
-    return {(one.task, one.model, one.condition, one.measure): one for one in found}
+@final
+class Tables:
+    """The tables of the page, in Markdown: means with their intervals.
 
+    Args:
+        found: every figure.
+        preset: sizes of the study.
+    """
 
-def measure_of(name: str) -> str:
-    """A measure and its unit as people read them."""
-    unit = unit_of(name)
-    return label_of(name) if unit == "1" else f"{label_of(name)} ({unit})"
+    def __init__(self, found: Sequence[Figure], preset: Preset) -> None:
+        self._found = {(one.task, one.model, one.condition, one.measure): one for one in found}
+        self._preset = preset
+        self._people = [person.label for person in preset.people]
+        self._models = list(dict.fromkeys(one.model for one in found))
 
-
-def people_table(found: Found, task: str, model: str, people: Sequence[str], measure: str) -> str:
-    """One measure with one model: people down, methods across."""
-    lines = [
-        [person, *(_figure(found, task, model, f"{method}, {person}", measure) for method in METHODS)]
-        for person in people
-    ]
-    return markdown_table([measure_of(measure), *METHODS], lines)
-
-
-def extra_time_table(found: Found, task: str, models: Sequence[str], people: Sequence[str]) -> str:
-    """How much more time LA takes than LA+SA, with the paper's figures."""
-    head = [measure_of(EXTRA_TIME), *(look_of(model).label for model in models)]
-    lines = [[person, *(_extra_time(found, task, model, person) for model in models)] for person in people]
-    return markdown_table(head, lines)
-
-
-def reconstruction_table(found: Found, tasks: Sequence[str], models: Sequence[str]) -> str:
-    """Reconstruction without entropy and with it."""
-    kinds = ("without entropy", "with entropy")
-    names = [f"{look_of(model).label}, {kind}" for model in models for kind in kinds]
-    lines = [
-        [
-            look_of(task).label,
-            *(_figure(found, task, model, kind, RECONSTRUCTION) for model in models for kind in kinds),
+    def people(self, task: str, model: str, measure: str) -> str:
+        """One measure with one model: people down, methods across."""
+        lines = [
+            [person, *(self._figure(task, model, f"{method}, {person}", measure) for method in METHODS)]
+            for person in self._people
         ]
-        for task in tasks
-    ]
-    return markdown_table([measure_of(RECONSTRUCTION), *names], lines)
+        return markdown_table([_named(measure), *METHODS], lines)
 
-
-def ablation_table(found: Found, task: str, model: str, preset: Preset, people: Sequence[str]) -> str:
-    """What is varied about the entropy: variants down, reconstruction and final errors across."""
-    if preset.ablation is None:
-        return ""
-    measure = "final_state_error"
-    head = ["", measure_of(RECONSTRUCTION), *(f"{measure_of(measure)}, {person}" for person in people)]
-    lines = [
-        [
-            name,
-            _figure(found, task, model, name, RECONSTRUCTION),
-            *(_figure(found, task, model, f"{name}, {person}", measure) for person in people),
+    def extra_time(self, task: str) -> str:
+        """How much more time LA takes than LA+SA, with the paper's figures."""
+        head = [_named(EXTRA_TIME), *(look_of(model).label for model in self._models)]
+        lines = [
+            [person, *(self._extra_time(task, model, person) for model in self._models)]
+            for person in self._people
         ]
-        for name in variants(preset.ablation, preset.entropy_weights[model])
-    ]
-    return markdown_table(head, lines)
+        return markdown_table(head, lines)
+
+    def reconstruction(self, tasks: Sequence[str]) -> str:
+        """Reconstruction without entropy and with it."""
+        columns = [(model, kind) for model in self._models for kind in ("without entropy", "with entropy")]
+        lines = [
+            [look_of(task).label, *(self._figure(task, *column, RECONSTRUCTION) for column in columns)]
+            for task in tasks
+        ]
+        names = [f"{look_of(model).label}, {kind}" for model, kind in columns]
+        return markdown_table([_named(RECONSTRUCTION), *names], lines)
+
+    def ablation(self, task: str) -> str:
+        """What is varied about the entropy: variants down, reconstruction and final errors across."""
+        if self._preset.ablation is None:
+            return ""
+        people = [person.label for person in self._preset.varied_people]
+        lines = [
+            [
+                name,
+                self._figure(task, MODEL, name, RECONSTRUCTION),
+                *(self._figure(task, MODEL, f"{name}, {person}", MEASURE) for person in people),
+            ]
+            for name in variants(self._preset.ablation, self._preset.entropy_weights[MODEL])
+        ]
+        return markdown_table(
+            ["", _named(RECONSTRUCTION), *(f"{_named(MEASURE)}, {person}" for person in people)], lines
+        )
+
+    def _figure(self, task: str, model: str, condition: str, measure: str) -> str:
+        one = self._found.get((task, model, condition, measure))
+        return ABSENT if one is None else format_figure(one.interval.mean, one.interval.half_width)
+
+    def _extra_time(self, task: str, model: str, person: str) -> str:
+        printed = PAPER.get((task, model, EXTRA_TIME, person))
+        beside = "" if printed is None else f" (paper: {printed:g})"
+        return self._figure(task, model, person, EXTRA_TIME) + beside
 
 
-def comparison_table(comparisons: Sequence[Comparison]) -> str:
-    """Every test of the hypotheses."""
-    head = ["", "arm", "model", "person", "method", "against", "test", "t (dof)", "p, Holm", "Hedges' g"]
-    return markdown_table([*head, "apart", "holds"], [_test_line(one) for one in comparisons])
-
-
-def _figure(found: Found, task: str, model: str, condition: str, measure: str) -> str:
-    one = found.get((task, model, condition, measure))
-    return ABSENT if one is None else format_figure(one.interval.mean, one.interval.half_width)
-
-
-def _extra_time(found: Found, task: str, model: str, person: str) -> str:
-    printed = PAPER.get((task, model, EXTRA_TIME, person))
-    beside = "" if printed is None else f" (paper: {printed:g})"
-    return _figure(found, task, model, person, EXTRA_TIME) + beside
-
-
-def _test_line(one: Comparison) -> list[str]:
-    side = {"less": "<", "greater": ">"}[one.direction]
-    statistic = ABSENT if one.t is None or one.dof is None else f"{one.t:.3g} ({one.dof:.3g})"
-    against = (
-        f"{one.mean_against:g}"
-        if one.against is None
-        else (f"{one.against} {format_figure(one.mean_against, one.half_width_against)}")
-    )
+def summary_tables(rows: Sequence[Row]) -> list[Table]:
+    """One table per arm: the final state error with the paper's model, people down, methods across."""
+    chosen = [row for row in rows if (row.measure, row.model) == (MEASURE, MODEL)]
     return [
-        one.hypothesis,
-        look_of(one.task).label,
-        look_of(one.model).label,
-        one.person,
-        f"{one.method} {format_figure(one.mean, one.half_width)}",
-        f"{side} {against}",
-        one.test,
-        statistic,
-        format_p(one.p_holm),
-        ABSENT if one.hedges_g is None else f"{one.hedges_g:.3g}",
-        "yes" if one.apart else "no",
-        "yes" if one.holds else "no",
+        _summary([row for row in chosen if row.task == task])
+        for task in dict.fromkeys(row.task for row in chosen)
     ]
+
+
+def _summary(rows: Sequence[Row]) -> Table:
+    found = {row.condition: format_figure(row.mean, row.sd) for row in rows}
+    label = f"{look_of(rows[0].task or '').label}, {look_of(MODEL).label}, simulated: {measure_name(rows[0])}"
+    table = Table("mean ± SD", title=label, title_justify="left", box=SIMPLE_HEAD)
+    for method in METHODS:
+        table.add_column(method, justify="right")
+    parted = [(row.condition or "").partition(", ") for row in rows]
+    for person in dict.fromkeys(person for method, _, person in parted if method in METHODS):
+        table.add_row(person, *(found.get(f"{method}, {person}", ABSENT) for method in METHODS))
+    return table
+
+
+def _named(measure: str) -> str:
+    """A measure and its unit as people read them."""
+    unit = unit_of(measure)
+    return label_of(measure) if unit == "1" else f"{label_of(measure)} ({unit})"

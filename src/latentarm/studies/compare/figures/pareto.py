@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 from latentarm.studies.compare.figures.scale import logarithmic_with_zero
 from latentarm.studies.compare.rows import condition
-from latentarm.studies.panels import title
+from latentarm.studies.drawing import title
 from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, look_of, new_figure, tidy
 from latentarm.types import Row
 

@@ -1,11 +1,13 @@
-"""What the panels of all figures have in common."""
+"""What the figures of all studies have in common: panels, their titles and legends, and planar arms."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, tidy
+from latentarm.robots.robot import Robot
+from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, legend_below, tidy
+from latentarm.types import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
 
 DECADES: Final = 100.0
 """Ratio of the ends of a logarithmic axis from which powers of ten are numbers enough."""
+ARM_COLOUR: Final = "#9aa3ad"
+JOINT_COLOUR: Final = "#3c434b"
 
 View = tuple[tuple[float, float], tuple[float, float]]
 """What a panel shows of the plane: x from and to, y from and to, m."""
@@ -78,3 +82,52 @@ def note(axes: "Axes", text: str, *, high: bool = False) -> None:
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8},
         zorder=9,
     )
+
+
+def name_series(figure: "Figure", *panels: "Axes", handle_length: float = 3.0) -> None:
+    """A legend below all panels, from the labels of some of them; what has a name twice is named once."""
+    named = {
+        label: handle
+        for axes in panels
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    if named:
+        legend_below(figure, list(named.values()), list(named), handle_length=handle_length)
+
+
+def arm_line(robot: Robot, state: FloatArray, tool: int = 0) -> FloatArray:
+    """The joints of one arm from its base outwards and its tool, in the plane.
+
+    Args:
+        robot: one planar arm or two.
+        state: (..., n), rad.
+        tool: whose arm.
+
+    Returns:
+        (..., J + 1, 2), m.
+    """
+    chain = robot.chain
+    transforms = chain.link_transforms(state)
+    link = chain.tools[tool].link
+    links = np.flatnonzero(chain.moves[link])
+    joints = transforms[..., links, :2, 3]
+    end = chain.tool_pose(transforms, tool).position[..., None, :2]
+    return np.concatenate([joints, end], axis=-2)
+
+
+def draw_arm(axes: "Axes", robot: Robot, state: FloatArray) -> None:
+    """Draw all arms of a robot in one state (n,), with their joints and a mark on each base."""
+    for tool in range(len(robot.chain.tools)):
+        line = arm_line(robot, state, tool)
+        axes.plot(*line.T, color=ARM_COLOUR, linewidth=2.4, solid_capstyle="round", zorder=3)
+        axes.plot(*line[1:-1].T, "o", color="white", markeredgecolor=JOINT_COLOUR, markersize=2.6, zorder=3.1)
+        axes.plot(*line[0], "s", color=JOINT_COLOUR, markersize=4.0, zorder=3.1)
+        axes.plot(*line[-1], "o", color="black", markersize=3.0, zorder=6)
+
+
+def draw_pose(axes: "Axes", robot: Robot, state: FloatArray, colour: str) -> None:
+    """Draw all arms of a robot in one state (n,) as thin lines in one colour."""
+    for tool in range(len(robot.chain.tools)):
+        line = arm_line(robot, state, tool)
+        axes.plot(*line.T, color=colour, linewidth=0.9, solid_capstyle="round", zorder=4)
+        axes.plot(*line[-1], "o", color=colour, markersize=2.2, zorder=5)

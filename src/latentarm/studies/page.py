@@ -1,0 +1,52 @@
+"""How a study's ``results.md`` is written: a Jinja template beside the study, filled in."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from latentarm.metrics.table import ABSENT
+from latentarm.style import look_of
+
+STUDIES: Final = Path(__file__).parent
+
+
+def render_page(template: str, **content: Any) -> str:
+    """A page from its template.
+
+    Templates have the filters ``label`` (of a model, a condition or a task), ``listed`` (``A, B and C``),
+    ``g`` (a number without trailing zeros) and ``title`` of a figure's file name.
+
+    Args:
+        template: path below `STUDIES`, such as ``properties/page.md``.
+        content: what the template names.
+    """
+    # Markdown, not HTML: nothing is to be escaped.
+    environment = Environment(  # noqa: S701
+        loader=FileSystemLoader(STUDIES, encoding="utf-8"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters.update(
+        label=lambda name: look_of(name).label,
+        listed=listed,
+        g=lambda value: f"{value:g}",
+        image=lambda name: f"![{name.replace('_', ' ')}, simulated]({name}.png)",
+    )
+    return environment.get_template(template).render(content)
+
+
+def markdown_table(head: Sequence[str], lines: Iterable[Sequence[str | None]]) -> str:
+    """A GitHub table; all columns but the first to the right, and a dash for what is None."""
+    rule = ["---", *("---:" for _ in head[1:])]
+    texts = [[ABSENT if text is None else text for text in line] for line in (head, rule, *lines)]
+    return "\n".join("| " + " | ".join(line) + " |" for line in texts) + "\n"
+
+
+def listed(names: Iterable[str]) -> str:
+    """``A, B and C``, each once; empty for none."""
+    each = list(dict.fromkeys(names))
+    return " and ".join(filter(None, (", ".join(each[:-1]), *each[-1:])))

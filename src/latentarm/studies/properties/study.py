@@ -1,0 +1,149 @@
+"""`latentarm reproduce properties`: every model on every task (section 8.1)."""
+
+import math
+from collections.abc import Sequence
+from itertools import product
+from typing import TYPE_CHECKING, Final
+
+from latentarm.metrics.summary import Subject, summarise
+from latentarm.models.catalogue import MODELS
+from latentarm.studies.hypotheses import Comparison, comparison_table, verdicts
+from latentarm.studies.page import render_page
+from latentarm.studies.properties.cell import Cell, CellResult, condition, measure_cell
+from latentarm.studies.properties.figures import beside_paper_figure, controllability_figure, noise_figure
+from latentarm.studies.properties.hypotheses import CLAIMS, LINEAR, compare_models
+from latentarm.studies.properties.motions import TASK_FIGURES
+from latentarm.studies.properties.paper import with_paper
+from latentarm.studies.properties.preset import PRESETS, Preset
+from latentarm.studies.properties.tables import (
+    OURS,
+    UNIT_NOT_STATED,
+    as_good_as_paper,
+    noise_table,
+    paper_table,
+)
+from latentarm.studies.statistics import LEVEL
+from latentarm.studies.study import Grid, Report, Request, Study, again
+from latentarm.tasks.planar.catalogue import MOTIONS
+from latentarm.tasks.planar.motion import SAMPLES, STEP_S
+from latentarm.types import Row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def _measure(request: Request[Preset], grid: Grid) -> list[CellResult]:
+    # Without noise most is measured: these take longest, and begin first.
+    cells = [
+        Cell(task, model, noise_rad, request.preset, request.seed)
+        for noise_rad, task, model in product(request.preset.noises_rad, request.tasks, MODELS)
+    ]
+    return grid.run("Models on tasks under noise", measure_cell, cells, _label)
+
+
+def _label(cell: Cell) -> str:
+    return f"{cell.task}, {cell.model}, {condition(cell.noise_rad)}"
+
+
+def _report(request: Request[Preset], results: list[CellResult]) -> Report:
+    rows = with_paper([row for task in request.tasks for row in _rows(results, task)])
+    tests = compare_models(results)
+    figures = _figures(results, rows, request.tasks)
+    return Report(
+        rows=rows,
+        page=_page(request, rows, tests, figures),
+        figures=figures,
+        tests=tests,
+        documents={
+            "seeds.json": [
+                {
+                    **_place(result.cell),
+                    "measure": measure,
+                    "values": [x if math.isfinite(x) else None for x in values.tolist()],
+                }
+                for result in results
+                for measure, values in result.figures.items()
+            ]
+        },
+        timings={"cells": [{**_place(result.cell), "fit_s": result.fit_s} for result in results]},
+    )
+
+
+def _place(cell: Cell) -> dict[str, object]:
+    return {"task": cell.task, "model": cell.model, "condition": condition(cell.noise_rad)}
+
+
+def _rows(results: Sequence[CellResult], task: str) -> list[Row]:
+    """One task's rows: without noise everything, and in the sweep what is measured under every noise."""
+    here = [result for result in results if result.cell.task == task]
+    rows = [
+        summarise(Subject(STUDY.name, task, result.cell.model), measure, values)
+        for result in here
+        if result.cell.noise_rad == 0
+        for measure, values in result.figures.items()
+    ]
+    if len({result.cell.noise_rad for result in here}) < 2:
+        return rows
+    swept = set[str].intersection(*(set(result.figures) for result in here))
+    return rows + [
+        summarise(
+            Subject(STUDY.name, task, result.cell.model, condition(result.cell.noise_rad)), measure, values
+        )
+        for result in here
+        for measure, values in result.figures.items()
+        if measure in swept
+    ]
+
+
+def _figures(results: Sequence[CellResult], rows: Sequence[Row], tasks: Sequence[str]) -> "dict[str, Figure]":
+    """Those over all tasks, and one for each task."""
+    noises_rad = sorted({result.cell.noise_rad for result in results})
+    figures = {
+        "beside_paper": beside_paper_figure(rows, tasks),
+        "controllability": controllability_figure(rows, tasks),
+    }
+    if len(noises_rad) > 1:
+        figures["noise"] = noise_figure(rows, tasks, noises_rad)
+    for task in tasks:
+        here = [one for one in results if (one.cell.task, one.cell.noise_rad) == (task, 0.0)]
+        figures[task] = TASK_FIGURES[task]({one.cell.model: one.decoder for one in here}, rows)
+    return figures
+
+
+def _page(
+    request: Request[Preset], rows: Sequence[Row], tests: Sequence[Comparison], figures: "dict[str, Figure]"
+) -> str:
+    as_good = {task: as_good_as_paper(rows, task) for task in request.tasks}
+    return render_page(
+        "properties/page.md",
+        command=again(STUDY, request),
+        preset=request.preset,
+        tasks=request.tasks,
+        samples=SAMPLES,
+        step_s=STEP_S,
+        verdicts=verdicts(tests),
+        ours=OURS,
+        as_good={task: counts for task, counts in as_good.items() if counts[1]},
+        figures=list(figures),
+        paper_tables={task: paper_table(rows, task) for task in request.tasks},
+        noise_tables={task: noise_table(rows, task) for task in request.tasks if "noise" in figures},
+        unit_not_stated=UNIT_NOT_STATED,
+        compared_measures=", ".join(dict.fromkeys(one.measure for one in CLAIMS if one.threshold is None)),
+        linear=LINEAR,
+        level=LEVEL,
+        tests=tests,
+        test_table=comparison_table(tests),
+    )
+
+
+STUDY: Final = Study(
+    name="properties",
+    command="reproduce properties",
+    presets=PRESETS,
+    tasks=tuple(MOTIONS),
+    simulated=("arms",),
+    measure=_measure,
+    report=_report,
+    figures=("beside_paper", "controllability", "noise", *TASK_FIGURES),
+    documents=("seeds.json",),
+)

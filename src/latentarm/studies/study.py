@@ -1,0 +1,235 @@
+"""What a study is, what it is asked for, and how one is run."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
+
+from latentarm.errors import UserError
+from latentarm.files import write_text
+from latentarm.metrics.results import write_results
+from latentarm.parallel.grid import check_processes, run_grid
+from latentarm.runs.checks import check_seed
+from latentarm.runs.results_folder import ResultsFolder, write_json
+from latentarm.studies.hypotheses import Comparison
+from latentarm.style import save_figure
+from latentarm.types import Row
+from latentarm.untrusted.console import VisibleConsole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from rich.console import RenderableType
+
+ALWAYS_MADE: Final = ("results.json", "results.md", "hypotheses.json", "timings.json")
+"""Files that every study writes."""
+
+Cell = TypeVar("Cell")
+Result = TypeVar("Result")
+
+
+class Sizes(Protocol):
+    """What every preset has."""
+
+    @property
+    def name(self) -> str:
+        """What it is called on the command line."""
+        ...
+
+
+Preset = TypeVar("Preset", bound=Sizes)
+Measured = TypeVar("Measured")
+
+
+@dataclass(frozen=True)
+class Request(Generic[Preset]):
+    """What a study was asked for.
+
+    Attributes:
+        out: a new folder, or that of an earlier run of this study, which is replaced.
+        preset: sizes of the study.
+        tasks: which of the study's tasks; all of them where empty.
+        seed: of everything random.
+        jobs: processes side by side; -1 is one per core.
+        backend: where they run, a name in `latentarm.parallel.backends.BACKENDS`.
+        quiet: say nothing while working.
+        bars: show how far the grids are.
+
+    Raises:
+        UserError: seed, jobs or backend are out of range.
+    """
+
+    out: Path
+    preset: Preset
+    tasks: tuple[str, ...] = ()
+    seed: int = 0
+    jobs: int = -1
+    backend: str = "joblib"
+    quiet: bool = False
+    bars: bool = False
+
+    def __post_init__(self) -> None:
+        check_seed(self.seed)
+        check_processes(self.jobs, self.backend)
+
+
+class Grid:
+    """Runs grids of cells as a request says, and keeps how long that took.
+
+    Args:
+        request: what was asked for.
+    """
+
+    def __init__(self, request: Request[Any]) -> None:
+        self._request = request
+        self._console = VisibleConsole(stderr=True, quiet=request.quiet)
+        self.took_s = 0.0
+
+    def say(self, sentence: str) -> None:
+        """Tell the person how far the study is, on standard error."""
+        self._console.print(sentence)
+
+    def run(
+        self,
+        what: str,
+        function: Callable[[Cell], Result],
+        cells: Sequence[Cell],
+        label: Callable[[Cell], str],
+    ) -> list[Result]:
+        """Measure cells side by side; see `latentarm.parallel.grid.run_grid`.
+
+        Args:
+            what: the grid in a few words.
+            function: measures one cell.
+            cells: all of them, the longest first.
+            label: what a cell is called when it fails or warns.
+        """
+        self.say(f"{what}: {len(cells)} cells.")
+        began = perf_counter()
+        results = run_grid(
+            function,
+            cells,
+            jobs=self._request.jobs,
+            backend=self._request.backend,
+            label=label,
+            bars=self._request.bars,
+        )
+        self.took_s += perf_counter() - began
+        return results
+
+
+@dataclass(frozen=True)
+class Report:
+    """What came of a study.
+
+    Attributes:
+        rows: for ``results.json``.
+        page: ``results.md``.
+        figures: PNGs by name, without suffix.
+        tests: of the hypotheses.
+        documents: further JSON files by name.
+        timings: how long parts took, s; beside the time of the grids.
+        tables: the study at a glance, for a terminal.
+    """
+
+    rows: list[Row]
+    page: str
+    figures: "Mapping[str, Figure]"
+    tests: Sequence[Comparison] = ()
+    documents: Mapping[str, object] = field(default_factory=dict)
+    timings: Mapping[str, object] = field(default_factory=dict)
+    tables: "Sequence[RenderableType]" = ()
+
+
+@dataclass(frozen=True)
+class Study(Generic[Preset, Measured]):
+    """A study: what it measures and how it reports that.
+
+    Attributes:
+        name: in rows and in the folder's ``config.json``.
+        command: the words after ``latentarm`` that run it.
+        presets: sizes by name.
+        tasks: names of all tasks; none where the request names what there is.
+        simulated: what of it is simulated, for ``config.json``.
+        measure: runs the study's grids.
+        report: makes rows, page, figures and documents of what was measured.
+        figures: names of all figures that it may draw.
+        documents: names of all JSON files that it may write beside `ALWAYS_MADE`.
+        depends_on: what else the figures depend on, for ``config.json``.
+    """
+
+    name: str
+    command: str
+    presets: Mapping[str, Preset]
+    tasks: tuple[str, ...]
+    simulated: tuple[str, ...]
+    measure: Callable[[Request[Preset], Grid], Measured]
+    report: Callable[[Request[Preset], Measured], Report]
+    figures: tuple[str, ...]
+    documents: tuple[str, ...] = ()
+    depends_on: Callable[[Request[Preset]], Mapping[str, object]] = lambda request: {}
+
+    def about(self, request: Request[Preset]) -> dict[str, object]:
+        """What the figures depend on."""
+        return {
+            "study": self.name,
+            "preset": asdict(request.preset),  # pyright: ignore[reportArgumentType]
+            "tasks": list(request.tasks),
+            "seed": request.seed,
+            **dict.fromkeys(self.simulated, "simulated"),
+            **self.depends_on(request),
+        }
+
+
+def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Report:
+    """Measure every cell of a study and write figures, tables and tests to ``request.out``.
+
+    ``results.json`` depends on preset, tasks and seed alone; how long it took stands in ``timings.json``.
+
+    Raises:
+        UserError: a task is unknown or named twice; the folder holds something else or cannot be written; the
+            backend is not available; or a cell cannot be measured as asked, then it says which.
+    """
+    request = _with_tasks(study, request)
+    made = (*ALWAYS_MADE, *study.documents, *(f"{name}.png" for name in study.figures))
+    about = study.about(request)
+    ResultsFolder(study.name, made).claim(request.out, about)
+    grid = Grid(request)
+    measured = study.measure(request, grid)
+    grid.say("Drawing, testing the hypotheses, writing the page.")
+    report = study.report(request, measured)
+    for name, figure in report.figures.items():
+        save_figure(figure, request.out / f"{name}.png")
+    write_text(request.out / "results.md", report.page)
+    write_json(request.out / "hypotheses.json", [one.as_json() for one in report.tests])
+    for name, document in report.documents.items():
+        write_json(request.out / name, document)
+    timings = {"backend": request.backend, "jobs": request.jobs, "grid_s": grid.took_s, **report.timings}
+    write_json(request.out / "timings.json", timings)
+    write_results(request.out / "results.json", report.rows, about)
+    return report
+
+
+def again(study: Study[Preset, Any], request: Request[Preset]) -> str:
+    """The command that does the same again."""
+    task = f" --task {request.tasks[0]}" if len(request.tasks) == 1 else ""
+    return f"latentarm {study.command} --preset {request.preset.name}{task} --seed {request.seed}"
+
+
+def _with_tasks(study: Study[Preset, Any], request: Request[Preset]) -> Request[Preset]:
+    """The request with all tasks where it names none.
+
+    Raises:
+        UserError: a task is unknown or named twice.
+    """
+    if not study.tasks:
+        return request
+    if not request.tasks:
+        return replace(request, tasks=study.tasks)
+    names = ", ".join(study.tasks)
+    for task in request.tasks:
+        if task not in study.tasks:
+            raise UserError(f"There is no task {task!r}: choose from {names}.")
+    if len(set(request.tasks)) < len(request.tasks):
+        raise UserError(f"Name no task twice: choose from {names}.")
+    return request
