@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.assistance.belief import log_choice
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.errors import UserError
 from latentarm.testing.beliefs import (
@@ -67,3 +68,8 @@ def test_no_rationality_learns_nothing(rationality, u, state, matrix):
 def test_a_rule_s_own_parameters_are_checked(name, wrong):
     with pytest.raises(UserError, match=next(iter(wrong))):
         BELIEFS[name](GOALS, **wrong)
+
+
+def test_what_is_far_better_does_not_overflow():
+    better = np.array([[0.0, 0.0], [2000.0, -2000.0]])
+    np.testing.assert_allclose(log_choice(better), [-2000.0, 0.0])

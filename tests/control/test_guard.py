@@ -1,8 +1,10 @@
 """What the guard lets pass is safe along the whole path, measured densely and in another way."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from hypothesis import event, given
+from hypothesis import assume, event, given
 from hypothesis import strategies as st
 
 from latentarm.control.safety.body import Body, Placement
@@ -166,6 +168,47 @@ def test_links_that_speed_up_while_a_command_lasts_are_foreseen(request, name):
         path = Path(velocity, bounds.brake(velocity, rest), bounds.hold_s)
         assert Guard._exceeds(velocity, path, here, rest, 0.999 * later)
     assert sped_up > 10
+
+
+@given(st.floats(0.0, 0.25), st.floats(0.0, 4.0), st.floats(0.5, 20.0))
+def test_a_point_that_speeds_up_before_the_brake_takes_more_off_is_foreseen(speed, bend, rate):
+    """At most ``(1 - r t)(speed + bend t)`` while braking at rate r: the peak of that is what counts."""
+    limit, since = 0.25, np.linspace(0.0, 1.0 / rate, 2001)
+    peak = ((1.0 - rate * since) * (speed + bend * since)).max()
+    assume(abs(peak - limit) > 1e-4)
+    path = SimpleNamespace(
+        brake=SimpleNamespace(rate=rate, onset_s=0.0, settle_s=0.0), before_s=0.0, fastest=np.ones(1)
+    )
+    body = SimpleNamespace(bent=lambda joints: np.full((1, 1), bend))
+    here = SimpleNamespace(body=body, speeds=lambda velocity: np.full(1, speed))
+    assert Guard._exceeds(np.ones(1), path, here, np.zeros(1), limit) == (peak > limit)
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1.0, 4.0]))
+def test_no_joint_goes_further_than_it_is_given_room_for(arm, seed, share):
+    """Where a joint has any less room than the command and its brake take, the limit is named."""
+    rng = np.random.default_rng(seed)
+    bounds = Bounds(SafetyConfig(), arm, 0.01)
+    velocity = rng.uniform(-0.5, 0.5, 7) * rng.choice([0.001, 0.1, 1.0])
+    brake = bounds.brake(velocity, share * rng.uniform(-1.0, 1.0, 7) * bounds.acceleration)
+    path = Path(velocity, brake, bounds.hold_s)
+    times = np.concatenate(
+        [
+            np.linspace(0.0, brake.settle_s, 200, endpoint=False),
+            np.linspace(brake.settle_s, brake.duration_s, 200),
+        ]
+    )
+    speeds = np.array([brake.at(float(time))[0] for time in times])
+    steps = np.diff(times)[:, None] * (speeds[1:] + speeds[:-1]) / 2
+    positions = np.concatenate(
+        [np.zeros((1, 7)), velocity * bounds.hold_s + np.vstack([np.zeros(7), np.cumsum(steps, axis=0)])]
+    )
+    for side, furthest in ((1, positions.max(axis=0)), (0, positions.min(axis=0))):
+        for joint in np.flatnonzero(np.abs(furthest) > 1e-5):
+            room = np.stack([np.full(7, -np.inf), np.full(7, np.inf)])
+            room[side, joint] = furthest[joint] * (1.0 - 1e-4)
+            situation = SimpleNamespace(room=room, nearest_limit=0.0)
+            assert Guard._passes_joint_limits(velocity, path, situation)
 
 
 def test_rest_is_always_allowed(arm):

@@ -285,3 +285,16 @@ def test_not_one_moving_command_follows_a_clock_that_fails(rig, leap_s):
         later_s = time_s + (leap_s if np.isfinite(leap_s) else 0.0) + 0.01 * (tick + 1)
         record = rig.step(Input(np.ones(1)), 0.0, rig.q, later_s)
         assert not record.command.velocity.any()
+
+
+def test_a_command_counts_for_no_longer_than_it_lasts(arm):
+    """After a late tick the arm has stopped by itself, and is where its last command left it."""
+    made, bounds = make(arm)
+    velocity, q = np.full(7, 0.4), np.zeros(7)
+    made.follow(q, np.zeros(7), 0.0, driven=True)
+    q = q + velocity * bounds.hold_s
+    time_s = 1.0
+    assert made.follow(q, velocity, time_s, driven=True) is None
+    for _ in range(100):
+        time_s += 0.01
+        assert made.follow(q + 1e-6 * time_s, np.zeros(7), time_s, driven=True) is None

@@ -116,3 +116,31 @@ def test_a_shoulder_that_turns_over_the_table_does_not_matter(arm):
     over_table = {name.split(" and ")[0] for name in proximity.names if name.endswith("table")}
     assert "link1" not in over_table
     assert "link5" in over_table
+
+
+def test_two_arms_may_approach_each_other_at_twice_the_speed_of_one(two_arms):
+    """Whatever two points at the largest speed bring too near within the horizon is among the contacts."""
+    rng = np.random.default_rng(8)
+    body, speed, nearest_m, horizon_s = Body(two_arms), 0.25, 0.02, 0.3
+    count, met = 0, 0
+    while met < 20 and count < 5000:
+        count += 1
+        q = rng.uniform(two_arms.limits.lower, two_arms.limits.upper)
+        proximity = Proximity(body, (), link_speed=speed, nearest_m=nearest_m, horizon_s=horizon_s)
+        here = Placement(body, q)
+        everyone = Proximity(body, (), link_speed=speed, nearest_m=50.0, horizon_s=horizon_s)
+        all_pairs = everyone.measured(here, np.ones(two_arms.dof))
+        across = np.array(
+            [
+                {"left", "right"} == {part.split("_")[0] for part in name.split(" and ")}
+                for name in everyone.names
+            ]
+        )[all_pairs.pair]
+        height = np.where(across, all_pairs.height.min(axis=1), np.inf)
+        nearest = int(height.argmin())
+        if not nearest_m + speed * horizon_s < height[nearest] < nearest_m + 1.9 * speed * horizon_s:
+            continue
+        met += 1
+        fast = np.full(two_arms.dof, 5.0)  # joints that are no limit of their own
+        assert all_pairs.pair[nearest] in proximity.measured(here, fast).pair
+    assert met == 20

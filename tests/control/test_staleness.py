@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.safety.stack import SafetyStack
 from latentarm.control.step import Step
 from latentarm.types import Input
 
@@ -113,3 +114,27 @@ def test_an_arm_that_was_stopped_is_not_enabled_by_a_moment_without_inputs(arm, 
     step.stop("Somebody pressed Stop.")
     step(Input(np.zeros(2)), 0.08, arm.home, 0.01)
     assert step.enable() is not None
+
+
+@pytest.mark.parametrize("late", [2, 3, 5])
+def test_a_stop_is_where_it_should_be_by_now_when_a_tick_is_late(arm, late):
+    """The proof of a stop is one in time: a tick that comes late takes up the ramp where a prompt one is."""
+    dt = 0.01
+
+    def going():
+        stack = SafetyStack(SafetyConfig(), arm, dt)
+        for tick in range(40):
+            stack.tick(tick * dt)
+            stack.command(np.full(7, 0.3), arm.home, 0.0)
+        stack.tick(0.4)
+        return stack, stack.stop()
+
+    prompt, first = going()
+    for tick in range(1, late + 1):
+        prompt.tick(0.4 + tick * dt)
+        expected = prompt.stop()
+    waiting, same = going()
+    np.testing.assert_array_equal(first, same)
+    waiting.tick(0.4 + late * dt)
+    np.testing.assert_allclose(waiting.stop(), expected, atol=1e-12)
+    assert np.abs(first).max() > np.abs(expected).max()
