@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
+from pkgutil import resolve_name
 from typing import Final, Generic, TypeVar, final
 from warnings import warn
 
@@ -27,6 +28,7 @@ DISTRIBUTION: Final = re.compile(r"[A-Za-z0-9]([A-Za-z0-9._-]{0,98}[A-Za-z0-9])?
 """What a distribution may be called."""
 
 T = TypeVar("T")
+R = TypeVar("R")
 
 
 class PluginWarning(UserWarning):
@@ -131,6 +133,28 @@ class Catalogue(Mapping[str, T], Generic[T]):
         """The distribution that registered a name; None for our own."""
         return _origin(self._plugins[name][0]) if name in self._plugins else None
 
+    def running(self, name: str, act: Callable[[], R]) -> R:
+        """Run code of a registered thing, and say whose it was where it fails.
+
+        Args:
+            name: of the thing.
+            act: runs the code.
+
+        Raises:
+            UserError: it is a plug-in's and failed.
+        """
+        if name in self._own:
+            return act()
+        try:
+            return act()
+        # Somebody else's code runs here, and may fail in any way.
+        except Exception as error:
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            raise UserError(
+                f"The {self._noun} '{name}' of the distribution {self.origin(name)} does not load ({reason}):"
+                " update or uninstall that distribution."
+            ) from error
+
     def refresh(self) -> None:
         """Forget what was found, so that distributions installed since are seen."""
         self.__dict__.pop("_plugins", None)
@@ -156,22 +180,14 @@ class Catalogue(Mapping[str, T], Generic[T]):
 
     def _load(self, name: str) -> T:
         if name in self._own:
-            return self._check(name, EntryPoint(name, self._own[name], self._group).load())
+            return self._check(name, resolve_name(self._own[name]))
         first, *others = self._plugins[name]
         if others:
             claims = " and ".join(str(_origin(entry)) for entry in (first, *others))
             raise UserError(
                 f"The distributions {claims} both register a {self._noun} '{name}': uninstall all but one."
             )
-        try:
-            return self._check(name, first.load())
-        # Somebody else's code runs here, and may fail in any way.
-        except Exception as error:
-            reason = " ".join(f"{type(error).__name__}: {error}".split())
-            raise UserError(
-                f"The {self._noun} '{name}' of the distribution {_origin(first)} does not load ({reason}):"
-                " update or uninstall that distribution."
-            ) from error
+        return self.running(name, lambda: self._check(name, first.load()))
 
 
 def _origin(entry: EntryPoint) -> Origin:

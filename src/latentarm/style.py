@@ -1,4 +1,4 @@
-"""One look for every figure: a colour, a marker and a dash per model, legible without colour."""
+"""One look for every figure, legible without colour."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,40 +30,6 @@ class Look:
     marker: str
     dash: str | tuple[float, tuple[float, ...]]
 
-
-LOOKS: dict[str, Look] = {
-    "pca": Look("PCA", "#7f7f7f", "s", ":"),
-    "ae": Look("AE", "#E69F00", "v", "--"),
-    "vae": Look("VAE", "#CC79A7", "^", "--"),
-    "cae": Look("cAE", "#0072B2", "o", "-"),
-    "cvae": Look("cVAE", "#009E73", "D", "-"),
-    "cae_zero": Look("cAE, zero penalty", "#56B4E9", "P", "-."),
-    "scl": Look("SCL", "#D55E00", "X", "-."),
-    "isometric": Look("isometric", "#000000", "*", (0.0, (6.0, 1.5, 1.5, 1.5, 1.5, 1.5))),
-    "homogeneous": Look("homogeneous", "#882255", "h", (0.0, (4.0, 1.0, 1.0, 1.0))),
-    "latent": Look("latent actions", "#0072B2", "o", "-"),
-    "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),
-    "end_effector": Look("mode switching", "#7f7f7f", "s", ":"),
-    "LA": Look("LA", "#7f7f7f", "s", ":"),
-    "LA+SA": Look("LA+SA", "#D55E00", "^", "--"),
-    "LA+SA+Entropy": Look("LA+SA+Entropy", "#0072B2", "o", "-"),
-    "No Align": Look("No Align", "#7f7f7f", "s", ":"),
-    "Manual Align": Look("Manual Align", "#bfbfbf", "P", ":"),
-    "No Priors": Look("No Priors", "#D55E00", "X", "--"),
-    "Proportional": Look("Proportional", "#E69F00", "^", "--"),
-    "Reversible": Look("Reversible", "#CC79A7", "v", "--"),
-    "Consistent": Look("Consistent", "#56B4E9", "<", "--"),
-    "All Priors": Look("All Priors", "#0072B2", "o", "-"),
-    "Ideal Align": Look("Ideal Align", "#009E73", "D", "-."),
-    "at random": Look("at random", "#7f7f7f", "s", ":"),
-    "by novelty": Look("by novelty", "#0072B2", "o", "-"),
-    "by disagreement": Look("by disagreement", "#D55E00", "^", "--"),
-    "plane": Look("Plane", "#009E73", "D", "--"),
-    "pour": Look("Pour", "#CC79A7", "v", "-."),
-    "reach_and_pour": Look("Reach & Pour", "#000000", "o", "-"),
-    "planar_two_cups": Look("planar, 5 joints", "#009E73", "D", "--"),
-    "panda_two_cups": Look("Panda, 7 joints", "#CC79A7", "v", "-"),
-}
 
 FIGURE_DPI = 200
 COLUMN_MM = 85.0
@@ -97,11 +63,6 @@ def literal(text: str) -> str:
     if len(shown) > MOST_CHARACTERS:
         shown = f"{shown[: MOST_CHARACTERS - 1]}…"
     return shown.replace("$", "\\$")
-
-
-def look_of(name: str) -> Look:
-    """The look of a model or condition; a plain one under its own name where none is laid down."""
-    return LOOKS.get(name, Look(name, "#000000", "o", "-"))
 
 
 def shade(colour: str, depth: float) -> str:

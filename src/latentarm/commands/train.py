@@ -93,6 +93,7 @@ def train(
 
     write_options(config.out, "train")
     show(training.rows, json)
-    say(model_advice(model, training.episodes), json)
+    if advice := model_advice(model, training.episodes):
+        say(advice, json)
     say(f"The run is {config.out}/; next: latentarm evaluate {config.out}", json)
     return 0

@@ -5,8 +5,9 @@ import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import measure_name
-from latentarm.style import SMALL_FONT_SIZE, look_of, new_figure, tidy
+from latentarm.style import SMALL_FONT_SIZE, new_figure, tidy
 from latentarm.types import Row
 
 if TYPE_CHECKING:

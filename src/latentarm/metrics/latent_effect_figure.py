@@ -6,7 +6,8 @@ import numpy as np
 
 from latentarm.metrics.contract import DecodesActions, PlacesTool
 from latentarm.metrics.effects import held_paths
-from latentarm.style import FONT_SIZE, legend_below, look_of, new_figure, tidy
+from latentarm.metrics.looks import look_of
+from latentarm.style import FONT_SIZE, legend_below, new_figure, tidy
 from latentarm.types import FloatArray
 
 if TYPE_CHECKING:

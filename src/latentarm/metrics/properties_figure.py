@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from latentarm.metrics.consistency import line_fit, r_squared, signed_distance
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, look_of, new_figure, tidy
+from latentarm.metrics.looks import look_of
+from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, new_figure, tidy
 from latentarm.types import FloatArray
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
 from rich.table import Table
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.measures import label_of
-from latentarm.style import LOOKS
 from latentarm.types import Row
 
 BORDER = 3  # characters between two columns
@@ -42,7 +42,7 @@ def _rounded(value: float, places: int) -> str:
 
 def series_name(row: Row) -> str:
     """How a row's model and condition are called in a table's head."""
-    parts = [LOOKS[name].label if name in LOOKS else name for name in (row.model, row.condition) if name]
+    parts = [look_of(name).label for name in (row.model, row.condition) if name]
     return ", ".join(parts) or row.study
 
 

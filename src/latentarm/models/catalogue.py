@@ -43,7 +43,8 @@ class _Estimators(Mapping[str, "type[LatentActionModel]"]):
     """The class that trains each kind; looking one up imports torch."""
 
     def __getitem__(self, name: str) -> "type[LatentActionModel]":
-        return resolve_name(KINDS[name].estimator)
+        reference = KINDS[name].estimator
+        return KINDS.running(name, lambda: resolve_name(reference))
 
     def __iter__(self) -> Iterator[str]:
         return iter(KINDS)

@@ -56,7 +56,6 @@ class ModelKind:
 
     Attributes:
         name: on disk, on the command line and in results.
-        description: one sentence for people who choose a model.
         look: how figures draw it, and its name there.
         estimator: the class that trains it, a `LatentActionModel`, as ``package.module:Class``. It is
             imported when a model is trained, so that running one needs no torch.
@@ -72,11 +71,11 @@ class ModelKind:
         damping_m2: for models that look at the arm's tools, what a joint's motion by 1 rad counts beside
             the square of a tool's motion by 1 m, in the metric of the tools: enough to keep motions that no
             tool shows from being free. None for models that do not look.
-        advice: which model to try next and why, in one clause; "" where nothing was measured.
+        advice: which model to try next and why, in one sentence; "" where nothing was measured.
+        description: for people who choose a model on the page; the page's own words say it of our models.
     """
 
     name: str
-    description: str
     look: Look
     estimator: str
     runtime: type[Runtime]
@@ -87,6 +86,7 @@ class ModelKind:
     reverses: bool = False
     damping_m2: float | None = None
     advice: str = ""
+    description: str = ""
 
     @property
     def sees_tools(self) -> bool:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
+from latentarm.metrics.looks import look_of
 from latentarm.simulation.drive import Trace
-from latentarm.style import FONT_SIZE, legend_below, look_of, new_figure, save_figure, tidy
+from latentarm.style import FONT_SIZE, legend_below, new_figure, save_figure, tidy
 from latentarm.tasks.task import Task
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Final
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import ABSENT, format_figure
 from latentarm.studies.page import listed, markdown_table
 from latentarm.studies.statistics import LEVEL, Direction, Statistic, format_p, holm
-from latentarm.style import look_of
 
 SIDES: Final[Mapping[Direction, str]] = {"less": "below", "greater": "above"}
 SIGNS: Final[Mapping[Direction, str]] = {"less": "<", "greater": ">"}

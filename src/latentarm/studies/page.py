@@ -6,8 +6,8 @@ from typing import Any, Final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import ABSENT
-from latentarm.style import look_of
 
 STUDIES: Final = Path(__file__).parent
 

@@ -3,12 +3,13 @@ import pytest
 
 from figure_faults import faults
 from latentarm.errors import UserError
+from latentarm.metrics.looks import look_of
 from latentarm.studies.alignment.conditions import CONDITIONS
 from latentarm.studies.alignment.curves import CHOICES
 from latentarm.studies.alignment.figures.conditions import conditions_figure
 from latentarm.studies.alignment.figures.curves import curves_figure
 from latentarm.studies.alignment.figures.draw import FIGURES, draw_figures
-from latentarm.style import LOOKS, MM_PER_INCH, TWO_COLUMNS_MM
+from latentarm.style import MM_PER_INCH, TWO_COLUMNS_MM
 from latentarm.tasks.pouring.catalogue import POURING_TASKS
 
 TASKS = tuple(POURING_TASKS)
@@ -80,6 +81,6 @@ def test_only_what_was_measured_is_drawn(result, curve, tmp_path):
 
 def test_conditions_are_told_apart_without_colour():
     for group in (CONDITIONS, CHOICES, TASKS):
-        looks = [LOOKS[name] for name in group]
+        looks = [look_of(name) for name in group]
         assert len({look.colour for look in looks}) == len(looks)
         assert len({(look.marker, look.dash) for look in looks}) == len(looks)

@@ -6,6 +6,8 @@ from matplotlib.colors import to_rgb
 
 from figure_faults import faults
 from latentarm.metrics.effects import held_paths
+from latentarm.metrics.looks import LOOKS, look_of
+from latentarm.models.catalogue import KINDS
 from latentarm.robots.planar import planar
 from latentarm.studies.drawing import arm_line
 from latentarm.studies.properties.cell import Cell, CellResult, condition
@@ -18,7 +20,7 @@ from latentarm.studies.properties.figures import (
 )
 from latentarm.studies.properties.motions import TASK_FIGURES, as_trained, spread_states, turned
 from latentarm.studies.properties.preset import PRESETS
-from latentarm.style import LOOKS, MM_PER_INCH, TWO_COLUMNS_MM, shade
+from latentarm.style import MM_PER_INCH, TWO_COLUMNS_MM, shade
 from latentarm.tasks.planar.catalogue import MOTIONS
 from latentarm.tasks.planar.motion import STEP_S
 from latentarm.tasks.planar.resolved_rate import plane_point
@@ -108,7 +110,8 @@ def test_a_task_is_drawn_with_the_models_that_there_are(task, models):
     titles = {axes.get_title(loc="left") for axes in figure.findobj(lambda artist: hasattr(artist, "axison"))}
     for model in ("vae", "cvae", OURS):
         assert any(
-            title.startswith(LOOKS[model].label) or f"}}$  {LOOKS[model].label}" in title for title in titles
+            title.startswith(look_of(model).label) or f"}}$  {look_of(model).label}" in title
+            for title in titles
         ) == (model in models)
 
 
@@ -155,7 +158,7 @@ def test_distances_that_are_rounding_are_said_to_be_small_and_not_drawn():
     (axes,) = figure.axes
     assert axes.get_xlim()[0] >= 0.001  # mm
     assert [text.get_text() for text in axes.texts] == ["< 0.001", "< 0.001", "2.0 ± 2.0"]
-    drawn = [line for line in axes.lines if line.get_marker() == LOOKS["scl"].marker]
+    drawn = [line for line in axes.lines if line.get_marker() == look_of("scl").marker]
     assert [line.get_xdata()[0] for line in drawn] == [2.0]
     assert len([line for line in axes.lines if line.get_marker() not in ("", "None", None)]) == 1
 
@@ -198,17 +201,17 @@ def test_states_are_spread_over_the_range_of_what_is_asked_for():
     np.testing.assert_allclose(spread, -spread[::-1], atol=0.011)
 
 
-@pytest.mark.parametrize("model", LOOKS)
+@pytest.mark.parametrize("model", [*KINDS, *LOOKS])
 def test_shades_grow_darker_and_stay_visible_on_white(model):
     greys = [
-        np.dot(to_rgb(shade(LOOKS[model].colour, z)), (0.299, 0.587, 0.114)) for z in np.linspace(-1, 1, 9)
+        np.dot(to_rgb(shade(look_of(model).colour, z)), (0.299, 0.587, 0.114)) for z in np.linspace(-1, 1, 9)
     ]
     assert np.all(np.diff(greys) < 0)
     assert greys[0] < 0.95
 
 
 def test_no_two_models_look_alike():
-    models = [LOOKS[model] for model in (*MODELS, OURS)]
+    models = [look_of(model) for model in (*MODELS, OURS)]
     for feature in ("label", "colour", "marker"):
         assert len({getattr(look, feature) for look in models}) == len(models)
-    assert LOOKS[OURS].dash not in {LOOKS[model].dash for model in MODELS}
+    assert look_of(OURS).dash not in {look_of(model).dash for model in MODELS}

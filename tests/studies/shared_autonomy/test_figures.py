@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from figure_faults import faults
+from latentarm.metrics.looks import look_of
 from latentarm.studies.shared_autonomy.cell import METHODS, TASKS, Cell, CellResult, Entropy, Outcome
 from latentarm.studies.shared_autonomy.drive import steps_of
 from latentarm.studies.shared_autonomy.figures import (
@@ -16,7 +17,7 @@ from latentarm.studies.shared_autonomy.preset import PRESETS, Preset
 from latentarm.studies.shared_autonomy.rows import figures
 from latentarm.studies.shared_autonomy.study import MODELS, cells_of
 from latentarm.studies.study import Request
-from latentarm.style import COLUMN_MM, LOOKS, MM_PER_INCH, TWO_COLUMNS_MM
+from latentarm.style import COLUMN_MM, MM_PER_INCH, TWO_COLUMNS_MM
 
 
 def results_of(tmp_path, preset, tasks=tuple(TASKS), drives=2):
@@ -67,7 +68,7 @@ def test_every_figure_fits_its_column_and_names_the_methods(tmp_path, preset, ta
         words = words_of(figure)
         assert set(METHODS) <= words
         for task in TASKS:
-            assert any(LOOKS[task].label in word for word in words) == (task in tasks)
+            assert any(look_of(task).label in word for word in words) == (task in tasks)
 
 
 def test_the_weight_of_the_entropy_is_drawn_for_each_arm(tmp_path):
@@ -75,7 +76,7 @@ def test_the_weight_of_the_entropy_is_drawn_for_each_arm(tmp_path):
     found = figures(results_of(tmp_path, preset))
     figure = weights_figure(found, preset.ablation, preset.latest_change.label, tuple(TASKS))
     assert_well_drawn(figure, COLUMN_MM)
-    assert {LOOKS[task].label for task in TASKS} <= words_of(figure)
+    assert {look_of(task).label for task in TASKS} <= words_of(figure)
     lines = [line for axes in figure.axes for line in axes.lines if len(line.get_xdata()) > 2]
     assert {len(line.get_xdata()) for line in lines} == {len(preset.ablation.weights)}
 
@@ -89,7 +90,7 @@ def test_a_task_is_drawn_with_its_arm_and_both_goals(task):
 
 def test_conditions_are_told_apart_without_colour():
     for group in (METHODS, TASKS):
-        looks = [LOOKS[name] for name in group]
+        looks = [look_of(name) for name in group]
         for feature in ("label", "colour", "marker", "dash"):
             assert len({getattr(look, feature) for look in looks}) == len(looks)
 

@@ -77,7 +77,6 @@ _TRAINING: Final = "latentarm.models.autoencoders.training"
 
 AE: Final = ModelKind(
     name="ae",
-    description="The plainest network; does not see where the arm is.",
     look=Look("AE", "#E69F00", "v", "--"),
     estimator=f"{_TRAINING}:AE",
     runtime=LatentDecoder,
@@ -89,7 +88,6 @@ AE: Final = ModelKind(
 VAE: Final = replace(
     AE,
     name="vae",
-    description="A smoother network; does not see where the arm is.",
     look=Look("VAE", "#CC79A7", "^", "--"),
     estimator=f"{_TRAINING}:VAE",
     encoder="gaussian",
@@ -97,7 +95,6 @@ VAE: Final = replace(
 )
 CAE: Final = ModelKind(
     name="cae",
-    description="The plainest network that sees where the arm is; trained in seconds.",
     look=Look("cAE", "#0072B2", "o", "-"),
     estimator=f"{_TRAINING}:CAE",
     runtime=ConditionedDecoder,
@@ -108,7 +105,6 @@ CAE: Final = ModelKind(
 CVAE: Final = replace(
     CAE,
     name="cvae",
-    description="Sees where the arm is; smooth under the stick, and trained in seconds.",
     look=Look("cVAE", "#009E73", "D", "-"),
     estimator=f"{_TRAINING}:CVAE",
     encoder="gaussian",
@@ -117,7 +113,6 @@ CVAE: Final = replace(
 CAE_ZERO: Final = replace(
     CAE,
     name="cae_zero",
-    description="A cAE that is told to rest when the stick rests.",
     look=Look("cAE, zero penalty", "#56B4E9", "P", "-."),
     estimator=f"{_TRAINING}:CAEZero",
     rests_at_zero=True,

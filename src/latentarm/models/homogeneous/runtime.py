@@ -77,8 +77,6 @@ def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
 
 HOMOGENEOUS: Final = ModelKind(
     name="homogeneous",
-    description="Stands still when the stick does and goes back the way it came; the one to try with an arm"
-    " of six or seven joints. Takes longer.",
     look=Look("homogeneous", "#882255", "h", (0.0, (4.0, 1.0, 1.0, 1.0))),
     estimator="latentarm.models.homogeneous.training:Homogeneous",
     runtime=_Runtime,

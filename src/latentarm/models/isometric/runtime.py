@@ -85,7 +85,6 @@ def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
 
 ISOMETRIC: Final = ModelKind(
     name="isometric",
-    description="The same push moves the tool equally fast everywhere; rests and goes back.",
     look=Look("isometric", "#000000", "*", (0.0, (6.0, 1.5, 1.5, 1.5, 1.5, 1.5))),
     estimator="latentarm.models.isometric.training:Isometric",
     runtime=_Runtime,

@@ -13,7 +13,6 @@ def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
 
 PCA: Final = ModelKind(
     name="pca",
-    description="The same straight directions wherever the arm is; there to compare with.",
     look=Look("PCA", "#7f7f7f", "s", ":"),
     estimator="latentarm.models.pca.training:PCA",
     runtime=LatentDecoder,

@@ -50,7 +50,6 @@ def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
 
 SCL: Final = ModelKind(
     name="scl",
-    description="Linear in the stick, with directions that depend on where the arm is; rests and goes back.",
     look=Look("SCL", "#D55E00", "X", "-."),
     estimator="latentarm.models.scl.training:SCL",
     runtime=_Runtime,

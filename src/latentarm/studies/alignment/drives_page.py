@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.measures import label_of, unit_of
 from latentarm.metrics.table import ABSENT, format_figure
 from latentarm.studies.alignment.conditions import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS
@@ -22,7 +23,6 @@ from latentarm.studies.alignment.drives_comparison import (
 from latentarm.studies.alignment.drives_learning import TURN_RAD
 from latentarm.studies.page import listed, markdown_table
 from latentarm.studies.statistics import LEVEL, format_p
-from latentarm.style import look_of
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.tolerance import REACHED_ANGLE, REACHED_DISTANCE
 from latentarm.types import FloatArray

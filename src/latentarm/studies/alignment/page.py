@@ -8,6 +8,7 @@ from latentarm.alignment.demonstrated import DURATION_S
 from latentarm.alignment.poses import ROTATION_WEIGHT_M
 from latentarm.alignment.priors import Priors
 from latentarm.files import write_text
+from latentarm.metrics.looks import look_of
 from latentarm.runs.questions import TOO_FEW
 from latentarm.studies.alignment.cell import CellResult
 from latentarm.studies.alignment.conditions import (
@@ -37,7 +38,6 @@ from latentarm.studies.page import listed
 from latentarm.studies.pages import shown
 from latentarm.studies.statistics import LEVEL
 from latentarm.studies.verdicts import Verdict
-from latentarm.style import look_of
 from latentarm.tasks.pouring.pour import BOWL_M
 from latentarm.tasks.pouring.reach_and_pour import AT_BOWL_M
 from latentarm.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S

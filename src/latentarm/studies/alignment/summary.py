@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import format_figure, measure_name
 from latentarm.studies.alignment.conditions import CONDITIONS, under
 from latentarm.studies.alignment.drives import DRIVEN
@@ -13,7 +14,6 @@ from latentarm.studies.alignment.drives_learning import TASK
 from latentarm.studies.alignment.preset import Preset
 from latentarm.studies.alignment.rows import ERROR
 from latentarm.studies.alignment.targets import PAPER_MODEL
-from latentarm.style import look_of
 from latentarm.types import Row
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import ABSENT, format_figure
 from latentarm.studies.alignment.cell import CellResult
 from latentarm.studies.alignment.conditions import CONDITIONS
@@ -11,7 +12,6 @@ from latentarm.studies.alignment.rows import ENCODED
 from latentarm.studies.alignment.targets import Target
 from latentarm.studies.page import markdown_table
 from latentarm.studies.statistics import format_p
-from latentarm.style import look_of
 from latentarm.types import FloatArray
 
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Final
 
+from latentarm.metrics.looks import look_of
 from latentarm.studies.alignment.cell import CellResult
 from latentarm.studies.alignment.conditions import (
     ALL_PRIORS,
@@ -15,7 +16,6 @@ from latentarm.studies.alignment.conditions import (
 from latentarm.studies.alignment.curves import AT_RANDOM, BY_DISAGREEMENT, BY_NOVELTY, CurveResult
 from latentarm.studies.alignment.hypotheses import NEAR
 from latentarm.studies.page import listed
-from latentarm.style import look_of
 from latentarm.types import FloatArray
 
 SINGLE_SHARE: Final = 0.6

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from latentarm.demonstrations.folds import FEW, MANY
 from latentarm.files import write_text
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.measures import label_of
 from latentarm.metrics.undone import NEAR_M
 from latentarm.studies.compare.measures import MEASURED, meaning_of
@@ -14,7 +15,6 @@ from latentarm.studies.compare.rows import condition
 from latentarm.studies.compare.tables import CORNER, drive_table, page_table, target_table
 from latentarm.studies.compare.targets import Verdict
 from latentarm.studies.page import listed
-from latentarm.style import look_of
 from latentarm.types import Row
 
 

@@ -1,10 +1,10 @@
 """How large the comparison is."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 from latentarm.errors import UserError
-from latentarm.models.catalogue import MODELS
+from latentarm.models.catalogue import KINDS
 from latentarm.runs.checks import check_count
 
 OURS: Final = "homogeneous"
@@ -20,7 +20,7 @@ class Preset:
 
     Attributes:
         name: what it is called on the command line.
-        models: names in `MODELS`.
+        models: names in the catalogue of models; by default all that load.
         noises_rad: SDs of the noise on the states, rad.
         folds: parts of each dataset; each is held out once.
         seeds: models of each kind in each fold.
@@ -38,7 +38,7 @@ class Preset:
     """
 
     name: str
-    models: tuple[str, ...] = tuple(MODELS)
+    models: tuple[str, ...] = field(default_factory=lambda: tuple(KINDS.usable()))
     noises_rad: tuple[float, ...] = (0.01, 0.1)
     folds: int = 5
     seeds: int = 5

@@ -82,6 +82,7 @@ class CompareConfig:
         for name in (*self.preset.models, self.ours):
             if name not in MODELS:
                 raise UserError(f"There is no model {name!r}: choose from {', '.join(MODELS)}.")
+            MODELS[name]  # refused now if it does not load
         for noise_rad in self.preset.noises_rad:
             if not (math.isfinite(noise_rad) and noise_rad >= 0):
                 raise UserError(f"The noise is {noise_rad:g} rad; it must be a finite number, zero or more.")

@@ -6,11 +6,11 @@ from typing import Final
 
 from rich.console import RenderableType
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import ABSENT, format_figure, measure_name, rich_figures
 from latentarm.studies.compare.rows import OVER_FOLDS, condition
 from latentarm.studies.compare.targets import Verdict
 from latentarm.studies.page import markdown_table
-from latentarm.style import look_of
 from latentarm.types import Row
 
 CORNER: Final = "mean ± SD over seeds [SD over folds]"

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from latentarm.metrics.looks import look_of
 from latentarm.studies.compare.preset import REFERENCE
 from latentarm.studies.compare.rows import condition
-from latentarm.style import look_of
 from latentarm.types import Row
 
 Means = Mapping[str, float]

@@ -3,18 +3,12 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import format_figure
 from latentarm.studies.drawing import name_series, title
 from latentarm.studies.properties.cell import condition
 from latentarm.studies.properties.tables import OURS
-from latentarm.style import (
-    FONT_SIZE,
-    SMALL_FONT_SIZE,
-    TWO_COLUMNS_MM,
-    look_of,
-    new_figure,
-    tidy,
-)
+from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
 from latentarm.types import Row
 
 if TYPE_CHECKING:

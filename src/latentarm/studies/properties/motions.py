@@ -8,11 +8,12 @@ import numpy as np
 
 from latentarm.metrics.contract import DecodesActions, next_context
 from latentarm.metrics.effects import axis_grid
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import format_figure
 from latentarm.studies.drawing import draw_arm, draw_pose, note, plane, row_of_panels, stacked_parts, title
 from latentarm.studies.properties.figures import beside, draw_losses, draw_points, in_mm, log_axis, points
 from latentarm.studies.properties.tables import OURS
-from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, Look, look_of, new_figure, shade, tidy
+from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, Look, new_figure, shade, tidy
 from latentarm.tasks.planar.circle import RADII_M, Circle
 from latentarm.tasks.planar.motion import STEP_S, PlanarMotion
 from latentarm.tasks.planar.reach import DISTANCE_M, DURATION_S, ReachRegion

@@ -3,12 +3,12 @@
 from collections.abc import Iterable
 from typing import Final
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.measures import measure_of
 from latentarm.metrics.table import ABSENT, format_figure, measure_name
 from latentarm.studies.page import markdown_table
 from latentarm.studies.properties.measures import RESOLUTION_M
 from latentarm.studies.properties.paper import LENGTHS, MODELS_OF_THE_PAPER, ratio_name
-from latentarm.style import look_of
 from latentarm.types import Row
 
 OURS: Final = "isometric"

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from latentarm.metrics.looks import look_of
 from latentarm.simulation.arm_figure import draw_arm as draw_solid_arm
 from latentarm.simulation.arm_figure import frame
 from latentarm.simulation.drive_figures import GOAL_COLOURS, GOAL_MARKERS
@@ -18,7 +19,7 @@ from latentarm.studies.shared_autonomy.paper import MODEL
 from latentarm.studies.shared_autonomy.people import changing, learner, of_fixed_expertise
 from latentarm.studies.shared_autonomy.preset import Ablation, Preset
 from latentarm.studies.shared_autonomy.rows import RECONSTRUCTION, Figure
-from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
 from latentarm.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
 from latentarm.types import FloatArray
 

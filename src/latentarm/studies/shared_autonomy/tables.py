@@ -6,6 +6,7 @@ from typing import final
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.measures import label_of, unit_of
 from latentarm.metrics.table import ABSENT, format_figure, measure_name
 from latentarm.studies.page import markdown_table
@@ -15,7 +16,6 @@ from latentarm.studies.shared_autonomy.hypotheses import MEASURE
 from latentarm.studies.shared_autonomy.paper import EXTRA_TIME, MODEL, PAPER
 from latentarm.studies.shared_autonomy.preset import Preset
 from latentarm.studies.shared_autonomy.rows import RECONSTRUCTION, Figure
-from latentarm.style import look_of
 from latentarm.types import Row
 
 

@@ -7,7 +7,6 @@ import time
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Annotated, Final, Literal, final
 
@@ -16,6 +15,7 @@ from pydantic import Field, TypeAdapter
 from latentarm.control.export import ImplausibleWarning, demonstrations_of
 from latentarm.control.journal import read_journal
 from latentarm.errors import UserError
+from latentarm.models.catalogue import KINDS
 from latentarm.types import Demonstrations
 from latentarm.web.jobs.job import Job, JobMessage, Wire
 from latentarm.web.protocol.learning_messages import Training, TrainingPhase
@@ -32,7 +32,8 @@ SHORTEST_S: Final = 1.0
 STATE_NOISE_RAD: Final = 0.01
 """As `latentarm train` has it."""
 
-_OWN_MODELS: Final = ("cvae", "cae", "homogeneous", "pca", "ae", "vae", "cae_zero", "scl", "isometric")
+_FIRST: Final = ("cvae", "cae", "homogeneous", "pca")
+"""Models at the top of the page's list."""
 
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
 _TELL_EVERY_S: Final = 0.1
@@ -43,9 +44,8 @@ _COLLAPSED: Final = (
 
 
 def model_names() -> tuple[str, ...]:
-    """Names in the catalogue of models, the usual one first. Nothing of a model is loaded for it."""
-    plugins = (entry.name for entry in entry_points(group="latentarm.models"))
-    return tuple(dict.fromkeys((*_OWN_MODELS, *sorted(plugins))))
+    """Names in the catalogue of models, those of the most use first. Nothing of a model is loaded for it."""
+    return tuple(dict.fromkeys((*_FIRST, *KINDS)))
 
 
 @final

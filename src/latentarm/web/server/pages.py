@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -9,6 +10,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 
+from latentarm.errors import UserError
+from latentarm.models.catalogue import KINDS
 from latentarm.web.server.assets import FOLDER, Assets
 from latentarm.web.words.catalogue import COOKIE, Words, chosen_language, languages
 
@@ -107,7 +110,10 @@ class Pages:
 
 
 def _choice(model: str, words: Words) -> ModelChoice:
-    """What a model is called; a plug-in's, which has no words here, by its own name."""
-    if f"model.{model}" not in words.texts:
-        return ModelChoice(model, model, words.say("model.plugin.help"))
-    return ModelChoice(model, words.say(f"model.{model}"), words.say(f"model.{model}.help"))
+    """What a model is called: by the page's words, or else as its plug-in says."""
+    if f"model.{model}" in words.texts:
+        return ModelChoice(model, words.say(f"model.{model}"), words.say(f"model.{model}.help"))
+    title, about = model, ""
+    with suppress(UserError):  # said when somebody chooses it
+        title, about = KINDS[model].look.label, KINDS[model].description
+    return ModelChoice(model, title, about or words.say("model.plugin.help"))

@@ -5,12 +5,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from latentarm.metrics.looks import look_of
 from latentarm.studies.alignment.cell import CellResult
 from latentarm.studies.alignment.conditions import CONDITIONS
 from latentarm.studies.alignment.rows import ENCODED
 from latentarm.studies.drawing import plain_ticks, title
 from latentarm.studies.statistics import bootstrap_interval, reach_of_interval
-from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

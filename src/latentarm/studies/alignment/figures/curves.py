@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from latentarm.metrics.looks import look_of
 from latentarm.studies.alignment.curves import AT_RANDOM, BY_NOVELTY, CHOICES, CurveResult
 from latentarm.studies.alignment.targets import RANDOM_ANSWERS
 from latentarm.studies.drawing import plain_ticks, title
 from latentarm.studies.statistics import reach_of_interval
-from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

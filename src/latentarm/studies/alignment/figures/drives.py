@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from latentarm.metrics.looks import look_of
 from latentarm.simulation.drive_figures import GOAL_COLOURS, GOAL_MARKERS, OUTCOMES, outcome_lines
 from latentarm.studies.alignment.drives import DRIVEN, Driven, DrivesResult
 from latentarm.studies.drawing import title
-from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, look_of, new_figure, save_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure, save_figure, tidy
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Goal
 

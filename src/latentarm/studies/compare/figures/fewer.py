@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
+from latentarm.metrics.looks import look_of
 from latentarm.studies.compare.figures.scale import logarithmic_with_zero
 from latentarm.studies.compare.rows import condition, with_demonstrations
 from latentarm.studies.drawing import title
-from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, look_of, new_figure, tidy
+from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, new_figure, tidy
 from latentarm.types import Row
 
 if TYPE_CHECKING:
