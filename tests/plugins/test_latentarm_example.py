@@ -1,0 +1,219 @@
+"""A distribution of somebody else: its model, task, arm and belief are used like ours.
+
+Nothing is installed. A folder with the metadata that pip would write stands before the others on the path of
+the processes that are started here.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from websockets.sync.client import connect
+
+from latentarm.demonstrations.dataset import read_dataset
+
+HERE = Path(__file__).parent / "latentarm_example"
+SOURCE = Path(__file__).parents[2] / "src"
+
+DEMONSTRATE = """
+import sys
+import numpy as np
+from latentarm.demonstrations.dataset import write_dataset
+from latentarm.tasks.catalogue import make_task
+write_dataset(make_task("two_buttons").demonstrate(6, np.random.default_rng(0)), sys.argv[1])
+"""
+CONTRACTS = """
+import pytest
+from latentarm_example.arm import CountingArm
+from latentarm_example.belief import NearnessBelief
+from latentarm_example.task import TwoButtons
+from latentarm.testing.arms import ArmContract
+from latentarm.testing.beliefs import BeliefContract
+from latentarm.testing.tasks import TaskContract
+
+class TestArm(ArmContract):
+    tolerance_rad = 2e-5
+    @pytest.fixture
+    def make(self):
+        return CountingArm
+
+class TestBelief(BeliefContract):
+    @pytest.fixture
+    def rule(self):
+        return NearnessBelief
+
+class TestTask(TaskContract):
+    @pytest.fixture
+    def task(self):
+        return TwoButtons()
+"""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder to work in, and the distribution's metadata in ``site`` there."""
+    folder = tmp_path_factory.mktemp("plugin")
+    project = tomllib.loads((HERE / "pyproject.toml").read_text())["project"]
+    info = folder / "site" / f"latentarm_example-{project['version']}.dist-info"
+    info.mkdir(parents=True)
+    names = {"Metadata-Version": "2.1", "Name": project["name"], "Version": project["version"]}
+    (info / "METADATA").write_text("".join(f"{key}: {value}\n" for key, value in names.items()))
+    lines: list[str] = []
+    for group, entries in project["entry-points"].items():
+        lines += [f"[{group}]", *(f"{name} = {value}" for name, value in entries.items())]
+    (info / "entry_points.txt").write_text("\n".join(lines))
+    return folder
+
+
+def environment(place: Path) -> dict[str, str]:
+    path = os.pathsep.join(str(entry) for entry in (place / "site", HERE / "src", SOURCE))
+    return {**os.environ, "PYTHONPATH": path, "COLUMNS": "200"}
+
+
+def run(place: Path, *words: object) -> str:
+    """What a process says that must end well."""
+    done = subprocess.run(
+        [sys.executable, *map(str, words)],
+        capture_output=True,
+        text=True,
+        cwd=place,
+        env=environment(place),
+        check=False,
+    )
+    assert done.returncode in (0, 1), done.stderr  # 1: driven, and nothing was reached
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def trained(place: Path) -> Path:
+    """A run of their model, on demonstrations of their task."""
+    run(place, "-c", DEMONSTRATE, "buttons")
+    hardly = ("--seeds", 1, "--epochs", 2, "--hidden", 8)
+    asked = ("--demonstrations", "buttons", "--model", "straight", "--task", "two_buttons", *hardly)
+    run(place, "-m", "latentarm", "train", *asked, "--out", "mine")
+    return place / "mine"
+
+
+@pytest.mark.parametrize(
+    ("command", "names"),
+    [
+        ("train", ["straight", "two_buttons"]),
+        ("drive", ["counting", "nearness", "two_buttons"]),
+        ("teleop", ["counting"]),
+        ("demo", ["counting"]),
+    ],
+)
+def test_the_commands_offer_them(place: Path, command: str, names: list[str]) -> None:
+    said = run(place, "-m", "latentarm", command, "--help")
+    for name in names:
+        assert f",{name}" in said
+
+
+def test_they_pass_the_tests_that_ours_pass(place: Path) -> None:
+    (place / "test_theirs.py").write_text(CONTRACTS)
+    said = run(place, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_theirs.py")
+    assert " passed" in said
+    assert "failed" not in said
+
+
+def test_their_model_is_saved_loaded_and_measured(place: Path, trained: Path) -> None:
+    config = json.loads((trained / "config.json").read_text())
+    assert (config["kind"], config["task"]) == ("straight", "two_buttons")
+    rows = json.loads(run(place, "-m", "latentarm", "evaluate", "mine", "--folds", 0, "--json"))
+    assert {row["model"] for row in rows} == {"straight"}
+
+
+def test_everything_of_theirs_drives_together(place: Path, trained: Path) -> None:
+    asked = ("--arm", "counting", "--belief", "nearness", "--controller", "latent_assist")
+    briefly = ("--drives", 1, "--jobs", 1, "--time-limit-s", 1, "--out", "driven")
+    run(place, "-m", "latentarm", "drive", trained, *asked, *briefly)
+    about = json.loads((place / "driven" / "drives.json").read_text())["about"]
+    assert about["arm"] == "counting"
+    assert about["belief"] == "nearness"
+    assert about["task"] == "two_buttons"
+
+
+def test_their_model_is_compared_with_ours(place: Path, trained: Path) -> None:
+    asked = ("--demonstrations", "buttons", "--models", "straight", "scl", "--ours", "scl")
+    run(place, "-m", "latentarm", "compare", *asked, "--preset", "smoke", "--jobs", 1, "--out", "compared")
+    rows = json.loads((place / "compared" / "results.json").read_text())["rows"]
+    assert {"straight", "scl"} <= {row["model"] for row in rows}
+
+
+@contextmanager
+def page(place: Path, *words: object) -> Iterator[str]:
+    """A server, and its address."""
+    command = [sys.executable, "-m", "latentarm", "teleop", *map(str, words), "--port", "0", "--json"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, cwd=place, env=environment(place)
+    ) as server:
+        try:
+            assert server.stdout is not None
+            yield json.loads(server.stdout.readline())["address"].rstrip("/")
+        finally:
+            server.send_signal(signal.SIGINT)
+            server.communicate(timeout=30)
+
+
+def test_their_model_is_on_the_page_and_drives_their_arm_there(place: Path, trained: Path) -> None:
+    with page(place, trained, "--arm", "counting") as address:
+        with urllib.request.urlopen(f"{address}/teach", timeout=30) as answer:  # noqa: S310 - our own server
+            html = answer.read().decode()
+        assert 'value="straight"' in html
+        with connect(address.replace("http", "ws") + "/drive", origin=address, compression=None) as socket:
+            socket.send(json.dumps({"type": "hello", "version": 1, "name": "Ada"}))
+            first = driven(socket, lambda state: state["phase"] == "ready", [0.0, 0.0], enable=True)
+            socket.send(json.dumps({"type": "record", "on": True}))
+            driven(socket, lambda state: distance(state, first) > 0.02, [1.0, 0.0])
+            driven(socket, lambda state: state["phase"] == "ready", [0.0, 0.0])
+            socket.send(json.dumps({"type": "record", "on": False}))
+            time.sleep(0.5)
+    (journal,) = (place / "teleop").glob("*.sqlite")
+    run(place, "-m", "latentarm", "export", journal, "--out", "recorded")
+    counts = read_dataset(place / "recorded").episodes[0].state / 1e-5
+    assert np.ptp(counts, axis=0).max() > 100
+    # Their encoders say whole numbers; the file has single precision.
+    np.testing.assert_allclose(counts, np.round(counts), atol=0.1)
+
+
+def distance(state, other):
+    """How far the tool has moved, m."""
+    return np.linalg.norm(np.subtract(state["tool"], other["tool"]))
+
+
+def driven(socket, until, u, *, enable=False):
+    """The first state of which something holds, with this input all the while."""
+    sequence, asked_s, end_s = int(1000 * time.monotonic()), 0.0, time.monotonic() + 60.0
+    while time.monotonic() < end_s:
+        state = json.loads(socket.recv(timeout=60))
+        if state["type"] != "state":
+            continue
+        if until(state):
+            return state
+        sequence += 1
+        socket.send(
+            json.dumps(
+                {
+                    "type": "input",
+                    "seq": sequence,
+                    "nonce": state["nonce"],
+                    "u": u,
+                    "source": "pointer",
+                    "latched": False,
+                }
+            )
+        )
+        if enable and time.monotonic() - asked_s > 0.5:
+            asked_s = time.monotonic()
+            socket.send(json.dumps({"type": "enable"}))
+    raise AssertionError(f"it never came to that: {state}")
