@@ -87,9 +87,6 @@ def test_words_that_no_command_has(run: Run, words: tuple[str, ...]) -> None:
 def test_a_run_knows_its_dataset(run: Run, eat: Path) -> None:
     run("train", "--demonstrations", "eat", "--model", "pca", "--out", "mine")
     Path("eat").rename("moved")
-    code, _, err = run("evaluate", "mine", "--folds", 0)
-    assert code == 2
-    assert "--demonstrations" in err
     assert run("evaluate", "mine", "--demonstrations", "moved", "--folds", 0)[0] == 0
 
     run("drive", "--jobs", 1, "--drives", 1, "--time-limit-s", 2, "--record", "other")

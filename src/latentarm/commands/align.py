@@ -26,7 +26,7 @@ from latentarm.types import Row
 
 @dataclass(frozen=True)
 class AlignConfig:
-    """What `latentarm align` was asked for; its ``--help`` says the same of each field.
+    """Options of `latentarm align`; its ``--help`` describes each field.
 
     Attributes:
         run: a trained run.
@@ -35,7 +35,7 @@ class AlignConfig:
         seed_index: which of the run's seeds decodes.
         simulated: let a simulated person answer.
         seed: of everything random.
-        dataset: where the run's dataset lies now, if it was moved.
+        dataset: where the run's dataset is now, if it was moved.
         progress: show a bar on standard error.
 
     Raises:
@@ -64,7 +64,7 @@ def align_run(config: AlignConfig, say: Say) -> list[Row]:
         say: shows text to the person.
 
     Returns:
-        How far the answers themselves are missed: with the profile, with an affine map, and with z = u.
+        The error on the answers themselves: with the profile, with an affine map, and with z = u.
 
     Raises:
         UserError: the run cannot be aligned, the name is taken, or nobody answers.
@@ -96,8 +96,8 @@ def _person(config: AlignConfig, scene: Scene, say: Say) -> Person:
 
 def align(
     run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")],
-    name: Annotated[str, arg(metavar="NAME", help="Of the person; `drive --profile` takes it.")],
-    answers: Annotated[int, arg(help="Questions to be answered, at most.")] = 10,
+    name: Annotated[str, arg(metavar="NAME", help="The person's name, as given to `drive --profile`.")],
+    answers: Annotated[int, arg(help="Ask at most this many questions.")] = 10,
     seed_index: Annotated[int, arg(help="Which of the run's seeds decodes, from 0.")] = 0,
     simulated: Annotated[
         bool, arg(help="Let a simulated person answer, for whom the stick's axes are those of the base.")

@@ -32,17 +32,17 @@ EPOCHS = 10
 RATE_HZ = 1000.0
 WARM_UP = 500
 TORCH_EVERY = 10
-"""The torch decoder is timed once in so many steps, between two of them."""
+"""The torch decoder is timed between two steps, once in this many steps."""
 
 INPUT_TICKS = 100
-"""An input is held for so many steps."""
+"""An input is held for this many steps."""
 
 TURN_TICKS = 1000
-"""Then the step with other goals takes its turn: long enough that each finds its data in the cache."""
+"""Steps before switching to the other number of goals: enough for each to run with a warm cache."""
 
 MANY_GOALS = 50
 SPREAD_RAD = 0.1
-"""Further goals lie about the task's own, so that the arm moves through the same places."""
+"""Further goals surround the task's own, so that the arm moves through the same region."""
 
 
 def run_bench(repeats: int, seed: int, progress: bool, pairs: int = PAIRS) -> list[Row]:
@@ -69,7 +69,7 @@ def run_bench(repeats: int, seed: int, progress: bool, pairs: int = PAIRS) -> li
 
 
 def _time_step(task: TableTop, model: CVAE, repeats: int, seed: int) -> list[Row]:
-    """The whole step with 3 goals and with 50, in turns, beside torch's decoder."""
+    """The whole step with 3 goals and with 50, alternating, and torch's decoder."""
     rng = np.random.default_rng(seed)
     few, many = _TimedStep(task, model, task.goals), _TimedStep(task, model, _many_goals(task, seed))
     decode = _torch_decoder(model, task.robot.dof)
@@ -111,7 +111,7 @@ class _TimedStep:
             LatentController(model.decoder(0)),
             SafetyConfig(obstacles=(*task.obstacles, obstacle)),
             goals=goals,
-            # An update in every step; the bound, which is worked out 20 times a second, is in the percentile.
+            # The belief updates in every step; the bound, computed 20 times a second, shows in p99.
             belief=BoltzmannBelief([goal.configuration for goal in goals], period_s=dt_s),
             arbitration=FixedAlpha(),
             dt_s=dt_s,
@@ -152,7 +152,7 @@ class _TimedStep:
 
 
 def _many_goals(task: TableTop, seed: int) -> list[Goal]:
-    """The task's goals and others about them."""
+    """The task's goals and others around them."""
     rng = np.random.default_rng(seed)
     robot, goals = task.robot, list(task.goals)
     for number in range(len(goals), MANY_GOALS):
@@ -196,9 +196,9 @@ def _torch_decoder(model: CVAE, dof: int) -> Callable[[FloatArray, FloatArray], 
 
 
 def _time_fits(demonstrations: Demonstrations, seed: int, progress: bool) -> tuple[list[Row], CVAE]:
-    """Ten seeds in one fit beside the same ten in turn: the same pairs, steps and final losses.
+    """Ten seeds in one fit compared with the same ten in turn: the same pairs, steps and final losses.
 
-    The fit of ten is done before, amid and after the ten fits, and its median counts.
+    The joint fit runs before, between and after the ten single fits, and its median counts.
     """
     alone = [_model(1, seed + offset) for offset in range(SEEDS)]
     together = [_model(SEEDS, seed) for _ in range(3)]
@@ -228,12 +228,12 @@ def _fit_s(model: CVAE, demonstrations: Demonstrations, progress: bool) -> float
 
 
 def _model(seeds: int, seed: int) -> CVAE:
-    # Patience as long as the training: both ways take the same number of steps.
+    # With this patience nothing stops early: both ways take the same number of steps.
     return CVAE(seeds=seeds, seed=seed, data_seed=0, epochs=EPOCHS, patience=EPOCHS)
 
 
 def _about(demonstrations: Demonstrations, count: int) -> Demonstrations:
-    """Whole episodes with about so many context-action pairs left for training."""
+    """Whole episodes with about this many context-action pairs left for training."""
     validation = CVAE.validation_fraction
     per_sample = 2 * CVAE.window
     kept: list[Episode] = []

@@ -16,19 +16,19 @@ def compare(
         tuple[Path, ...], arg(metavar="DST ...", help="Folders of native datasets, all of one robot.")
     ],
     models: Annotated[
-        tuple[str, ...] | None, arg(metavar="MODEL ...", help="Names of models; by default all there are.")
+        tuple[str, ...] | None, arg(metavar="MODEL ...", help="Names of models; all by default.")
     ] = None,
     noise: Annotated[
         tuple[float, ...] | None,
         arg(metavar="RAD ...", help="SDs of noise on the states, rad; 0.01 and 0.1 by default."),
     ] = None,
-    seeds: Annotated[int | None, arg(help="Models of each kind in each fold; 5 by default.")] = None,
+    seeds: Annotated[int | None, arg(help="Seeds of each model in each fold; 5 by default.")] = None,
     folds: Annotated[int | None, arg(help="Parts of each dataset, each held out once; 5 by default.")] = None,
     reach_pairs: Annotated[
         int | None, arg(help="Starts and goals per fold for the greedy operator; 40 by default.")
     ] = None,
     ours: Annotated[
-        str | None, arg(metavar="MODEL", help="The model that is held against the targets, and driven.")
+        str | None, arg(metavar="MODEL", help="The model that is compared with the targets and driven.")
     ] = None,
     preset: Annotated[
         Literal["paper", "smoke"], arg(help="Whole sizes, or small ones that only show that it runs.")

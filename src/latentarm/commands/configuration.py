@@ -1,4 +1,4 @@
-"""Options from a YAML file, for every command, and the options of a run written back beside its results.
+"""Options from a YAML file, for every command, and the options of a run written next to its results.
 
 The file gives a command other defaults: the command line is parsed on top of them, so what is typed wins,
 and options that are otherwise required may come from the file.
@@ -25,21 +25,21 @@ ConfigFile = Annotated[
     Path | None,
     arg(
         metavar="FILE.yaml",
-        help="Take options from a YAML file, by name: `seeds: 5`. What is on the command line wins.",
+        help="Take options from a YAML file, by name: `seeds: 5`. The command line takes precedence.",
     ),
 ]
 
 OPTION: Final = "config"
 
 NOT_KEPT: Final = (OPTION, "json", "resume")
-"""Options that say how a run is told of or gone on with, not what it does; they are not written back."""
+"""Options that change how a run is reported or resumed, not what it does; they are not written."""
 
 _ASKED: ContextVar[tuple[str, Mapping[str, object]] | None] = ContextVar("asked", default=None)
 """Name and options of the command that is running."""
 
 
 def configurable(command: Command, name: str, defaults: Mapping[str, object]) -> Command:
-    """A command with ``--config``, and with other defaults where the file gave some.
+    """A command with ``--config``, whose defaults may come from the file.
 
     Args:
         command: its parameters are its options.
@@ -105,8 +105,8 @@ def read_options(path: Path, command: Command, name: str) -> dict[str, object]:
         Values by parameter, of the parameters' types.
 
     Raises:
-        UserError: the file cannot be read, is no such mapping, or has an option that the command lacks or
-            whose value is of another type.
+        UserError: the file cannot be read, is not such a mapping, or has an option that the command lacks or
+            whose value has another type.
     """
     from pydantic import TypeAdapter, ValidationError
 
@@ -134,14 +134,14 @@ def read_options(path: Path, command: Command, name: str) -> dict[str, object]:
 
 
 def write_options(folder: Path, name: str, **resolved: object) -> None:
-    """Write the options of the running command beside its results, for ``--config`` to run it again.
+    """Write the options of the running command next to its results, so that ``--config`` can run it again.
 
     The file is ``<command>-options.yaml``. A command that another one calls writes nothing.
 
     Args:
         folder: where the results are; also what ``out`` is written as.
         name: the command that calls this.
-        resolved: what options came to that were left to be chosen.
+        resolved: values of options that were chosen automatically.
 
     Raises:
         UserError: the file cannot be written.

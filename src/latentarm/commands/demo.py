@@ -49,12 +49,12 @@ MODELS = ("cvae", "scl")
 TIME_LIMIT_S = 60.0
 
 MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png", "task.png")
-"""Every file of the folder, apart from what was asked for, the dataset and the runs."""
+"""Every file of the folder except its options, the dataset and the runs."""
 
 
 @dataclass(frozen=True)
 class DemoConfig:
-    """What `latentarm demo` was asked for.
+    """Options of `latentarm demo`.
 
     Attributes:
         out: a new folder for everything that the demo writes.
@@ -62,9 +62,9 @@ class DemoConfig:
         seed: of everything random.
         jobs: processes that drive side by side; -1 is one per core.
         quiet: say nothing while working.
-        bars: show how far training and driving are.
+        bars: show progress bars.
         episodes: demonstrations.
-        seeds: models of each kind, trained at once; they take turns to be driven.
+        seeds: models of each kind, trained together and driven in turn.
         epochs: passes over the training pairs, at most.
         arm: what moves, a simulated arm of `latentarm.arms.catalogue`.
     """
@@ -86,7 +86,7 @@ class DemoConfig:
 
 
 def run_demo(config: DemoConfig) -> list[Row]:
-    """Run the whole demo and write what it made to ``config.out``.
+    """Run the whole demo and write its results to ``config.out``.
 
     Returns:
         Figures of the drives: mean and SD over all goals.
@@ -205,7 +205,7 @@ def _about(config: DemoConfig) -> dict[str, object]:
 
 
 def _claim(config: DemoConfig) -> None:
-    """Make room for a new demo: one that asked for the same is replaced, anything else is left alone.
+    """Prepare the folder: a demo with the same options is replaced, anything else is left alone.
 
     Raises:
         UserError: the folder holds something else, or profiles of people.

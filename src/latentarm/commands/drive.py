@@ -47,7 +47,7 @@ ControllerName = Literal["latent", "latent_assist", "end_effector"]
 ArbitrationName = Literal["fixed", "confidence"]
 
 MADE: Final = ("drives.json", "drives.csv", "paths.png")
-"""Every file of the folder, apart from what was asked for and a recording's journal."""
+"""Every file of the folder except its options and a recording's journal."""
 
 TIME_LIMIT_S: Final = 60.0
 """How long a drive may last."""
@@ -58,30 +58,30 @@ HELD_OUT_LIMIT_S: Final = 300.0
 
 @dataclass(frozen=True)
 class DriveConfig:
-    """What `latentarm drive` was asked for; its ``--help`` says the same of each field.
+    """Options of `latentarm drive`; its ``--help`` describes each field.
 
     Attributes:
         run: a trained run, or None for mode switching alone.
         controller: what drives.
         out: folder for drives.json and the figure.
-        task: what is to be done; what the run was trained for where None.
+        task: what to do; None for the task that the run was trained for.
         robot: a robot's name or model file; that of the run where None.
         arm: what moves, a simulated arm of `latentarm.arms.catalogue`.
         end_effector: site, body or link of a model file.
         limits: a limits file, or None.
-        profile: name of the person whose alignment stands between input and latent action; z = u where None.
+        profile: name of the person whose alignment maps input to latent action; None for z = u.
         drives: for each goal.
-        operator: who gives inputs; `usual_operator` of the task where None.
+        operator: who gives inputs; None for the task's `usual_operator`.
         beta: rationality of the simulated operator.
         belief: how inputs change the robot's belief over the goals.
-        arbitration: how alpha comes about where the robot helps; fixed where None.
+        arbitration: how alpha is set while the robot helps; None for a fixed alpha.
         alpha: arbitration at full input, in [0, 1], the most of it for confidence; that of `FixedAlpha`
             or `ConfidenceAlpha` where None.
         time_limit_s: a drive that lasts longer has failed; `TIME_LIMIT_S` or `HELD_OUT_LIMIT_S` where None.
         seed: of everything random.
         jobs: processes side by side; -1 is one per core. A recording is driven by one.
         record: folder of a new dataset that the drives are exported to, or None.
-        dataset: where the run's dataset lies now, if it was moved.
+        dataset: where the run's dataset is now, if it was moved.
         bars: show on standard error how many drives are done.
 
     Raises:
@@ -131,7 +131,7 @@ class DriveConfig:
 
 @dataclass(frozen=True)
 class Driven:
-    """What came of the drives.
+    """The results of the drives.
 
     Attributes:
         rows: mean and SD over the drives.
@@ -155,7 +155,7 @@ def drive_run(config: DriveConfig, tell: Callable[[Sequence[str]], None] = lambd
 
     Args:
         config: what was asked for.
-        tell: is given what to keep in mind of the robot, before it moves.
+        tell: called with notices about the robot before it moves.
 
     Raises:
         UserError: the run, the robot or the task does not exist, they do not fit each other, or the folder
@@ -238,7 +238,7 @@ def _about(
 
 
 def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]:
-    """Drive one after the other, each step journaled as it happens; then export the journal.
+    """Drive one after the other and record every step; then export the journal.
 
     Raises:
         UserError: a journal is there already, or a file cannot be written.
@@ -246,7 +246,7 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
     task = setup.task
     journal = config.out / "journal.sqlite"
     if journal.exists():
-        raise UserError(f"{journal} is there already: choose another folder with --out.")
+        raise UserError(f"{journal} already exists: choose another folder with --out.")
     recorder = Recorder(journal)
     traces: list[Trace] = []
     try:
@@ -289,7 +289,7 @@ def _counted(plan: Sequence[DrivePlan], bars: bool) -> Generator[DrivePlan]:
 
 
 def _arbitration(config: DriveConfig) -> FixedAlpha | ConfidenceAlpha | None:
-    """How much the robot helps, where it does."""
+    """How much the robot helps, if it helps at all."""
     if config.controller != "latent_assist":
         return None
     if config.arbitration == "confidence":
@@ -328,7 +328,7 @@ def drive(
     end_effector: EndEffector = None,
     limits: LimitsFile = None,
     profile: Annotated[
-        str | None, arg(metavar="NAME", help="A person that `latentarm align` has asked; z = u without.")
+        str | None, arg(metavar="NAME", help="Profile made by `latentarm align`; z = u without one.")
     ] = None,
     drives: Annotated[int, arg(help="Drives for each goal.")] = 3,
     operator: Annotated[
@@ -345,7 +345,7 @@ def drive(
     ] = "boltzmann",
     arbitration: Annotated[
         Literal["fixed", "confidence"] | None,
-        arg(help="For latent_assist: the same alpha throughout (the default), or more the surer the belief."),
+        arg(help="For latent_assist: a constant alpha (the default), or one that grows with confidence."),
     ] = None,
     alpha: Annotated[
         float | None,
@@ -355,13 +355,13 @@ def drive(
         ),
     ] = None,
     time_limit_s: Annotated[
-        float | None, arg(help="A drive that lasts longer has failed: 60 s, 300 s on held-out episodes.")
+        float | None, arg(help="A longer drive fails; by default 60 s, 300 s on held-out episodes.")
     ] = None,
     seed: Seed = 0,
     jobs: Jobs = -1,
     demonstrations: MovedDataset = None,
     record: Annotated[
-        Path | None, arg(metavar="DIR", help="Record the drives; exported there as a native dataset.")
+        Path | None, arg(metavar="DIR", help="Record the drives and export them there as a native dataset.")
     ] = None,
     out: Annotated[
         Path, arg(metavar="DIR", help="Folder for drives.json, drives.csv and the figure.")
@@ -409,5 +409,5 @@ def drive(
     show(driven.rows, json)
     for sentence in endings_in_words(driven.entries):
         say(sentence, json)
-    say(f"One row per drive is in {out}/drives.csv; drives.json and paths.png are beside it.", json)
+    say(f"One row per drive is in {out}/drives.csv; drives.json and paths.png are next to it.", json)
     return 0 if any(entry["success"] for entry in driven.entries) else 1

@@ -25,7 +25,7 @@ GROUPS = ("", RECONSTRUCTION, PROPERTIES, AT_REST)
 
 
 def evaluation_table(evaluation: Evaluation) -> RenderableType:
-    """Measures down, in groups; the run's own split and, where there are some, the folds across."""
+    """Measures in rows, grouped; the run's own split and the folds, if any, in columns."""
     own = [row for row in evaluation.rows if row.condition is None]
     own.sort(key=lambda row: GROUPS.index(measure.group) if (measure := measure_of(row.measure)) else -1)
     folds = {row.measure: row for row in evaluation.rows if row.condition == OVER_FOLDS}
@@ -55,7 +55,7 @@ def evaluation_table(evaluation: Evaluation) -> RenderableType:
 
 
 def definitions(rows: Sequence[Row]) -> RenderableType:
-    """One sentence on each measure; those of single axes are those of the measure."""
+    """One sentence on each measure; single axes share the sentence of their measure."""
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
     for name in dict.fromkeys(row.measure.rpartition("_axis_")[0] or row.measure for row in rows):
         measure = measure_of(name)
@@ -73,7 +73,7 @@ def evaluate(
             " measures that split alone. By default 5 with 20 episodes or fewer, else 0."
         ),
     ] = None,
-    explain: Annotated[bool, arg(help="Print what each measure says.")] = False,
+    explain: Annotated[bool, arg(help="Explain each measure.")] = False,
     out: Annotated[
         Path | None, arg(metavar="DIR", help="Folder for metrics and figures; RUN by default.")
     ] = None,
@@ -97,7 +97,7 @@ def evaluate(
         if explain:
             print_renderables(definitions(evaluation.rows))
         else:
-            say("What each measure says: --explain.", json)
+            say("To explain the measures: --explain.", json)
     if evaluation.missing:
         say(evaluation.missing, json)
     say(evaluation.verdict, json)

@@ -18,13 +18,11 @@ def import_demonstrations(
     robot: RobotName = "panda",
     end_effector: EndEffector = None,
     limits: LimitsFile = None,
-    rate_hz: Annotated[float | None, arg(help="Sampling rate, for a file that does not say it.")] = None,
-    instruction: Annotated[
-        str | None, arg(help="What was done, in words, for a file that does not say it.")
-    ] = None,
+    rate_hz: Annotated[float | None, arg(help="Sampling rate, if the file does not give it.")] = None,
+    instruction: Annotated[str | None, arg(help="What was done, in words, if the file does not say.")] = None,
     actions: Annotated[
         Literal["known", "joint_velocity", "joint_position"],
-        arg(help="Use recorded actions only where the file says what they are, or take your word."),
+        arg(help="Use recorded actions only if the file says what they are, or as you state here."),
     ] = "known",
     units: Annotated[
         tuple[str, ...],
@@ -37,11 +35,11 @@ def import_demonstrations(
         tuple[str, ...],
         arg(
             metavar="COLUMN|JOINT=COLUMN",
-            help="The column of each joint, by name or number from 0, in the robot's order; by name without.",
+            help="Columns by name or number from 0, in the robot's order; matched by name by default.",
         ),
     ] = (),
     gripper: Annotated[
-        str | None, arg(metavar="COLUMN", help="The gripper's column; by name without.")
+        str | None, arg(metavar="COLUMN", help="The gripper's column; found by name by default.")
     ] = None,
     recorded_on: Annotated[
         str | None,

@@ -27,7 +27,7 @@ _FINGERPRINT_LENGTH: Final = 64
 
 
 def known_robot(demonstrations: Demonstrations) -> Robot | None:
-    """The robot that a dataset names, or None where it names none or that one is not to be had here."""
+    """The robot that a dataset names, or None if it names none or that robot is not available."""
     try:
         return load_recorded_robot(demonstrations) if demonstrations.robot else None
     except UserError:
@@ -35,7 +35,7 @@ def known_robot(demonstrations: Demonstrations) -> Robot | None:
 
 
 def why_unknown(demonstrations: Demonstrations, dataset: str) -> str | None:
-    """Why the robot that a dataset names cannot be loaded; None where it can, or where it names none."""
+    """Why the robot that a dataset names cannot be loaded; None if it can, or if none is named."""
     try:
         if demonstrations.robot:
             load_recorded_robot(demonstrations, dataset)
@@ -73,7 +73,7 @@ def import_table(record: Mapping[str, str]) -> Table:
 
 
 def _origin_tables(demonstrations: Demonstrations) -> list[Table]:
-    """Where a dataset comes from, as far as it says so."""
+    """Where a dataset comes from, as far as is recorded."""
     tables: list[Table] = []
     if demonstrations.import_record:
         tables.append(import_table(demonstrations.import_record))
@@ -91,7 +91,7 @@ def _origin_tables(demonstrations: Demonstrations) -> list[Table]:
 
 
 def _told(value: object) -> str:
-    """A value of a `Provenance` for a table; of a fingerprint its beginning is enough."""
+    """A value of a `Provenance` for a table; fingerprints are abbreviated."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     text = visible(str(value)) or "–"
@@ -116,7 +116,7 @@ def draw(demonstrations: Demonstrations, folder: Path) -> Path:
 def inspect(
     dataset: Annotated[Positional[Path], arg(metavar="DST", help="Folder of a native dataset.")],
     out: Annotated[
-        Path | None, arg(metavar="DIR", help="Folder for the figure; beside the dataset by default.")
+        Path | None, arg(metavar="DIR", help="Folder for the figure; next to the dataset by default.")
     ] = None,
     json: Json = False,
 ) -> int:

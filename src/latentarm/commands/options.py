@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from tyro.conf import arg
 
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
-Seed = Annotated[int, arg(help="Seed of everything random.")]
+Seed = Annotated[int, arg(help="Seed of all randomness.")]
 RobotName = Annotated[
     str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")
 ]
@@ -20,7 +20,7 @@ LimitsFile = Annotated[
 ]
 Dataset = Annotated[Path, arg(metavar="DST", help="Folder of a native dataset.")]
 MovedDataset = Annotated[
-    Path | None, arg(metavar="DST", help="Where the run's dataset lies now, if it was moved and is needed.")
+    Path | None, arg(metavar="DST", help="Where the run's dataset is now, if it was moved and is needed.")
 ]
 Jobs = Annotated[int, arg(help="Processes that measure side by side; -1 is one per core.")]
 Backend = Annotated[

@@ -1,4 +1,4 @@
-"""What commands print: rows as a table or as one JSON document, and sentences."""
+"""Output of commands: rows as a table or as one JSON document, and messages."""
 
 import json as json_format
 import sys
@@ -40,12 +40,12 @@ def tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
 
 
 def say(sentence: str, json: bool) -> None:
-    """Tell a person; with ``--json`` on standard error, so that standard output stays one document."""
+    """Print a message; with ``--json`` on standard error, so that standard output stays one document."""
     print(visible(sentence), file=sys.stderr if json else sys.stdout)
 
 
 def note(sentences: "Sequence[str]") -> None:
-    """Tell a person on standard error what to keep in mind, with ``--json`` too."""
+    """Print a notice on standard error, with ``--json`` too."""
     for sentence in sentences:
         print(f"latentarm: note: {visible(sentence)}", file=sys.stderr)
 

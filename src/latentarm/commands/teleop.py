@@ -21,11 +21,11 @@ def teleop(
         arg(metavar="RUN", help="A trained run; without one, the end-effector is driven."),
     ] = None,
     host: Annotated[
-        str, arg(help="The address that people open; off this machine they need a link that works once.")
+        str, arg(help="The address to serve; from other machines people need a link that works once.")
     ] = "127.0.0.1",
-    port: Annotated[int, arg(help="0 takes any that is free.")] = 8460,
+    port: Annotated[int, arg(help="Port; 0 takes any free one.")] = 8460,
     profile: Annotated[
-        str | None, arg(metavar="NAME", help="A person that `latentarm align` has asked; z = u without.")
+        str | None, arg(metavar="NAME", help="Profile made by `latentarm align`; z = u without one.")
     ] = None,
     certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
@@ -33,10 +33,10 @@ def teleop(
     seed: Seed = 0,
     out: Annotated[Path, arg(metavar="DIR", help="Folder for what is recorded.")] = Path("teleop"),
     most_gb: Annotated[
-        float, arg(metavar="GB", help="A journal that has grown so large ends its recording.")
+        float, arg(metavar="GB", help="End the recording when its journal reaches this size.")
     ] = 4.0,
     keep_free_gb: Annotated[
-        float, arg(metavar="GB", help="A recording ends where less is free on the disk.")
+        float, arg(metavar="GB", help="End the recording when less than this is free on the disk.")
     ] = 0.5,
     json: Json = False,
 ) -> int:

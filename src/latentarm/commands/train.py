@@ -56,7 +56,7 @@ def train(
     out: Annotated[
         Path | None, arg(metavar="DIR", help="Folder of the run; runs/<dataset>-<model> by default.")
     ] = None,
-    resume: Annotated[bool, arg(help="Go on with a training that was cut off.")] = False,
+    resume: Annotated[bool, arg(help="Continue an interrupted training.")] = False,
     json: Json = False,
 ) -> int:
     """Learn a latent action model from a dataset.

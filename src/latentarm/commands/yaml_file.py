@@ -1,4 +1,4 @@
-"""A flat YAML file, read with care: it may come from anybody."""
+"""A flat YAML file, parsed as untrusted input."""
 
 import re
 from collections.abc import Hashable
@@ -30,7 +30,7 @@ class _OptionLoader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
-# YAML 1.1 takes 1e-3 for text, for want of a point.
+# YAML 1.1 reads 1e-3 as text because it has no decimal point.
 _OptionLoader.add_implicit_resolver(
     "tag:yaml.org,2002:float", re.compile(r"[-+]?[0-9]+[eE][-+]?[0-9]+"), list("-+0123456789")
 )
@@ -62,7 +62,7 @@ def read_mapping(path: Path) -> dict[str, Any]:
         if not isinstance(key, str):
             raise UserError(f"{path}: {key!r} is not the name of an option.")
         if not all(one is None or isinstance(one, str | bool | int | float) for one in entries):
-            raise UserError(f"{path}: the option {key!r} must be a number, a text, or a list of these.")
+            raise UserError(f"{path}: the option {key!r} must be a number, a string, or a list of these.")
     return cast(dict[str, Any], value)
 
 
@@ -71,5 +71,5 @@ def _said(error: Exception) -> str:
     if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
         return f"{error.problem} in line {error.problem_mark.line + 1}"
     if isinstance(error, RecursionError):
-        return "it is nested too deep"
+        return "it is nested too deeply"
     return " ".join(str(error).split()) or "it is damaged"

@@ -1,1 +1,1 @@
-"""What other people and programs wrote: read within bounds, and shown without being obeyed."""
+"""Untrusted input: read within bounds, and displayed without interpreting control characters."""

@@ -16,26 +16,26 @@ from latentarm.errors import UserError
 from latentarm.untrusted.opening import read_bytes
 
 MOST_BYTES: Final = 1 << 24
-"""Of a document: 16 MiB."""
+"""Largest document: 16 MiB."""
 
 MOST_VALUES: Final = 1_000_000
-"""In a document, containers counted; 100 MB at worst once they are Python objects."""
+"""Values in a document, containers included; at worst 100 MB as Python objects."""
 
 MOST_LEVELS: Final = 32
-"""Of containers in each other."""
+"""Nesting depth of containers."""
 
 MOST_TEXT_BYTES: Final = 1 << 16
-"""Of one text, as it is written."""
+"""Length of one string as written in the document."""
 
 MOST_DIGITS: Final = 20
-"""Of a whole number; more than any of 64 bits has."""
+"""Digits of an integer; more than a 64-bit one can have."""
 
 _NO_BRACKETS: Final = bytes(set(range(256)) - set(b"[]{}"))
 _SURROGATE: Final = re.compile(rb"\\u[dD][89a-fA-F]")
 
 
 class _FaultError(ValueError):
-    """Carries what is wrong with a document, as the end of a sentence."""
+    """Says what is wrong with a document, as the end of a sentence."""
 
 
 def read_object(path: Path, limit: int = MOST_BYTES) -> dict[str, Any]:
@@ -84,7 +84,7 @@ def parse_object(document: bytes | str, where: str) -> dict[str, Any]:
 
 
 def _check_shape(content: bytes) -> None:
-    """Bound what the parser would build, by passes over the bytes that build hardly anything."""
+    """Bound what the parser would build, by cheap passes over the bytes."""
     if len(content) > MOST_BYTES:
         raise _FaultError(f"has more than {MOST_BYTES:,} bytes")
     # Without escapes every quotation mark begins or ends a text.

@@ -1,4 +1,4 @@
-"""A bound on the memory that reading a file may take, for parsers written in C that set themselves none.
+"""A bound on the memory that reading a file may take, for C parsers that have no limit of their own.
 
 A page of a Parquet file, a chunk of an HDF5 file or a texture of a robot model can unpack to a thousand
 times its size, and none of these libraries can be told to stop. On Linux the operating system can: while
@@ -20,7 +20,7 @@ except ImportError:  # Windows
     resource = None
 
 ALLOWANCE: Final = 256 << 20
-"""Bytes that any file may take."""
+"""Memory that any file may take, bytes."""
 
 PER_BYTE: Final = 64
 """Bytes beyond those for every byte of the file: numbers are packed well where an arm stands still."""
@@ -29,14 +29,14 @@ _STATUS: Final = Path("/proc/self/status")
 _UNLIMITED: Final = 1 << 62
 _lock = threading.Lock()
 _bounds: list[int] = []
-"""Of those who read now, after the one that was there before the first of them; the least one holds."""
+"""Limits of all current readers, after the original limit; the smallest applies."""
 
 
 @contextmanager
 def bounded_memory(what: str, size: int) -> Generator[None]:
-    """Keep the process from growing without measure while something is read.
+    """Limit how much the process may grow while something is read.
 
-    The bound is the whole process's: another thread that needs more than is left meanwhile gets a
+    The bound is the whole process's: another thread that needs more than remains meanwhile gets a
     `MemoryError` too.
 
     Args:

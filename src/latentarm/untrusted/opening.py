@@ -24,7 +24,7 @@ _KINDS = {
 
 
 def check_file(path: Path, limit: int) -> None:
-    """Refuse what is no regular file of bearable size, for libraries that open paths themselves.
+    """Refuse anything but a regular file of limited size, for libraries that open paths themselves.
 
     Args:
         path: the file.
@@ -39,7 +39,7 @@ def check_file(path: Path, limit: int) -> None:
 
 @contextmanager
 def opened(path: Path, limit: int) -> Generator[BinaryIO]:
-    """Open a file for reading, and turn what goes wrong with it into one sentence.
+    """Open a file for reading, and turn any failure into a one-sentence error.
 
     Args:
         path: the file.
@@ -52,9 +52,9 @@ def opened(path: Path, limit: int) -> Generator[BinaryIO]:
         UserError: it is missing, unreadable, too large, or no regular file; also for an `OSError` within.
     """
     try:
-        # Looked at before it is opened: to open a device can have effects of its own.
+        # Check before opening: opening a device can have side effects.
         _check(path, path.stat(), limit)
-        # If a pipe has taken the file's place since, this returns instead of waiting for a writer.
+        # If the file was replaced by a pipe meanwhile, this returns instead of waiting for a writer.
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with os.fdopen(descriptor, "rb") as stream:
             _check(path, os.fstat(descriptor), limit)
@@ -85,7 +85,7 @@ def read_bytes(path: Path, limit: int) -> bytes:
 
 
 def is_missing(path: Path) -> bool:
-    """Whether there is nothing at ``path``, for a sentence of one's own; what is there may be no file."""
+    """Whether nothing exists at ``path``, for callers with their own message."""
     try:
         path.lstat()
     except (FileNotFoundError, NotADirectoryError):

@@ -1,15 +1,15 @@
 """Text that this program may not have written, made safe to show in a terminal.
 
 A task's text or a file's name can hold escape sequences that recolour a terminal, change its title or
-write over what was there, and characters that turn the order of letters round. They are shown as what
-they are, as escapes such as those in Python's text, and not obeyed.
+write over what was there, and characters that reverse the text direction. They are displayed as escape
+sequences in Python's notation and have no effect.
 """
 
 import unicodedata
 from typing import Final
 
 MOST_CHARACTERS: Final = 1000
-"""Of a sentence; of a longer one both ends are shown."""
+"""Length of a message; both ends of a longer one are shown."""
 
 _JOINERS: Final = "\u200c\u200d"
 """Invisible, but Persian and emoji are not written without them."""
@@ -20,7 +20,7 @@ of lines."""
 
 
 def visible(text: str) -> str:
-    """The text with every character that a terminal would obey, or hide, as an escape. It keeps its lines."""
+    """The text with every control or invisible character escaped. Line breaks are kept."""
     if text.isascii() and text.isprintable():
         return text
     return "".join(character if _is_harmless(character) else _escaped(character) for character in text)
