@@ -112,8 +112,11 @@ test("after everything was dropped, a key that is still held moves nothing until
   key("keydown", "ArrowUp");
   input.neutral();
   key("keydown", "ArrowUp", { repeat: true });
-  key("keyup", "ArrowUp");
   assert.deepEqual(at(), [0, 0]);
+  key("keydown", "ArrowRight");
+  assert.deepEqual(at(), [1, 0]);
+  key("keyup", "ArrowRight");
+  key("keyup", "ArrowUp");
   key("keydown", "ArrowUp");
   assert.deepEqual(at(), [0, 1]);
 });

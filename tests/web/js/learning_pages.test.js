@@ -61,5 +61,6 @@ test("a new run gets a name that is free, and the next one once it is trained", 
   assert.equal(freeName("", { runs: ["taught-1", "taught-2"], training: null }), "taught-3");
   assert.equal(freeName("soup", { runs: ["soup"], training: null }), "soup");
   assert.equal(freeName("soup", { runs: ["soup"], training: { phase: "done", run: "soup" } }), "soup-1");
+  assert.equal(freeName("stew", { runs: ["soup"], training: { phase: "done", run: "soup" } }), "stew");
   assert.equal(freeName("soup-1", { runs: ["soup-1"], training: { phase: "done", run: "soup-1" } }), "soup-2");
 });

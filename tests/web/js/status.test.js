@@ -38,6 +38,14 @@ test("a lost connection is said, with what the arm does", () => {
   assert.deepEqual(settled(), ["lost", "Connection lost. The arm has stopped. Reconnecting …"]);
 });
 
+test("what was known before the connection was lost is not shown after it", () => {
+  settled({ phase: "ready" });
+  socket.close();
+  pass(500);
+  FakeSocket.newest.opens();
+  assert.deepEqual(settled(), ["connecting", "Connecting …"]);
+});
+
 test("a silent server is said within 0.8 s", () => {
   settled({ phase: "ready" });
   pass(800);
