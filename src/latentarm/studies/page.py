@@ -16,7 +16,7 @@ def render_page(template: str, **content: Any) -> str:
     """A page from its template.
 
     Templates have the filters ``label`` (of a model, a condition or a task), ``listed`` (``A, B and C``),
-    ``g`` (a number without trailing zeros) and ``title`` of a figure's file name.
+    ``g`` (a number without trailing zeros) and ``image`` (a figure by its name).
 
     Args:
         template: path below `STUDIES`, such as ``properties/page.md``.
@@ -30,12 +30,7 @@ def render_page(template: str, **content: Any) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters.update(
-        label=lambda name: look_of(name).label,
-        listed=listed,
-        g=lambda value: f"{value:g}",
-        image=lambda name: f"![{name.replace('_', ' ')}, simulated]({name}.png)",
-    )
+    environment.filters.update(label=_label, listed=listed, g=_short, image=_image)
     return environment.get_template(template).render(content)
 
 
@@ -50,3 +45,15 @@ def listed(names: Iterable[str]) -> str:
     """``A, B and C``, each once; empty for none."""
     each = list(dict.fromkeys(names))
     return " and ".join(filter(None, (", ".join(each[:-1]), *each[-1:])))
+
+
+def _label(name: str) -> str:
+    return look_of(name).label
+
+
+def _short(number: float) -> str:
+    return f"{number:g}"
+
+
+def _image(name: str) -> str:
+    return f"![{name.replace('_', ' ')}, simulated]({name}.png)"

@@ -1,4 +1,7 @@
-"""A figure for each task, after the paper's: what latent actions do on it."""
+"""A figure for each task, after the paper's: what latent actions do on it.
+
+Each is drawn from one decoder per model, of the first seed, trained without noise, and the study's rows.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -181,10 +184,6 @@ def sine_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     """Losses; what z does at three states; rollouts of z = +1 with the arm; tool paths of many rollouts.
 
     Positive z goes to the right in all models.
-
-    Args:
-        decoders: of the first seed, trained without noise, by model.
-        rows: of the study.
     """
     motion = Sine()
     states = passed_states(motion)
@@ -271,10 +270,6 @@ def rotate_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     """Losses; how z turns the box in three states, each about its own fixed point; rollouts of z = +1.
 
     Positive z turns counterclockwise in all models.
-
-    Args:
-        decoders: of the first seed, trained without noise, by model.
-        rows: of the study.
     """
     motion = Rotate()
     states = passed_states(motion)
@@ -367,12 +362,7 @@ SECOND_COLOUR: Final = "#8a8f96"
 
 
 def circle_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
-    """Losses; angles between the axes; where z_1 and z_2 move the tool at places on two circles.
-
-    Args:
-        decoders: of the first seed, trained without noise, by model.
-        rows: of the study.
-    """
+    """Losses; angles between the axes; where z_1 and z_2 move the tool at places on two circles."""
     motion = Circle()
     starts = _around(motion, passed_states(motion))
     shown = as_trained(decoders, CONTRASTED)
@@ -442,10 +432,6 @@ def reach_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     """Losses; final distances; tool paths from one start while z is held, for nine values of z.
 
     Positive z leads upwards in all models.
-
-    Args:
-        decoders: of the first seed, trained without noise, by model.
-        rows: of the study.
     """
     motion = ReachRegion()
     states = passed_states(motion)

@@ -1,6 +1,6 @@
 """The study's figures: those of the paper, its models, the weight of the entropy, and the tasks."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -165,7 +165,7 @@ def weights_figure(
         (panels[1], person, "final_state_error", "final state error", [f"{one}, {person}" for one in labels]),
     ):
         for index, task in enumerate(tasks):
-            places = np.arange(len(labels)) + WEIGHT_NUDGE * (index - (len(tasks) - 1) / 2)
+            places = np.arange(len(labels), dtype=np.float64) + WEIGHT_NUDGE * (index - (len(tasks) - 1) / 2)
             _draw_series(axes, task, places, [known[task, condition, measure] for condition in conditions])
         title(axes, name)
         axes.set_ylim(bottom=0.0)
@@ -325,7 +325,7 @@ def _figure(height_mm: float, name: str, *, wide: bool = True) -> "Drawing":
     return figure
 
 
-def _label(panels: "Sequence[Axes]", x: str = "", y: str = "") -> None:
+def _label(panels: "Iterable[Axes]", x: str = "", y: str = "") -> None:
     for axes in panels:
         if x:
             axes.set_xlabel(x, fontsize=FONT_SIZE)
