@@ -11,9 +11,9 @@ import pytest
 
 from latentarm.alignment.training import FitConfig
 from latentarm.commands import align as aligning
-from latentarm.metrics.results import read_results
 from latentarm.runs import aligning as learning
 from latentarm.runs import questions
+from result_rows import rows_in
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -52,7 +52,7 @@ def test_a_simulated_person_is_asked_and_drives(run: Run, trained: Path) -> None
     assert (config["name"], config["person"]) == ("ada", "simulated person")
     assert np.array(config["answers"]["u"]).shape == (4, 2)
     assert np.array(config["answers"]["start"]).shape == (4, 7)
-    (row,) = [row for row in read_results(folder / "config.json") if row.condition == "profile, simulated"]
+    (row,) = [row for row in rows_in(folder / "config.json") if row.condition == "profile, simulated"]
     assert row.mean is not None
     assert 0 <= row.mean < 0.5, "the answers themselves are met"
 
@@ -64,7 +64,7 @@ def test_a_simulated_person_is_asked_and_drives(run: Run, trained: Path) -> None
         for name in ("with", "without")
     }
     assert about == {"with": "ada", "without": None}
-    driven = {name: read_results(Path(name, "drives.json")) for name in about}
+    driven = {name: rows_in(Path(name, "drives.json")) for name in about}
     assert driven["with"] != driven["without"]
 
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
-from latentarm.metrics.results import read_results
 from latentarm.studies.compare import run as comparison
 from latentarm.tasks.planar.circle import Circle
+from result_rows import rows_in
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -29,7 +29,7 @@ def test_the_smallest_comparison_for_people_and_for_machines(
     assert "PCA" in out
     assert "compared/results.md" in out
     assert "cells" in err
-    written = read_results(Path("compared/results.json"))
+    written = rows_in(Path("compared/results.json"))
     monkeypatch.setattr(comparison, "run_compare", lambda config: written)  # not measured twice
     code, out, err = run(*command, "--json")
     assert code == 0

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from latentarm.metrics.results import read_results
 from latentarm.models.catalogue import MODELS
 from latentarm.studies.properties.preset import PRESETS, Preset
 from latentarm.studies.shared_autonomy.cell import TASKS
 from latentarm.studies.shared_autonomy.study import STUDY as SHARED_AUTONOMY
 from latentarm.studies.study import Report
 from latentarm.types import Row
+from result_rows import rows_in
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -37,7 +37,7 @@ def test_the_properties_for_people(run: Run, workplace: Path, monkeypatch: pytes
     assert "reach, simulated" in out
     assert "reproduced/properties/results.md" in out
     assert f"{len(MODELS)} cells" in err
-    assert read_results(Path("reproduced/properties/results.json"))
+    assert rows_in(Path("reproduced/properties/results.json"))
 
 
 @pytest.mark.slow
@@ -49,7 +49,7 @@ def test_the_smallest_study_of_shared_autonomy_runs_from_end_to_end(run: Run, wo
     assert "reproduced/shared-autonomy/results.md" in out
     assert "12 cells" in " ".join(err.split())
     folder = Path("reproduced/shared-autonomy")
-    written = read_results(folder / "results.json")
+    written = rows_in(folder / "results.json")
     assert {row.task for row in written} == set(TASKS)
     assert {path.stem for path in folder.glob("*.png")} == {*SHARED_AUTONOMY.figures} - {"entropy_weight"}
 

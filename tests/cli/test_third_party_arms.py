@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from latentarm.cli import main
-from latentarm.metrics.results import read_results
+from result_rows import rows_in
 
 JACO = files("dm_control") / "third_party" / "kinova" / "jaco_arm.xml"
 UR5E = files("airo_models") / "arms" / "ur5e" / "ur5e.urdf"
@@ -16,5 +16,5 @@ UR5E = files("airo_models") / "arms" / "ur5e" / "ur5e.urdf"
 def test_drives(model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["drive", "--robot", str(model), "--drives", "1", "--json"]) == 0
-    means = {row.measure: row.mean for row in read_results(Path("drives/drives.json"))}
+    means = {row.measure: row.mean for row in rows_in(Path("drives/drives.json"))}
     assert means["success_rate"] == 1.0

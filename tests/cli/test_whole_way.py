@@ -8,7 +8,7 @@ from unittest.mock import Mock
 import pytest
 
 from latentarm.demonstrations.dataset import read_dataset
-from latentarm.metrics.results import read_results
+from result_rows import rows_in
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -49,7 +49,7 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
         "reversal",
     }
     assert expected <= printed.keys()
-    assert {row.measure: row.mean for row in read_results(Path("runs/eat-cae/metrics.json"))} == printed
+    assert {row.measure: row.mean for row in rows_in(Path("runs/eat-cae/metrics.json"))} == printed
     assert {path.name for path in Path("runs/eat-cae").glob("*.png")} == {
         "consistency.png",
         "latent_axes.png",

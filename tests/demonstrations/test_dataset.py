@@ -14,7 +14,6 @@ from hypothesis.extra import numpy as npst
 from latentarm.demonstrations.dataset import (
     LOCK_FILE,
     append_episode,
-    is_dataset,
     read_dataset,
     write_dataset,
 )
@@ -127,7 +126,6 @@ def test_a_destination_in_use_is_left_alone(tmp_path: Path, demonstrations: Demo
 
 def test_an_empty_folder_will_do(tmp_path: Path, demonstrations: Demonstrations) -> None:
     write_dataset(demonstrations, tmp_path)
-    assert is_dataset(tmp_path)
 
 
 def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path, demonstrations: Demonstrations) -> None:

@@ -9,8 +9,7 @@ import pytest
 from latentarm.errors import UserError
 from latentarm.metrics.approach import SolverConfig
 from latentarm.metrics.controllability import ReachConfig
-from latentarm.metrics.evaluation import EvaluationConfig, evaluate
-from latentarm.metrics.results import read_results, write_results
+from latentarm.metrics.evaluation import EvaluationConfig, measure
 from latentarm.metrics.summary import HEADLINE, Subject, headline
 from latentarm.robots.planar import planar
 from latentarm.types import Demonstrations, Episode
@@ -60,15 +59,8 @@ def plane_demonstrations(robot):
 
 
 def figures_of(model, demonstrations, robot, held_out=(3,)):
-    rows = evaluate(
-        model,
-        demonstrations,
-        held_out,
-        robot,
-        subject=Subject("evaluate", task="plane", model="scl"),
-        rng=np.random.default_rng(0),
-        config=SMALL,
-    )
+    figures = measure(model, demonstrations, held_out, robot, rng=np.random.default_rng(0), config=SMALL)
+    rows = figures.rows(Subject("evaluate", task="plane", model="scl"))
     return {row.measure: row for row in rows}
 
 
@@ -92,7 +84,7 @@ def test_a_model_that_holds_every_direction_has_no_error(plane_demonstrations, r
     assert {"r2_axis_0", "r2_axis_1", "r2_axis_2"} <= rows.keys()
 
 
-def test_every_row_says_what_it_is_of_and_can_be_filed(plane_demonstrations, robot, linear_decoder, tmp_path):
+def test_every_row_says_what_it_is_of_and_can_be_filed(plane_demonstrations, robot, linear_decoder):
     model = PlaneModel((BASIS[:, :1], -BASIS[:, :1], BASIS[:, 1:2]), linear_decoder, latent_dim=1)
     rows = figures_of(model, plane_demonstrations, robot)
     assert {(row.study, row.task, row.model) for row in rows.values()} == {("evaluate", "plane", "scl")}
@@ -103,8 +95,6 @@ def test_every_row_says_what_it_is_of_and_can_be_filed(plane_demonstrations, rob
     assert [row.measure for row in headline(rows.values())] == list(HEADLINE)
     units = {"drift": "1", "controllability_m": "m", "error_percent_of_pca": "%", "error": "rad^2/s^2"}
     assert {measure: rows[measure].unit for measure in units} == units
-    write_results(tmp_path / "metrics.json", list(rows.values()))
-    assert read_results(tmp_path / "metrics.json") == list(rows.values())
 
 
 def test_the_noisy_error_is_measured_under_the_training_noise(plane_demonstrations, robot, formula_decoder):
@@ -152,15 +142,9 @@ def test_real_demonstrations_show_what_the_models_are_known_for(tmp_path):
     for name, epochs in (("pca", 1), ("scl", 6), ("cae", 6)):
         model = MODELS[name](latent_dim=2, seeds=2, epochs=epochs, state_noise_rad=0.01)
         model.fit(demonstrations, validation=[12, 13, 14])
-        rows = evaluate(
-            model,
-            demonstrations,
-            [12, 13, 14],
-            robot,
-            subject=Subject("evaluate", model=name),
-            rng=np.random.default_rng(0),
-            config=config,
-        )
+        rng = np.random.default_rng(0)
+        measured = measure(model, demonstrations, [12, 13, 14], robot, rng=rng, config=config)
+        rows = measured.rows(Subject("evaluate", model=name))
         figures[name] = {row.measure: row.mean for row in rows}
     assert figures["pca"]["error_percent_of_pca"] == pytest.approx(100.0, abs=0.1)
     assert figures["scl"]["error_percent_of_pca"] < 60.0

@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.errors import UserError
-from latentarm.metrics.results import as_document, read_results, write_results
+from latentarm.metrics.results import as_document, write_results
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.types import Row
 
@@ -26,14 +25,13 @@ row = st.builds(
     paper_mean=number,
     paper_sd=number,
 )
-GOOD = {"study": "evaluate", "measure": "drift", "unit": "1", "mean": 0.1, "sd": None, "n": 5}
 
 
 @given(rows=st.lists(row, max_size=5))
 def test_what_is_written_is_read_again(rows, tmp_path_factory):
     path = tmp_path_factory.mktemp("results") / "metrics.json"
     write_results(path, rows, about={"seed": 1})
-    assert read_results(path) == rows
+    assert [Row(**entry) for entry in json.loads(path.read_text())["rows"]] == rows
 
 
 def test_a_row_has_all_the_fields_that_machines_read():
@@ -56,34 +54,3 @@ def test_a_figure_that_is_no_number_leaves_no_file(tmp_path):
     with pytest.raises(ValueError):
         write_results(tmp_path / "metrics.json", [Row("s", "drift", "1", float("nan"), None, 1)])
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize(
-    ("content", "says"),
-    [
-        ("", "not a JSON document"),
-        ('{"rows": [', "not a JSON document"),
-        ("[" * 100_000, "nested deeper"),
-        ("[]", "not an object"),
-        ('{"rows": 3}', "no list called 'rows'"),
-        ('{"rows": [3]}', "row 0: not an object"),
-        (json.dumps({"rows": [GOOD, {**GOOD, "colour": "red"}]}), "row 1: the field 'colour' is not known"),
-        (json.dumps({"rows": [{"study": "s"}]}), "row 0: the field 'measure' is missing"),
-        (json.dumps({"rows": [{**GOOD, "unit": 1}]}), "'unit' must be text"),
-        (json.dumps({"rows": [{**GOOD, "mean": "big"}]}), "'mean' must be a finite number"),
-        (json.dumps({"rows": [{**GOOD, "sd": float("nan")}]}), "holds NaN"),
-        (json.dumps({"rows": [{**GOOD, "n": -1}]}), "'n' must be a count"),
-        (json.dumps({"rows": [{**GOOD, "n": None}]}), "'n' must be a count"),
-    ],
-)
-def test_foreign_files_are_refused_in_one_sentence(content, says, tmp_path):
-    path = tmp_path / "metrics.json"
-    path.write_text(content)
-    with pytest.raises(UserError, match=says) as refusal:
-        read_results(path)
-    assert str(path) in str(refusal.value)
-
-
-def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(UserError, match="cannot be read"):
-        read_results(tmp_path / "none.json")

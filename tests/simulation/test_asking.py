@@ -9,10 +9,10 @@ import time
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from latentarm.alignment.answers import Motions
 from latentarm.errors import UserError
-from latentarm.kinematics.rotations import rotation_from_vector
 from latentarm.operators.preference import ToolAxes
 from latentarm.robots.planar import planar
 from latentarm.runs.person import Question
@@ -127,7 +127,7 @@ def test_the_terminal_is_left_as_it_was(terminal):
 
 
 def pose(x=0.0, y=0.0, z=0.0, turn=(0.0, 0.0, 0.0)):
-    return Pose(np.array([x, y, z]), rotation_from_vector(np.array(turn)))
+    return Pose(np.array([x, y, z]), Rotation.from_rotvec(turn).as_matrix())
 
 
 def test_a_motion_in_words():

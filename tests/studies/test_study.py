@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from latentarm.errors import UserError
-from latentarm.metrics.results import read_results
 from latentarm.parallel.grid import CellError
 from latentarm.runs.results_folder import CONFIG
 from latentarm.studies.study import ALWAYS_MADE, Report, Request, Study, again, run_study
 from latentarm.style import new_figure
 from latentarm.types import Row
+from result_rows import rows_in
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def test_everything_is_written_and_says_what_it_depends_on(tmp_path):
     out = tmp_path / "new"
     done = run_study(STUDY, request(out))
     assert {path.name for path in out.iterdir()} == {CONFIG, *ALWAYS_MADE, "seeds.json", "tides.png"}
-    assert read_results(out / "results.json") == done.rows
+    assert rows_in(out / "results.json") == done.rows
     assert [row.mean for row in done.rows] == [1.0, 4.0]
     assert (out / "results.md").read_text() == "# Tides\n"
     about = json.loads((out / "results.json").read_text())["about"]

@@ -2,11 +2,12 @@ import time
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from latentarm.assistance.annotation import annotate
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import HalfSpace
-from latentarm.kinematics.rotations import angle_between, rotation_from_vector
+from latentarm.kinematics.rotations import angle_between
 from latentarm.tasks.table_top import HOVER, ITEMS, TABLE_HEIGHT
 from latentarm.types import Pose
 
@@ -54,7 +55,7 @@ def test_a_waypoint_is_reached_within_3_cm_and_20_degrees(table_top, away, turn,
     waypoint = table_top.goals[0].pose
     moved = Pose(
         waypoint.position + np.array([0.0, away, 0.0]),
-        rotation_from_vector(np.array([np.deg2rad(turn), 0.0, 0.0])) @ waypoint.rotation,
+        Rotation.from_euler("x", turn, degrees=True).as_matrix() @ waypoint.rotation,
     )
     assert table_top.reached(moved, waypoint) is there
 

@@ -36,34 +36,6 @@ Others = Callable[[FloatArray, FloatArray, FloatArray, ArrayLike], FloatArray]
 _TINY = 1e-300
 
 
-def lyapunov(state: FloatArray, goal_state: FloatArray) -> FloatArray:
-    """``V = ‖e‖² / 2`` (equation 11).
-
-    Args:
-        state: (..., n), rad.
-        goal_state: (..., n), ``g*``, rad.
-
-    Returns:
-        (...,), rad².
-    """
-    error = goal_state - state
-    return (error * error).sum(axis=-1) / 2.0
-
-
-def lyapunov_rate(state: FloatArray, goal_state: FloatArray, action: FloatArray) -> FloatArray:
-    """``dV/dt = -e·a`` (equation 12).
-
-    Args:
-        state: (..., n), rad.
-        goal_state: (..., n), ``g*``, rad.
-        action: (..., n), what the arm does, rad/s.
-
-    Returns:
-        (...,), rad²/s; negative where the arm comes nearer.
-    """
-    return -((goal_state - state) * action).sum(axis=-1)
-
-
 def furthest(state: FloatArray, belief: FloatArray, goals: FloatArray, goal: ArrayLike) -> FloatArray:
     """``(1 - b(g*)) sigma_r``, all help as towards the furthest other goal (equation 14).
 
@@ -158,47 +130,6 @@ def radius(
     sure = np.vecdot(belief, ~_is_other(goals, goal))
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         return np.where(sure == 0.0, np.inf, reach / sure)
-
-
-def step_certified(
-    sigma_h: ArrayLike,
-    state: FloatArray,
-    belief: FloatArray,
-    goals: FloatArray,
-    goal: ArrayLike,
-    alpha: ArrayLike,
-    dt_s: ArrayLike,
-    gain_per_s: ArrayLike = 1.0,
-) -> BoolArray:
-    """Where ``V(t + dt) < V(t)`` whatever the person does, for an action that is held for a whole step.
-
-    The furthest from the goal that a step can end is ``‖e - dt alpha k r‖ + dt (1 - alpha) sigma_h`` with
-    the known help ``r = Σ b(g) (g - s)``, so this is exact: it holds for all ``‖phi‖ <= sigma_h``, and
-    where it fails some ``phi`` does not come nearer. By the triangle inequality `certified` with
-    `furthest` or `weighted` implies it wherever ``alpha k b(g*) dt <= 1``: equations 13 and 14 need no
-    correction for the step. For longer steps, and with `known_help`, they may promise too much.
-
-    Args:
-        sigma_h: as everywhere here; likewise all but the step.
-        state: (..., n), rad.
-        belief: (..., G).
-        goals: (..., G, n), rad.
-        goal: (...,).
-        alpha: (...,).
-        dt_s: (...,), how long the action is held, s, positive.
-        gain_per_s: (...,), 1/s.
-
-    Returns:
-        (...,).
-    """
-    sigma_h, alpha, gain = _checked(sigma_h, alpha, gain_per_s)
-    dt = np.asarray(dt_s, dtype=np.float64)
-    if not (dt > 0.0).all():
-        raise UserError("The bound's step dt_s must be positive.")
-    away = goals - state[..., None, :]
-    error, help_there = np.vecmat(~_is_other(goals, goal), away), np.vecmat(belief, away)
-    left = _length(error - (dt * alpha * gain)[..., None] * help_there)
-    return (left + dt * (1.0 - alpha) * sigma_h < _length(error)) & (alpha > 0.0)
 
 
 def _is_other(goals: FloatArray, goal: ArrayLike) -> BoolArray:

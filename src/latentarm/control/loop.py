@@ -11,7 +11,7 @@ from latentarm.control.clock import Clock
 from latentarm.control.deadlines import DeadlineLog, DeadlineStatistics
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
-from latentarm.types import StepRecord, Stop
+from latentarm.types import StepRecord
 
 
 @final
@@ -60,13 +60,7 @@ class ControlLoop:
         self._finished = threading.Event()
         self._stop_reasons: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._enable_asked = threading.Event()
-        self._refusal: Stop | None = None
         self._ending = False
-
-    @property
-    def refusal(self) -> Stop | None:
-        """Why the newest `enable` was refused, or None."""
-        return self._refusal
 
     def enable(self) -> None:
         """The person's explicit action, carried out once the next tick's input is known."""
@@ -128,14 +122,6 @@ class ControlLoop:
         self._step.halted("The loop was too late; the arm has stopped by itself.")
         return True
 
-    def _enabled(self, stopped: bool) -> Stop | None:
-        """Enable the arm, unless it was stopped in the same tick or the loop is ending."""
-        if self._ending:
-            return Stop("The loop is ending.")
-        if stopped:
-            return Stop("The arm was stopped at the same moment: enable it again.")
-        return self._step.enable()
-
     def _await_tick(self) -> tuple[float, float]:
         """Wait for the next tick.
 
@@ -177,7 +163,9 @@ class ControlLoop:
         self._log.add(now_s - due_s, self._clock.now_s() - due_s, overrun=overrun)
         if self._enable_asked.is_set():
             self._enable_asked.clear()
-            self._refusal = self._enabled(stopped)
+            # Not if the arm was stopped in the same tick, or the loop is ending.
+            if not (stopped or self._ending):
+                self._step.enable()
         # Before observers: if one fails, this tick must not run twice.
         self._next += 1
         for observe in observers:

@@ -47,11 +47,6 @@ LOCK_FILE: Final = ".lock"
 """In a dataset's folder while an episode is appended."""
 
 
-def is_dataset(path: Path) -> bool:
-    """Whether ``path`` holds a dataset of the layout, so that an episode can be appended."""
-    return (path / INFO_PATH).is_file()
-
-
 def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:
     """Write demonstrations to a new folder, which appears whole or not at all.
 

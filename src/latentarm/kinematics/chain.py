@@ -191,23 +191,6 @@ class Chain:
             moved[..., base, :] = local[base]
         return moved
 
-    def point_jacobian(self, transforms: FloatArray, link: IntArray, points: FloatArray) -> FloatArray:
-        """How joint velocities move points that ride on links.
-
-        Args:
-            transforms: (..., n, 4, 4), from `link_transforms`.
-            link: (K,), the link that carries each point, -1 for the base.
-            points: (..., K, 3), the points in the base frame, m.
-
-        Returns:
-            (..., K, 3, n), m/s per rad/s of each joint (per m/s where prismatic).
-        """
-        axes, origins = self.joint_axes(transforms)
-        columns = _column_velocity(axes[..., None, :, :], points[..., :, None, :] - origins[..., None, :, :])
-        if self._slides:
-            columns = np.where(self.slide[:, None], axes[..., None, :, :], columns)
-        return (columns * self._moves_or_base[link][:, :, None]).mT
-
     @cached_property
     def motion_constants(self) -> FloatArray:
         """(n, 3 or 4, 16), each joint's transform as a linear map of [1, sin q, cos q, q].

@@ -39,22 +39,6 @@ class Reading:
     base_bodies: tuple[int, ...]
 
 
-def read_chain(model: mujoco.MjModel, end_effectors: Sequence[str]) -> Chain:
-    """Read the chain that moves the end-effectors; see `read`.
-
-    Args:
-        model: a MuJoCo model.
-        end_effectors: names of sites or bodies.
-
-    Returns:
-        The chain, with one tool for each end-effector.
-
-    Raises:
-        UserError: see `read`.
-    """
-    return read(model, end_effectors).chain
-
-
 def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> Reading:
     """Read the joints between the world and the end-effectors.
 

@@ -52,25 +52,6 @@ def rotation_vector(rotation: FloatArray) -> FloatArray:
     return vector * factor[..., None]
 
 
-def rotation_from_vector(vector: FloatArray) -> FloatArray:
-    """Exponential of rotation vectors (Rodrigues' formula).
-
-    Args:
-        vector: (..., 3), axis times angle, rad.
-
-    Returns:
-        (..., 3, 3), rotation matrices.
-    """
-    angle = np.sqrt(np.vecdot(vector, vector))[..., None, None]
-    skew = np.zeros((*vector.shape[:-1], 3, 3))
-    skew[..., 0, 1], skew[..., 0, 2], skew[..., 1, 2] = -vector[..., 2], vector[..., 1], -vector[..., 0]
-    skew -= skew.mT
-    # np.sinc keeps sin(x)/x and (1 - cos x)/x² = sinc²(x/2)/2 exact at zero.
-    first = np.sinc(angle / np.pi)
-    second = 0.5 * np.sinc(angle / (2.0 * np.pi)) ** 2
-    return np.eye(3) + first * skew + second * (skew @ skew)
-
-
 def angle_between(first: FloatArray, second: FloatArray) -> FloatArray:
     """Angle of the turn that takes one rotation to another.
 

@@ -96,37 +96,10 @@ class Figures:
     per_seed: Mapping[str, FloatArray]
     start_distance_m: FloatArray
 
-
-def evaluate(
-    model: TrainedModel,
-    demonstrations: Demonstrations,
-    held_out: Sequence[int],
-    robot: Robot,
-    *,
-    subject: Subject,
-    rng: np.random.Generator,
-    config: EvaluationConfig | None = None,
-) -> list[Row]:
-    """Measure a model on held-out episodes: mean and SD over its seeds.
-
-    Args:
-        model: a fitted model of S seeds.
-        demonstrations: the dataset that it was trained on.
-        held_out: indices of the episodes that it has not seen.
-        robot: the arm that it moves.
-        subject: what the rows say they are about.
-        rng: for the noise on held-out states.
-        config: how the measures are taken.
-
-    Returns:
-        One row per measure.
-
-    Raises:
-        UserError: no episode is held out, none is left for PCA, or the contexts lack a belief.
-    """
-    measured = measure(model, demonstrations, held_out, robot, rng=rng, config=config)
-    rows = [summarise(subject, name, values) for name, values in measured.per_seed.items()]
-    return [*rows, summarise(subject, "start_distance_m", measured.start_distance_m)]
+    def rows(self, subject: Subject) -> list[Row]:
+        """Mean and SD over seeds, one row per measure."""
+        rows = [summarise(subject, name, values) for name, values in self.per_seed.items()]
+        return [*rows, summarise(subject, "start_distance_m", self.start_distance_m)]
 
 
 def measure(

@@ -154,7 +154,7 @@ def evaluate_run(
         refuse_other_results(out / "metrics.json", out, earlier if isinstance(earlier, dict) else {}, about)
     measured = take()
     subject = Subject("evaluate", task=run.demonstrations.name, model=run.model)
-    rows = _rows(subject, measured.figures)
+    rows = measured.figures.rows(subject)
     judged = rows
     if cells:
         refitted = run_grid(
@@ -287,16 +287,10 @@ def _fold_name(cell: _FoldCell) -> str:
     return f"fold {cell.index}"
 
 
-def _rows(subject: Subject, figures: Figures) -> list[Row]:
-    """Mean and SD over seeds."""
-    rows = [summarise(subject, name, values) for name, values in figures.per_seed.items()]
-    return [*rows, summarise(subject, "start_distance_m", figures.start_distance_m)]
-
-
 def _rows_over_folds(subject: Subject, figures: Sequence[Figures]) -> list[Row]:
     """Mean over folds of the mean over seeds, and SD over folds."""
     means = [
-        {row.measure: math.nan if row.mean is None else row.mean for row in _rows(subject, one)}
+        {row.measure: math.nan if row.mean is None else row.mean for row in one.rows(subject)}
         for one in figures
     ]
     return [summarise(subject, name, [one[name] for one in means]) for name in means[0]]
