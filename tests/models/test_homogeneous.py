@@ -18,7 +18,7 @@ from latentarm.models.networks import group_layers
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M
 from latentarm.robots.planar import planar
 
-SMALL = {"seeds": 2, "epochs": 6, "hidden": (16,), "window": 2}
+SMALL = {"seeds": 2, "epochs": 4, "hidden": (16,), "window": 2}
 
 coordinate = st.floats(-1.5, 1.5, allow_nan=False, width=32)
 push = st.floats(-1, 1, allow_nan=False, width=32)

@@ -23,7 +23,7 @@ from latentarm.robots.catalogue import load_robot
 from latentarm.robots.planar import planar
 from latentarm.tasks.planar.catalogue import MOTIONS
 
-SMALL = {"seeds": 2, "epochs": 4, "hidden": (12, 12), "window": 2}
+SMALL = {"seeds": 2, "epochs": 3, "hidden": (12, 12), "window": 2}
 SCATTERED = {"epochs": 1, "hidden": (12, 12), "window": 2, "bend_weight": 0.0}
 
 coordinate = st.floats(-2.5, 2.5, allow_nan=False, width=32)

@@ -23,7 +23,7 @@ from latentarm.models.optimiser import FlatAdam
 from latentarm.models.training import epoch_bar
 
 NEURAL = [name for name in MODELS if name != "pca"]
-SMALL = {"epochs": 4, "hidden": (8, 8), "window": 2}
+SMALL = {"epochs": 2, "hidden": (8, 8), "window": 2}
 
 
 @pytest.mark.parametrize("name", NEURAL)
@@ -85,7 +85,7 @@ def test_resuming_gives_what_an_uninterrupted_training_gives(
     name, demonstrations, samples, tmp_path, monkeypatch
 ):
     context, z = samples
-    settings = {**SMALL, "epochs": 6, "seeds": 2, "checkpoint_interval_s": 0.0}
+    settings = {**SMALL, "epochs": 3, "seeds": 2, "checkpoint_interval_s": 0.0}
     whole = MODELS[name](**settings).fit(demonstrations)
     path = tmp_path / "checkpoint.safetensors"
     write, calls = training.write_checkpoint, []
@@ -93,7 +93,7 @@ def test_resuming_gives_what_an_uninterrupted_training_gives(
     def write_then_die(*arguments):
         write(*arguments)
         calls.append(1)
-        if len(calls) == 3:
+        if len(calls) == 2:
             raise KilledError
 
     with monkeypatch.context() as patch:
@@ -132,7 +132,7 @@ MODELS["cvae"](epochs={epochs}, hidden=(8, 8), window=2, checkpoint_interval_s=0
 
 def test_a_training_killed_outright_goes_on(demonstrations, samples, tmp_path):
     context, z = samples
-    epochs = 40
+    epochs = 25
     path = tmp_path / "checkpoint.safetensors"
     script = KILLED_SCRIPT.format(tests=str(Path(__file__).parent), epochs=epochs)
     process = subprocess.Popen([sys.executable, "-c", script, str(path)])
