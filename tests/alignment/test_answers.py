@@ -6,7 +6,7 @@ from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import identity
 from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import ROTATION_WEIGHT_M, pose_vectors
-from latentarm.alignment.torch_poses import TorchPoses
+from latentarm.alignment.transition import TorchPoses
 from latentarm.errors import UserError
 from latentarm.kinematics.rotations import angle_between
 from latentarm.robots.catalogue import load_robot

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from latentarm.alignment.demonstrated import shown
 from latentarm.alignment.queries import StoppingRule
 from latentarm.errors import UserError
 from latentarm.models.pca.training import PCA
 from latentarm.runs.person import Person
-from latentarm.runs.questions import Scene, ask, shown, unwatched
+from latentarm.runs.questions import Scene, ask, unwatched
 from latentarm.tasks.table_top import TableTop
 
 NEVER = StoppingRule(share=0.0, patience=100)

@@ -14,6 +14,12 @@ from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray
 DURATION_S: Final = 0.5
 """How long a shown motion takes, s: long enough to be seen, short enough to be one push of the stick."""
 
+CANDIDATES: Final = 100
+"""Motions that may be asked about."""
+
+UNLABELLED: Final = 1000
+"""Contexts in which the priors shall hold."""
+
 
 def demonstrated_motions(
     demonstrations: Demonstrations,
@@ -49,6 +55,28 @@ def noticeable(motions: Motions, chain: Chain) -> BoolArray:
     """Which motions (N,) a person can tell from standing still: at least half as long as half of all are."""
     length = lengths(chain, motions)
     return length >= 0.5 * np.median(length)
+
+
+def shown(
+    demonstrations: Demonstrations,
+    context: Literal["state", "state_belief"],
+    chain: Chain,
+    rng: np.random.Generator,
+) -> tuple[Motions, FloatArray]:
+    """Motions to ask about that a person can tell from standing still, and contexts (M, c) without an answer.
+
+    Args:
+        demonstrations: those that trained the model, so that others can still judge it.
+        context: what the model's decoder sees.
+        chain: the arm.
+        rng: decides which.
+
+    Raises:
+        UserError: no demonstration moves for long enough, or a belief is asked for and missing.
+    """
+    many = demonstrated_motions(demonstrations, CANDIDATES, rng, context=context)
+    unlabelled = demonstrated_motions(demonstrations, UNLABELLED, rng, context=context).context
+    return many[np.flatnonzero(noticeable(many, chain))], unlabelled
 
 
 def _motions(

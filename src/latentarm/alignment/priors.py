@@ -6,13 +6,15 @@ can be summed (equation 23).
 
 import math
 from dataclasses import dataclass
-from typing import Final, final
+from typing import TYPE_CHECKING, Final, final
 
 import torch
 from torch import Tensor
 
-from latentarm.alignment.transition import Push
 from latentarm.errors import UserError
+
+if TYPE_CHECKING:
+    from latentarm.alignment.transition import Push
 
 
 @final
@@ -46,7 +48,7 @@ NO_PRIORS: Final = Priors(proportional=0.0, reversible=0.0, consistent=0.0)
 """Learning from answers alone (equation 19)."""
 
 
-def supervised(push: Push, wanted: Tensor) -> Tensor:
+def supervised(push: "Push", wanted: Tensor) -> Tensor:
     """``‖x* - Psi(T(s, u))‖^2`` (equation 19): the input of an answer leads where the shown motion led.
 
     Args:
@@ -56,7 +58,7 @@ def supervised(push: Push, wanted: Tensor) -> Tensor:
     return _squared(push.pose - wanted).mean(-1)
 
 
-def proportional(push: Push, part: Push, alpha: Tensor) -> Tensor:
+def proportional(push: "Push", part: "Push", alpha: Tensor) -> Tensor:
     """``‖Psi(T(alpha u, s)) - Psi(s) - alpha Δx‖^2`` (equation 20): half the push moves half as far.
 
     Where f is smooth in u, as a network is, only a linear one has this property for all alpha.
@@ -69,7 +71,7 @@ def proportional(push: Push, part: Push, alpha: Tensor) -> Tensor:
     return _squared(part.change - alpha * push.change).mean(-1)
 
 
-def reversible(push: Push, back: Push) -> Tensor:
+def reversible(push: "Push", back: "Push") -> Tensor:
     """``‖Psi(s) - Psi(T(-u, T(u, s)))‖^2`` (equation 21): the opposite push undoes a push.
 
     Args:
@@ -79,7 +81,7 @@ def reversible(push: Push, back: Push) -> Tensor:
     return _squared(push.before.pose - back.pose).mean(-1)
 
 
-def consistent(push: Push, elsewhere: Push, gamma: float, joints: int) -> Tensor:
+def consistent(push: "Push", elsewhere: "Push", gamma: float, joints: int) -> Tensor:
     """``‖Δx(s_1) - Δx(s_2)‖^2 exp(-gamma ‖s_1 - s_2‖)`` (equation 22): the same push moves alike nearby.
 
     Equation 22 compares how far the tool moves; this compares where to as well, and squares what it compares

@@ -61,3 +61,14 @@ def _towards(goals: FloatArray, state: FloatArray, speed: float, horizon_s: floa
     away = goals - state
     distance = np.sqrt((away * away).sum(axis=-1, keepdims=True))
     return away * np.minimum(speed / np.maximum(distance, 1e-12), 1 / horizon_s)
+
+
+def prepared(demonstrations: Demonstrations, context: str) -> Demonstrations:
+    """The demonstrations with the belief that the context needs, computed where it is not recorded.
+
+    Raises:
+        UserError: a belief is needed, none is recorded, and no goals are known to compute it from.
+    """
+    if context != "state_belief" or all("belief" in episode.extras for episode in demonstrations.episodes):
+        return demonstrations
+    return annotate(demonstrations)

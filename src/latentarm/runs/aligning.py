@@ -9,9 +9,11 @@ import numpy as np
 from latentarm.alignment.affine import fit_affine
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
+from latentarm.alignment.demonstrated import shown
 from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.profile import Profile, model_fingerprint, save_profile
 from latentarm.alignment.training import FitConfig
+from latentarm.assistance.annotation import prepared
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.metrics.measures import unit_of
@@ -19,9 +21,8 @@ from latentarm.metrics.results import as_document
 from latentarm.models.saving import load_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
-from latentarm.runs.questions import ENSEMBLE, Scene, Watch, shown, unwatched
+from latentarm.runs.questions import ENSEMBLE, Scene, Watch, unwatched
 from latentarm.runs.samples import ALIGN_STREAM, load_samples
-from latentarm.runs.training import prepared
 from latentarm.types import Row
 
 NO_ALIGN: Final = "no_align"

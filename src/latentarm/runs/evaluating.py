@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from latentarm.assistance.annotation import prepared
 from latentarm.demonstrations.folds import make_folds
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
@@ -40,7 +41,6 @@ from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import Run, read_run, robot_of, weights_fingerprint
 from latentarm.runs.results_folder import refuse_other_results, write_json
 from latentarm.runs.samples import load_samples
-from latentarm.runs.training import prepared
 from latentarm.style import save_figure
 from latentarm.types import Demonstrations, FloatArray, Row
 from latentarm.untrusted.documents import read_object

@@ -3,12 +3,11 @@
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from typing import Final, Literal, final
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.alignment.answers import Answers, Motions
-from latentarm.alignment.demonstrated import demonstrated_motions, noticeable
 from latentarm.alignment.queries import (
     StoppingRule,
     bootstrap,
@@ -22,13 +21,7 @@ from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.model import LatentActionModel
 from latentarm.runs.person import Person, Question, Say
-from latentarm.types import Demonstrations, FloatArray
-
-CANDIDATES: Final = 100
-"""Motions that may be asked about."""
-
-UNLABELLED: Final = 1000
-"""Contexts in which the priors shall hold."""
+from latentarm.types import FloatArray
 
 TOO_FEW: Final = 3
 """Answers below which alignments agree or disagree by chance."""
@@ -82,28 +75,6 @@ class Scene:
                 seed_index=self.seed_index,
                 report=report,
             )
-
-
-def shown(
-    demonstrations: Demonstrations,
-    context: Literal["state", "state_belief"],
-    chain: Chain,
-    rng: np.random.Generator,
-) -> tuple[Motions, FloatArray]:
-    """Motions to ask about that a person can tell from standing still, and contexts (M, c) without an answer.
-
-    Args:
-        demonstrations: those that trained the model, so that others can still judge it.
-        context: what the model's decoder sees.
-        chain: the arm.
-        rng: decides which.
-
-    Raises:
-        UserError: no demonstration moves for long enough, or a belief is asked for and missing.
-    """
-    many = demonstrated_motions(demonstrations, CANDIDATES, rng, context=context)
-    unlabelled = demonstrated_motions(demonstrations, UNLABELLED, rng, context=context).context
-    return many[np.flatnonzero(noticeable(many, chain))], unlabelled
 
 
 def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRule) -> Answers:

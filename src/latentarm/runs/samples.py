@@ -11,6 +11,7 @@ import numpy as np
 from safetensors.numpy import save
 
 from latentarm.alignment.answers import Motions
+from latentarm.alignment.demonstrated import shown
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.files import written_whole
@@ -20,7 +21,6 @@ from latentarm.metrics.samples import StartGoalPairs
 from latentarm.models.model import LatentActionModel
 from latentarm.models.reading import Section
 from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_tensors
-from latentarm.runs.questions import shown
 from latentarm.types import Demonstrations, FloatArray, IntArray
 
 SAMPLES_NAME: Final = "samples.safetensors"

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from latentarm.assistance.annotation import annotate
+from latentarm.assistance.annotation import prepared
 from latentarm.assistance.entropy import GoalEntropy
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.split import select_episodes, split_episodes
@@ -237,17 +237,6 @@ def _copy_of(robot: Robot, run: Path) -> str | None:
         message = f"{run} keeps no copy of its robot and needs {robot.model_path}: {error}"
         warnings.warn(message, stacklevel=3)
         return None
-
-
-def prepared(demonstrations: Demonstrations, context: str) -> Demonstrations:
-    """The demonstrations with the belief that the context needs, computed where it is not recorded.
-
-    Raises:
-        UserError: a belief is needed, none is recorded, and no goals are known to compute it from.
-    """
-    if context != "state_belief" or all("belief" in episode.extras for episode in demonstrations.episodes):
-        return demonstrations
-    return annotate(demonstrations)
 
 
 def _check_folder(config: TrainConfig) -> None:

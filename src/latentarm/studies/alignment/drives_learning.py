@@ -16,7 +16,7 @@ import numpy as np
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import Alignment, identity
-from latentarm.alignment.demonstrated import demonstrated_motions
+from latentarm.alignment.demonstrated import demonstrated_motions, shown
 from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.priors import NO_PRIORS
 from latentarm.alignment.queries import StoppingRule
@@ -27,7 +27,7 @@ from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.scaling import CollapseWarning
 from latentarm.operators.expectation import Expectation, displacements, main_directions
-from latentarm.runs.questions import ENSEMBLE, Scene, ask, shown, unwatched
+from latentarm.runs.questions import ENSEMBLE, Scene, ask, unwatched
 from latentarm.simulation.asking import FASTEST, SimulatedPerson
 from latentarm.simulation.drive import STATE_NOISE_RAD
 from latentarm.studies.alignment.conditions import ALL_PRIORS, IDEAL, LEARNED, NO_ALIGN, WITHOUT_PRIORS
