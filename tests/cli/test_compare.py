@@ -54,7 +54,7 @@ REFUSED = {
         "eat: .* fewer than the 8 folds",
     ),
     "another robot": (("--demonstrations", "eat", "circles"), "one robot"),
-    "no robot": (("--demonstrations", "nameless"), "which robot"),
+    "no robot": (("--demonstrations", "nameless"), "name its robot"),
     "an unknown robot": (("--demonstrations", "foreign"), "asimo"),
     "over something else": (("--demonstrations", "eat", "--out", "eat"), "no earlier run"),
 }

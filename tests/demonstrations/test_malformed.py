@@ -264,7 +264,7 @@ MALFORMED: dict[str, tuple[Callable[[Path], Path], str]] = {
         "timestamps advance at 0.01 Hz, but the rate is 10",
     ),
     "a jump": (npz(q=q_with(3, 0, 2.8), rate_hz=500.0), "sample 3: joint joint1 moves at 1390 rad/s"),
-    "foreign names": (npz(joint_names=list("abcdefg")), "cannot be told .* --joints a b c d e f g"),
+    "foreign names": (npz(joint_names=list("abcdefg")), "cannot be matched .* --joints a b c d e f g"),
     "no version": (dataset(info(codebase_version=None)), "the entry 'codebase_version' is missing"),
     "no state feature": (dataset(info(features={})), "has no observation.state"),
     "fps zero": (dataset(info(fps=0)), "rate is 0 Hz"),

@@ -216,7 +216,7 @@ def test_columns_can_be_told(told: tuple[str, ...], columns: tuple[int, ...]) ->
 @pytest.mark.parametrize(
     ("told", "gripper", "said"),
     [
-        ((), None, "cannot be told to be the robot's joints shoulder, elbow.*--joints a b"),
+        ((), None, "cannot be matched to the robot's joints shoulder, elbow.*--joints a b"),
         (("a",), None, "must name 2 columns"),
         (("a", "a"), None, "for more than one joint"),
         (("a", "d"), None, "no column 'd'; it has a, b, c"),

@@ -75,8 +75,8 @@ def test_a_prefix_that_is_not_declared_is_let_pass(written):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        (urdf(mesh("gone.stl")), r"the collision mesh 'gone\.stl' of link upper is not there"),
-        (urdf(mesh("package://nobody/gone.stl")), "of link upper is not there"),
+        (urdf(mesh("gone.stl")), r"the collision mesh 'gone\.stl' of link upper does not exist"),
+        (urdf(mesh("package://nobody/gone.stl")), "of link upper does not exist"),
         (
             urdf(mesh("robot.dae")),
             r"in a format that cannot be read: convert it to one of \.stl, \.obj, \.msh",

@@ -1,4 +1,4 @@
-"""How much one import may hold in memory: checked against what a file declares, before allocating."""
+"""Memory limits for one import, checked against what a file declares before anything is allocated."""
 
 from pathlib import Path
 from typing import Final

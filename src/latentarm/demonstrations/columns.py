@@ -3,7 +3,7 @@
 Columns are matched by name: exactly, or else by their words, without case, separators, ``pos``, ``joint`` and
 what all of them begin with (``panda_joint1`` is ``Joint 1``, ``main_elbow_flex`` is ``elbow_flex.pos``).
 Columns that are merely numbered are taken from the base to the tool if there are as many as joints.
-Everything else has to be told.
+Anything else must be stated by the user.
 """
 
 import re
@@ -53,13 +53,13 @@ def find_columns(
     Args:
         names: of the columns, distinct.
         joints: the robot's joint names.
-        told: what the user says of it: ``JOINT=COLUMN`` for every joint, or one column for every joint in the
+        told: what the user states: ``JOINT=COLUMN`` for every joint, or one column for every joint in the
             robot's order; a column is a name or a number, counted from zero. Empty to find them by name.
         gripper: the gripper's column, or None to find it by name.
         source: the file, for the message.
 
     Raises:
-        UserError: a joint's column cannot be known, or what was told does not fit.
+        UserError: a joint's column cannot be determined, or what the user said does not fit.
     """
     for joint in joints:
         if is_gripper(joint):
@@ -123,7 +123,7 @@ def _by_name(
     names: Sequence[str], candidates: Sequence[int], joints: Sequence[str], source: str
 ) -> tuple[list[int], str]:
     if len(candidates) == len(joints) and tuple(names) == default_joint_names(len(names)):
-        return list(candidates), "the file names no columns: its order is taken for base to tool"
+        return list(candidates), "the file names no columns: its order is taken as base to tool"
     place = {names[index]: index for index in candidates}
     if all(joint in place for joint in joints):
         return [place[joint] for joint in joints], "by name"
@@ -134,7 +134,7 @@ def _by_name(
     if len(candidates) == len(joints) and _numbered(keys):
         return list(
             candidates
-        ), "by number: the names say no more, so the file's order is taken for base to tool"
+        ), "by number: the names carry no meaning, so the file's order is taken as base to tool"
     if len(candidates) < len(joints):
         listed = ", ".join(names[index] for index in candidates)
         raise UserError(
@@ -143,7 +143,7 @@ def _by_name(
         )
     suggestion = " ".join(names[index] for index in candidates[: len(joints)])
     raise UserError(
-        f"{source}: the columns {', '.join(names)} cannot be told to be the robot's joints"
+        f"{source}: the columns {', '.join(names)} cannot be matched to the robot's joints"
         f" {', '.join(joints)}."
         f" Choose the robot that was recorded with --robot, or name the column of each joint in the"
         f" robot's order,"
@@ -152,7 +152,7 @@ def _by_name(
 
 
 def _numbered(keys: Sequence[tuple[str, ...]]) -> bool:
-    """Whether the keys are nothing but numbers, one after the other."""
+    """Whether the keys are consecutive numbers and nothing else."""
     if not all(len(key) == 1 and key[0].isdecimal() for key in keys):
         return False
     numbers = [int(key[0]) for key in keys]

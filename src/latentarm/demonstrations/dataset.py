@@ -2,8 +2,8 @@
 
 ``meta/info.json`` is the commit point. An append first puts the episode's samples, its row and its
 statistics in place, each file whole, and replaces ``info.json`` last; rows beyond its totals do not
-exist, for this reader and for LeRobot's alike. A kill at any moment therefore costs at most the
-episode that was being appended, and the next append overwrites what is left of it.
+exist, for this reader and for LeRobot's alike. Killing the process at any moment therefore loses at most the
+episode being appended, and the next append overwrites its remains.
 """
 
 from dataclasses import replace
@@ -57,7 +57,7 @@ def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:
         path: a folder that does not exist yet, or is empty.
 
     Raises:
-        UserError: the demonstrations are unfit (see `validate`), or ``path`` is taken or unwritable.
+        UserError: the demonstrations are invalid (see `validate`), or ``path`` exists or is not writable.
     """
     path = Path(path)
     validate(demonstrations, str(path))
@@ -99,7 +99,7 @@ def write_dataset(demonstrations: Demonstrations, path: StrPath) -> None:
 
 
 def append_episode(path: StrPath, episode: Episode) -> None:
-    """Add one episode to a dataset: whole once this returns, absent if it is killed before.
+    """Append one episode to a dataset, atomically: it is absent if the process is killed first.
 
     The newest data file is copied with the episode added, up to the layout's size of a data file;
     then a new one begins.
@@ -109,7 +109,7 @@ def append_episode(path: StrPath, episode: Episode) -> None:
         episode: same joints and features as the others.
 
     Raises:
-        UserError: the episode is unfit, ``path`` is no dataset of ours, or it is being written.
+        UserError: the episode is invalid, ``path`` is not a native dataset, or another program is writing it.
     """
     path = Path(path)
     with locked(path, path / LOCK_FILE):
@@ -156,7 +156,7 @@ def read_dataset(path: StrPath) -> Demonstrations:
         The demonstrations, in single precision.
 
     Raises:
-        UserError: ``path`` is no dataset, another program's (import it first), or damaged.
+        UserError: ``path`` is not a dataset, was written by another program (import it first), or is damaged.
     """
     path = Path(path)
     info = _native_info(path)
@@ -182,7 +182,7 @@ def _native_info(path: Path) -> Info:
 
 
 def _check_features(path: Path, info: Info, episode: Episode) -> None:
-    """The newcomer must record what the others do."""
+    """Check that a new episode has the same features as the others."""
     empty = episode.state[:0]
     width = {feature.name: feature.width for feature in info.features}
     others = Episode(
@@ -243,7 +243,7 @@ def _write_tables(path: Path, tables: list[Table]) -> None:
 
 
 def _write_state(root: Path, rows: Table, place: tuple[int, int], tasks: list[str], info: Info) -> None:
-    """Everything about the episodes but their samples; the commit point comes last."""
+    """Write everything about the episodes except their samples; the commit point comes last."""
     chunk, file = (rows.column(f"meta/episodes/{name}_index").to_numpy() for name in ("chunk", "file"))
     newest = rows.filter(pa.array((chunk == place[0]) & (file == place[1])))
     _write_tables(root / "meta/tasks.parquet", [task_table(tasks)])

@@ -1,4 +1,4 @@
-"""Folders that appear whole or not at all, and that one program writes at a time."""
+"""Folders that are written atomically, by one program at a time."""
 
 import os
 import shutil
@@ -14,7 +14,7 @@ from latentarm.files import sync_folder
 
 @contextmanager
 def locked(folder: Path, lock_file: Path) -> Generator[None]:
-    """Keep other writers out of ``folder``. The lock goes with the process, however it ends.
+    """Keep other writers out of ``folder``. The lock is released when the process ends, however it ends.
 
     Args:
         folder: what is written.
@@ -61,8 +61,8 @@ def staged_folder(destination: Path) -> Generator[Path]:
     """Yield a folder beside ``destination``; on success rename it there.
 
     On any error nothing is left behind. After a kill the staging folder ``.NAME.part`` and the lock
-    file ``.NAME.lock`` stay, are taken for nothing, and the next attempt at the same destination
-    clears them.
+    file ``.NAME.lock`` remain. Nothing reads them, and the next attempt at the same destination removes
+    them.
 
     Raises:
         UserError: the destination is taken, or cannot be written.

@@ -9,10 +9,10 @@ import numpy as np
 from latentarm.errors import UserError
 
 FEW: Final = 3
-"""From so many training demonstrations on, one of them is for validation, ..."""
+"""With at least this many training demonstrations, one is used for validation ..."""
 
 MANY: Final = 8
-"""... and from so many on two."""
+"""... and with at least this many, two."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Fold:
     def validation(self) -> tuple[int, ...]:
         """Validation episodes, which stop the training early.
 
-        With fewer than `FEW` there is none to spare: the training stops where its own loss falls no further.
+        With fewer than `FEW` there are none to spare, and training stops when its own loss stops falling.
         """
         if len(self.others) < FEW:
             return self.others

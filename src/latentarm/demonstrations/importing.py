@@ -1,4 +1,4 @@
-"""Bringing demonstrations of any known kind into a dataset of our own."""
+"""Importing demonstrations of any known format into a native dataset."""
 
 import os
 from collections.abc import Sequence
@@ -33,13 +33,13 @@ FOREIGN: Final = {
 
 
 class ImportOptions(TypedDict, total=False):
-    """What the user says of a file; all of it may be left out.
+    """What the user states about a file; everything is optional.
 
     Attributes:
         rate_hz: sampling rate, for files that do not say it or say it wrongly.
         task: what was done, in words, for files that do not say it.
-        actions: ``"known"`` keeps recorded actions only where the source says what they are;
-            ``"joint_velocity"`` and ``"joint_position"`` take the caller's word for it.
+        actions: ``"known"`` keeps recorded actions only if the source says what they are;
+            ``"joint_velocity"`` and ``"joint_position"`` state it.
         units: ``rad``, ``deg`` or ``normalized`` (-100 to 100), or ``JOINT=deg`` for single joints.
         joints: the column of each joint, see `find_columns`.
         gripper: the gripper's column.
@@ -62,7 +62,7 @@ def import_demonstrations(
 ) -> Demonstrations:
     """Read demonstrations from a file or folder of any known kind, and check them.
 
-    What the source is follows from its content: a folder with a LeRobot layout (v2.0, v2.1, v3.0), a NumPy
+    The format is recognised by content: a folder with a LeRobot layout (v2.0, v2.1, v3.0), a NumPy
     archive, an HDF5 file in robomimic's layout, or a CSV file. What was decided about its columns and
     units is in the result's ``import_record``.
 
@@ -108,7 +108,7 @@ def import_demonstrations(
 def import_to(
     source: Path, destination: Path, robot: Robot | None = None, **options: Unpack[ImportOptions]
 ) -> Demonstrations:
-    """`import_demonstrations`, then `write_dataset`; on any error nothing is at ``destination``.
+    """`import_demonstrations`, then `write_dataset`; on any error nothing is written to ``destination``.
 
     Raises:
         UserError: see those two.
@@ -120,7 +120,7 @@ def import_to(
 
 
 def _without_robot(data: SourceData, actions: ActionChoice, source: Path) -> Demonstrations:
-    """All columns as joints in rad, where that can be so."""
+    """All columns as joints in rad, if that is possible."""
     given = data.demonstrations
     if not data.in_rad and is_so_arm(given.robot):
         raise UserError(f"{source} was recorded on {given.robot!r}, not in rad: name the robot with --robot.")

@@ -63,7 +63,7 @@ class Feature:
 @final
 @dataclass(frozen=True)
 class Info:
-    """What ``meta/info.json`` says. Its totals are the dataset's truth: rows beyond them do not exist.
+    """The contents of ``meta/info.json``. Its totals are authoritative: rows beyond them do not exist.
 
     Attributes:
         episodes: number of whole episodes.
@@ -101,7 +101,7 @@ class Info:
 
     @property
     def joint_names(self) -> tuple[str, ...]:
-        """Names of the joints, made up where the writer gave none."""
+        """Names of the joints, generated if the writer gave none."""
         state = next(feature for feature in self.features if feature.name == STATE)
         return state.names or default_joint_names(state.width)
 

@@ -21,16 +21,15 @@ def make_pairs(
 
     Without recorded actions, the action of sample t is the displacement to the state k samples
     later, over the time between the two: ``a = (q[t+k] - q[t]) / |time[t+k] - time[t]|`` for k in
-    ±1..±window within the episode. Negative k runs the demonstration backwards: both directions of
-    a motion are worth having under a stick. Times are those of the samples, so that an uneven rate
-    does not bend the speeds.
+    ±1..±window within the episode. Negative k runs the demonstration backwards: a stick should command both
+    directions of a motion. The samples' own timestamps are used, so that an uneven rate does not distort
+    speeds.
 
     Noise is added to a copy of the states after every action has been taken from the clean ones.
-    Were it added before, the action would hold the noise itself and a model would score by undoing
-    it.
+    If it were added first, the action would contain the noise and a model would score by removing it.
 
-    Still samples before the first motion and after the last are left out: someone who waits with a
-    hand on the arm demonstrates nothing. Pauses within a motion stay.
+    Still samples before the first motion and after the last are left out: a person who waits with a hand on
+    the arm demonstrates nothing. Pauses within a motion stay.
 
     Args:
         demonstrations: whole, validated episodes.

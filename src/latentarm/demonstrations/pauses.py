@@ -1,4 +1,4 @@
-"""Drives recorded at a control loop's rate, made into demonstrations to learn from."""
+"""Converts drives recorded at a control loop's rate into demonstrations."""
 
 from dataclasses import replace
 from typing import Final
@@ -17,7 +17,7 @@ def without_pauses(demonstrations: Demonstrations, rate_hz: float) -> Demonstrat
     """The same motions without the pauses in them, at another rate.
 
     A person who steers two axes at a time stops to switch and to think. An action is a displacement over
-    time, so pauses would teach the model that the arm crawls wherever somebody paused. Time stands still
+    time, so pauses would teach the model to crawl wherever somebody paused. Time stands still
     here while no joint exceeds `STILL_RAD_S`; states are read off at even steps of what is left, by linear
     interpolation, and the last state is kept. A control loop's rate is no use for learning either: within the
     5 samples that an action may look ahead, an arm at 100 Hz hardly moves.

@@ -1,4 +1,4 @@
-"""Rates and speeds that no arm has, and those that are beyond this arm's limits."""
+"""Detects implausible rates and speeds, and speeds beyond this arm's limits."""
 
 from typing import Final
 
@@ -14,7 +14,7 @@ RATE_TOLERANCE: Final = 0.2
 """How far the timestamps' rate may be from the one that is stated, as a share of it."""
 
 IMPLAUSIBLE_RAD_S: Final = 30.0
-"""Five turns a second: faster than the joint of any arm; mostly lost or repeated samples, or wrong units."""
+"""Five turns a second, faster than any arm's joint; usually a sign of lost samples or wrong units."""
 
 
 def check_rate(demonstrations: Demonstrations, source: str) -> None:
@@ -45,7 +45,7 @@ def check_rate(demonstrations: Demonstrations, source: str) -> None:
 
 
 def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str) -> str:
-    """Refuse impossible speeds; say which ones are beyond the robot's limits.
+    """Refuse impossible speeds; report those beyond the robot's limits.
 
     Args:
         demonstrations: validated, of the robot.
@@ -66,7 +66,7 @@ def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str) -> 
         for sample, joint in np.argwhere(wild)[:1]:
             raise UserError(
                 f"{source}: episode {number}, sample {sample + 1}: joint {robot.joint_names[joint]} moves at"
-                f" {speed[sample, joint]:.0f} rad/s, which no arm does: look for lost samples, wrong"
+                f" {speed[sample, joint]:.0f} rad/s, which no arm can do: look for lost samples, wrong"
                 f" units (--units) or a"
                 " wrong rate (--rate-hz)."
             )

@@ -1,4 +1,4 @@
-"""Reading the LeRobotDataset v3.0 layout, whoever wrote it: only what its totals vouch for."""
+"""Reading the LeRobotDataset v3.0 layout, by any writer: only the rows that its totals cover."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -6,8 +6,8 @@ from the control frequency in the environment's arguments. Recorded actions in s
 are scaled end-effector displacements; they are kept only where the environment's arguments say
 that one arm was driven by a ``JOINT_VELOCITY`` controller, and are then scaled to rad/s.
 
-The HDF5 library is not hardened: a file that was damaged on purpose may end the whole process. Even
-then nothing is left at the destination of an import, which is written only after all was read.
+The HDF5 library is not hardened: a file that was damaged on purpose may end the whole process. Even then the
+destination of an import stays empty, because it is written only after everything was read.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Whether the robot that a file names is the one that somebody means."""
+"""Whether the robot that a file names is the one the user named."""
 
 import re
 from pathlib import Path
@@ -36,7 +36,7 @@ def is_so_arm(name: str) -> bool:
 
 
 def may_be(named: str, robot: Robot) -> bool:
-    """Whether what a file calls its robot can be this one.
+    """Whether a file's name for its robot can mean this robot.
 
     Args:
         named: the file's word, such as ``UR5e`` or ``so101_follower``, or the path of a model.

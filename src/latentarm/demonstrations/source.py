@@ -1,4 +1,4 @@
-"""What a file of demonstrations holds, before anything is decided about it."""
+"""The raw contents of a file of demonstrations."""
 
 from dataclasses import dataclass
 from typing import Literal, final

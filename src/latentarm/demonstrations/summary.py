@@ -1,4 +1,4 @@
-"""What a dataset holds, in figures: for a person to look over before training on it."""
+"""A summary of a dataset, for a person to check before training on it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What makes demonstrations usable, and one sentence for each way in which they are not.
+"""Validation of demonstrations, with a one-sentence error for each fault.
 
 Episodes and samples are counted from zero, as in the dataset's ``episode_index`` and ``frame_index``.
 """
@@ -34,7 +34,7 @@ RESERVED_FEATURES: Final = frozenset(
 
 
 def validate(demonstrations: Demonstrations, source: str, limits: JointLimits | None = None) -> None:
-    """Check demonstrations as a whole: everything that the rest of the package takes for granted.
+    """Check everything about demonstrations that the rest of the package relies on.
 
     Args:
         demonstrations: what to check.

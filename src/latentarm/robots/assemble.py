@@ -28,7 +28,7 @@ def assemble(
     model: mujoco.MjModel | None = None,
     tool_speed_source: Source = "assumed",
 ) -> Robot:
-    """Read a robot's kinematics and shape from its model, and add what the model does not say.
+    """Read a robot's kinematics and shape from its model, and add what the model does not contain.
 
     Args:
         name: what to call it.
@@ -39,7 +39,7 @@ def assemble(
         home: (n,), rad.
         tool_speed_limit: m/s.
         model_path: the file that the model was read from.
-        model: compiled from ``mjcf``, where the caller has it: large meshes take seconds to compile.
+        model: compiled from ``mjcf``, if the caller already has it: large meshes take seconds to compile.
         tool_speed_source: how the limit of the tool's speed is known.
 
     Returns:
@@ -70,7 +70,7 @@ def assemble(
 
 
 def restate(robot: Robot, stated: StatedLimits) -> Robot:
-    """The robot with limits that somebody states, in place of what was known or assumed.
+    """The robot with stated limits in place of known or assumed ones.
 
     Args:
         robot: the robot.
@@ -88,7 +88,7 @@ def restate(robot: Robot, stated: StatedLimits) -> Robot:
     if stated.tool_speed is not None:
         tool_speed, source = stated.tool_speed, "limits_file"
     names = [tool.name for tool in chain.tools]
-    # Anew, since which capsules can meet depends on how far the joints move.
+    # Recomputed, because the joint ranges decide which capsules can touch.
     anew = assemble(
         robot.name, robot.mjcf, names, limits, home, tool_speed, robot.model_path, tool_speed_source=source
     )
@@ -102,8 +102,8 @@ def _names(model: mujoco.MjModel, joints: frozenset[int]) -> tuple[str, ...]:
 def _excluded(model: mujoco.MjModel, capsules: Capsules) -> BoolArray:
     """(K, K), pairs of capsules whose bodies the model's <exclude> elements name.
 
-    What else rides on the same links stays watched: a hand may hit a forearm that the flange before it
-    cannot reach. So does a capsule that several bodies share, which has the name of none of them.
+    Other capsules on the same links are still checked: a hand may hit a forearm that the flange cannot
+    reach. So is a capsule shared by several bodies, which carries none of their names.
     """
     excluded = np.zeros((len(capsules), len(capsules)), dtype=np.bool_)
     names = np.array(capsules.name)

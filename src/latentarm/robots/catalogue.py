@@ -19,19 +19,19 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
     "planar": planar,
     "planar2": lambda: planar(arms=2),
 }
-"""The robots that come with a plain install."""
+"""The built-in robots."""
 
 
 def load_robot(
     name_or_path: StrPath, end_effector: str | None = None, limits: StatedLimits | None = None
 ) -> Robot:
-    """A robot of the catalogue, or any robot whose MJCF or URDF file is given.
+    """A robot from the catalogue, or one from an MJCF or URDF file.
 
     Args:
         name_or_path: a name in `ROBOTS`, the path of an .xml or .urdf file, or a name in the MuJoCo
             Menagerie where the package `mujoco-menagerie` is installed.
         end_effector: site or body of a file's model; see `load_model_file`.
-        limits: what somebody states of its limits, in place of what is known or assumed.
+        limits: stated limits, in place of known or assumed ones.
 
     Returns:
         The robot.
@@ -57,7 +57,7 @@ def load_recorded_robot(demonstrations: Demonstrations, dataset: str = "") -> Ro
     """
     whose = dataset or "The dataset"
     if not demonstrations.robot:
-        raise UserError(f"{whose} does not say which robot it is of: import it again with --robot.")
+        raise UserError(f"{whose} does not name its robot: import it again with --robot.")
     try:
         return load_robot(demonstrations.robot, demonstrations.end_effector, demonstrations.limits)
     except AmbiguousEndEffectorError as error:

@@ -15,7 +15,7 @@ FINGER_BODY: Final = re.compile(r"finger|jaw|knuckle|thumb|claw|mover", re.IGNOR
 """Names of bodies that only a gripper's joint moves; "gripper" is often the whole hand."""
 
 MOST_NAMED: Final = 12
-"""End-effectors that a sentence lists, at most."""
+"""An error lists at most this many end-effectors."""
 
 _DRIVABLE: Final = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 _JOINT: Final = int(mujoco.mjtEq.mjEQ_JOINT)
@@ -52,10 +52,10 @@ class Moved:
 
 
 def choose_end_effector(model: mujoco.MjModel) -> str:
-    """The one site that moves, or else the one moving body that carries no other.
+    """The only moving site, or else the only moving body without children.
 
-    It must be moved by every joint of the arm and by none of a gripper's. A model in which several could
-    be meant, or in which that one leaves joints unused, is left for the person to decide.
+    It must be moved by every joint of the arm and by none of a gripper's. If there are several candidates,
+    or the only one leaves joints unused, the person must decide.
 
     Args:
         model: a robot's model.
@@ -95,7 +95,7 @@ def choose_end_effector(model: mujoco.MjModel) -> str:
 
 
 def arm_joints(model: mujoco.MjModel) -> frozenset[int]:
-    """Ids of the joints that can be driven each by itself, without a gripper's."""
+    """Ids of the joints that can be driven independently, without a gripper's."""
     joints = {joint for joint in range(model.njnt) if model.jnt_type[joint] in _DRIVABLE}
     return frozenset(joints - finger_joints(model) - set(followers(model)))
 
@@ -114,7 +114,7 @@ def finger_joints(model: mujoco.MjModel) -> frozenset[int]:
 
 
 def followers(model: mujoco.MjModel) -> dict[int, int]:
-    """Joints that follow another one (<mimic> in URDF, <equality><joint> in MJCF), and which; -1 for none."""
+    """For each joint the one it follows (<mimic> in URDF, <equality><joint> in MJCF), or -1."""
     return {
         int(model.eq_obj1id[i]): int(model.eq_obj2id[i])
         for i in range(model.neq)
@@ -123,7 +123,7 @@ def followers(model: mujoco.MjModel) -> dict[int, int]:
 
 
 def _choices(model: mujoco.MjModel, found: list[Moved]) -> str:
-    """What can be named, those that most joints move first."""
+    """The candidates, those moved by the most joints first."""
     palms = {int(model.body_parentid[model.jnt_bodyid[joint]]) for joint in finger_joints(model)}
     found = [*found, *(_moved(model, model.body(palm).name, palm) for palm in sorted(palms))]
     named = {one.name: one for one in found if one.name and one.joints}

@@ -9,7 +9,7 @@ from latentarm.errors import UserError
 from latentarm.types import FloatArray
 
 Source = Literal["model", "manufacturer", "limits_file", "assumed"]
-"""How a limit is known: the robot's model says it, its manufacturer, a limits file, or nobody does."""
+"""Where a limit comes from: the robot's model, its manufacturer, a limits file, or an assumption."""
 
 Quantity = Literal["position", "velocity", "acceleration", "jerk"]
 QUANTITIES: Final[tuple[Quantity, ...]] = ("position", "velocity", "acceleration", "jerk")
@@ -49,7 +49,7 @@ class LimitSources:
 @final
 @dataclass(frozen=True, eq=False)
 class JointLimits:
-    """Limits of n joints; a limit that is not a limit is refused at construction.
+    """Limits of n joints, validated at construction.
 
     Prismatic joints have the same fields in m instead of rad.
 
@@ -117,7 +117,7 @@ class JointLimits:
 
     @property
     def assumed(self) -> dict[Quantity, tuple[int, ...]]:
-        """Indices of the joints whose limit nobody stated, by quantity, for quantities with any."""
+        """Indices of the joints with assumed limits, by quantity, for quantities that have any."""
         found: dict[Quantity, tuple[int, ...]] = {
             quantity: tuple(
                 joint for joint, source in enumerate(self.sources.of(quantity)) if source == "assumed"

@@ -1,4 +1,4 @@
-"""A limits file: what somebody states of a robot's limits, in TOML or YAML, with the units in the keys.
+"""A limits file: a robot's limits in TOML or YAML, with units in the keys.
 
 An example in TOML::
 
@@ -51,7 +51,7 @@ def read_limits(path: Path) -> StatedLimits:
         path: ending in .toml, .yaml or .yml.
 
     Raises:
-        UserError: the file cannot be read, or something in it is not as it must be; the key is named.
+        UserError: the file cannot be read or is invalid; the message names the key.
     """
     text = read_bytes(path, MOST_BYTES)
     try:
@@ -69,7 +69,7 @@ def read_limits(path: Path) -> StatedLimits:
 
 
 def _check_plain(text: bytes, path: Path) -> None:
-    """Refuse YAML that is deep or repeats itself, before anything is built of it."""
+    """Refuse YAML that is deeply nested or uses aliases, before it is parsed into objects."""
     depth = 0
     for event in yaml.parse(text, yaml.SafeLoader):
         if isinstance(event, yaml.AliasEvent):
@@ -80,7 +80,7 @@ def _check_plain(text: bytes, path: Path) -> None:
 
 
 def parse_limits(document: object, where: str) -> StatedLimits:
-    """Check what a limits file, a dataset or a run says of limits.
+    """Validate the limits in a limits file, a dataset or a run.
 
     Args:
         document: mappings and numbers, as `limits_document` gives them or with degrees.
@@ -123,7 +123,7 @@ def limits_document(stated: StatedLimits) -> dict[str, object]:
 def with_stated(
     limits: JointLimits, stated: StatedLimits, names: Sequence[str], slide: Sequence[bool]
 ) -> JointLimits:
-    """The limits with what is stated in place of what was known or assumed.
+    """The limits with stated values in place of known or assumed ones.
 
     Args:
         limits: of n joints.

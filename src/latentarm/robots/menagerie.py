@@ -27,7 +27,7 @@ def menagerie_file(name: str) -> Path | None:
         return None
     robot = menagerie.get(name)
     try:
-        # No progress on standard output: it may be a JSON document.
+        # No progress on standard output, which may be a JSON document.
         folder = robot.path(progress=None)
     except (menagerie.MenagerieError, OSError) as error:
         raise UserError(

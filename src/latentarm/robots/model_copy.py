@@ -1,4 +1,4 @@
-"""A robot's model kept in a folder: its XML, and beside it every file that the XML names."""
+"""A copy of a robot's model: its XML, and next to it every file that the XML names."""
 
 from pathlib import Path
 from typing import Final

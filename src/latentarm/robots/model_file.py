@@ -21,7 +21,7 @@ from latentarm.types import FloatArray
 from latentarm.untrusted.memory import bounded_memory
 
 MOST_JOINTS = 64
-"""A chain of more joints is no arm, and its pairs of links take minutes to compare."""
+"""Longer chains are rejected: they are not arms, and comparing their pairs of links takes minutes."""
 
 SINGULAR = 0.05
 """A start whose tool's least singular value is below this share of the best that was found is moved."""
@@ -30,7 +30,7 @@ SINGULAR = 0.05
 @final
 @dataclass(frozen=True)
 class Defaults:
-    """What is assumed of a joint where the file does not say.
+    """What is assumed of a joint if the file does not say.
 
     MJCF has no place for velocity, acceleration and jerk; URDF has one for velocity alone.
 
@@ -57,7 +57,7 @@ def load_model_file(path: Path, end_effector: str | None = None) -> Robot:
     """Load a robot from an MJCF or URDF file.
 
     It starts at the key frame "home" if there is one, else in the middle of its joints' ranges, or
-    near there where that is singular. What the file does not say of its joints, `Defaults` say.
+    near there where that is singular. `Defaults` fill in what the file does not state.
 
     Args:
         path: the file.
@@ -95,7 +95,7 @@ def _loaded(path: Path, urdf: Urdf | None, end_effector: str | None) -> Robot:
         tool = choose_end_effector(model) if end_effector is None else end_effector
         reading = read(model, [tool])
         if reading.chain.dof > MOST_JOINTS:
-            raise UserError(f"it has {reading.chain.dof} joints, and {MOST_JOINTS} are the most for an arm.")
+            raise UserError(f"it has {reading.chain.dof} joints, but an arm may have at most {MOST_JOINTS}.")
         limits = _limits(model, reading, {} if urdf is None else urdf.velocity)
         home = _home(model, reading, limits)
         whole_path = str(path.resolve())
@@ -111,7 +111,7 @@ def _as_mjcf(spec: mujoco.MjSpec, path: Path) -> str:
     folder = path.resolve().parent
     spec.compiler.meshdir = str(folder / spec.compiler.meshdir)
     spec.compiler.texturedir = str(folder / spec.compiler.texturedir)
-    # A body merged into its parent would take the end-effector's name with it.
+    # Merging a body into its parent would lose the end-effector's name.
     spec.compiler.fusestatic = False
     # Only the kinematics are used: a moving link without inertia is no reason to refuse a robot.
     spec.compiler.boundmass = 1e-6
@@ -127,7 +127,7 @@ def _as_mjcf(spec: mujoco.MjSpec, path: Path) -> str:
 def _limits(model: mujoco.MjModel, reading: Reading, velocity: Mapping[str, float]) -> JointLimits:
     assumed = [SLIDE if slide else HINGE for slide in reading.chain.slide]
     given = model.jnt_range[reading.joints]
-    # MuJoCo takes a range that is turned round for none at all; here it is refused, not ignored.
+    # MuJoCo ignores a reversed range; here it is an error.
     limited = model.jnt_limited[reading.joints].astype(np.bool_) | (given[:, 0] > given[:, 1])
     free = np.array([[-defaults.range, defaults.range] for defaults in assumed])
     ranges = np.where(limited[:, None], given, free)
@@ -156,14 +156,14 @@ def _home(model: mujoco.MjModel, reading: Reading, limits: JointLimits) -> Float
         home = np.array(model.key_qpos[key][model.jnt_qposadr[reading.joints]])
         return np.clip(home, limits.lower, limits.upper)
     middle = 0.5 * (limits.lower + limits.upper)
-    # A quarter turn at most to either side, so that a joint of two turns does not start wound up.
+    # At most a quarter turn to either side, so that a joint with several turns does not start wound up.
     around = np.minimum(0.25 * (limits.upper - limits.lower), np.pi / 4)
     samples = middle + around * np.random.default_rng(0).uniform(-1.0, 1.0, size=(256, limits.dof))
     candidates = np.concatenate([middle[None], samples])
     freedom = _least_singular_value(reading.chain, candidates)
     if freedom[0] >= SINGULAR * freedom.max():
         return candidates[0]
-    # Well away from singularities, as high above the table as can be.
+    # Well away from singularities, as high above the table as possible.
     height = np.where(freedom >= 0.5 * freedom.max(), _lowest_point(reading.chain, candidates), -np.inf)
     return candidates[np.argmax(height)]
 

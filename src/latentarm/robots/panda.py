@@ -110,7 +110,7 @@ _NEVER_MEET = (
 def panda() -> Robot:
     """The Panda with its hand at a fixed opening; "tool" is the point between the fingertips.
 
-    The same object each time: its arrays are not to be written to.
+    Returns the same object each time; do not write to its arrays.
     """
     spec = mujoco.MjSpec()
     spec.modelname = "panda"

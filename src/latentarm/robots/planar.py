@@ -23,7 +23,7 @@ _RADIUS_M = 0.02
 def planar(n_links: int = 5, arms: int = 1) -> Robot:
     """A planar arm in the x-y plane, or two side by side whose states are one vector.
 
-    The same object each time: its arrays are not to be written to.
+    Returns the same object each time; do not write to its arrays.
 
     Args:
         n_links: joints of each arm.
@@ -70,7 +70,7 @@ def planar(n_links: int = 5, arms: int = 1) -> Robot:
         velocity=np.full(n, 2.0),
         acceleration=np.full(n, 10.0),
         jerk=np.full(n, 1000.0),
-        # An imaginary arm: what is written here is what it can do.
+        # An imaginary arm: these limits are its specification.
         sources=LimitSources.same("model", n),
     )
     tools = [f"{side}tool" for side in sides]

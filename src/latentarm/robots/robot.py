@@ -59,7 +59,7 @@ class Robot:
 
     @property
     def end_effector(self) -> str | None:
-        """What has to be named to load this robot again: the end-effector of a model file, else None."""
+        """The end-effector to name when loading this robot again; None for a built-in robot."""
         return None if self.model_path is None else self.chain.tools[0].name
 
     def model(self) -> "mujoco.MjModel":

@@ -16,13 +16,13 @@ TOUCHING_M = 0.02
 """Closer than this, two capsules count as touching."""
 
 NEVER_CLOSER_M = 0.05
-"""A pair that comes no closer in any sampled configuration is left out."""
+"""Pairs that never come closer than this in any sampled configuration are left out."""
 
 
 def self_pairs(
     chain: Chain, capsules: Capsules, limits: JointLimits, home: FloatArray, excluded: BoolArray
 ) -> IntArray:
-    """Pairs of capsules that may collide, as few as can be told from sampling.
+    """Pairs of capsules that may collide, as found by sampling.
 
     Left out are pairs on the same or on adjacent links, pairs of bodies that the model excludes,
     pairs that touch at home or in most sampled configurations (their capsules are coarser than the

@@ -33,7 +33,7 @@ def read_capsules(model: mujoco.MjModel, reading: Reading) -> Capsules:
     Spheres and capsules stay as they are; a cylinder becomes the capsule around its axis; boxes,
     meshes and other geoms become the capsule around their corners or vertices. A body's visual
     geoms count only where it has none that collide. Scenery (planes, geoms of the world itself,
-    bodies that do not carry the robot) is left out: it is the task's business.
+    bodies that do not carry the robot) is left out: it belongs to the task.
 
     Args:
         model: the robot's model.

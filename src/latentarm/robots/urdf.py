@@ -1,4 +1,4 @@
-"""What MuJoCo does not do with a URDF file: find its meshes and read its velocity limits."""
+"""Finds a URDF's meshes and reads its velocity limits, which MuJoCo does not do."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -81,7 +81,7 @@ def _mesh_file(path: Path, link: str, filename: str) -> Path:
     named = next((found for found in _places(path, filename) if found.is_file()), None)
     if named is None:
         raise UserError(
-            f"{path}: the collision mesh {filename!r} of link {link} is not there: put the robot's mesh"
+            f"{path}: the collision mesh {filename!r} of link {link} does not exist: put the robot's mesh"
             " files where the URDF names them."
         )
     if named.suffix.lower() not in MESH_FORMATS:

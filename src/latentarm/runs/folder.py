@@ -194,9 +194,7 @@ def robot_of(run: Run) -> Robot:
         robot = load_copy(run.folder / ROBOT / run.robot_model, run.end_effector)
         return robot if run.limits is None else restate(robot, run.limits)
     if not run.robot:
-        raise UserError(
-            f"{run.demonstrations} does not say which robot it is of: import it again with --robot."
-        )
+        raise UserError(f"{run.demonstrations} does not name its robot: import it again with --robot.")
     try:
         return load_robot(run.robot, run.end_effector, run.limits)
     except AmbiguousEndEffectorError as error:

@@ -1,1 +1,1 @@
-"""What is to be done with an arm: where it starts, what is wanted, when it is done, and who shows it."""
+"""Tasks: where an arm starts, its goals, when it has succeeded, and a simulated demonstrator."""

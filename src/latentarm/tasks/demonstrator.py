@@ -1,4 +1,4 @@
-"""A simulated person who leads an arm by hand along strokes (kinesthetic demonstrations)."""
+"""A simulated person who guides an arm by hand along strokes (kinesthetic demonstrations)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ _WAVES = 3
 @final
 @dataclass(frozen=True)
 class Hand:
-    """How the simulated person moves: smoothly, never twice the same, without tremor.
+    """How the simulated person moves: smoothly, with variation, without tremor.
 
     Attributes:
         rate_hz: sampling rate of the demonstrations.

@@ -1,4 +1,4 @@
-"""Configurations in which the tool is at a wanted pose."""
+"""Configurations that put the tool at a given pose."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ _STEPS = 300
 _CLOSE = 1e-4
 """The pose counts as met within this, m and rad together."""
 _POSTURE_COST = 1e-3
-"""Pull of the preferred posture beside the tool's pose; it settles what a redundant arm leaves open."""
+"""Weight of the preferred posture relative to the tool's pose; it resolves redundancy."""
 
 
 def solve(robot: Robot, pose: Pose, posture: FloatArray) -> FloatArray:
