@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from latentarm.commands.drive import DriveConfig, drive_run
+from latentarm.commands.drive import DriveOptions, drive_run
 from latentarm.errors import UserError
 from latentarm.operators.catalogue import PLANNING, usual_operator
 from latentarm.simulation.drive_table import COLUMNS, endings_in_words
 
 
-def config(out: Path, **others: object) -> DriveConfig:
-    usual = DriveConfig(
-        run=None, controller="end_effector", out=out, robot="planar", drives=1, time_limit_s=0.5
+def config(out: Path, **others: object) -> DriveOptions:
+    usual = DriveOptions(
+        run=None, controller="end_effector", out=out, robot="planar", drives=1, time_limit_s=0.5, jobs=1
     )
     return replace(usual, **others)
 

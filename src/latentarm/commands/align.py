@@ -25,38 +25,30 @@ from latentarm.types import Row
 
 
 @dataclass(frozen=True)
-class AlignConfig:
-    """Options of `latentarm align`; its ``--help`` describes each field.
-
-    Attributes:
-        run: a trained run.
-        name: of the person.
-        answers: questions to be answered, at most.
-        seed_index: which of the run's seeds decodes.
-        simulated: let a simulated person answer.
-        seed: of everything random.
-        dataset: where the run's dataset is now, if it was moved.
-        progress: show a bar on standard error.
+class AlignOptions:
+    """Options of `latentarm align`.
 
     Raises:
         UserError: a figure is out of its range.
     """
 
-    run: Path
-    name: str
-    answers: int = 10
-    seed_index: int = 0
-    simulated: bool = False
-    seed: int = 0
-    dataset: Path | None = None
-    progress: bool = False
+    run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")]
+    name: Annotated[str, arg(metavar="NAME", help="The person's name, as given to `drive --profile`.")]
+    answers: Annotated[int, arg(help="Ask at most this many questions.")] = 10
+    seed_index: Annotated[int, arg(help="Which of the run's seeds decodes, from 0.")] = 0
+    simulated: Annotated[
+        bool, arg(help="Let a simulated person answer, for whom the stick's axes are those of the base.")
+    ] = False
+    demonstrations: MovedDataset = None
+    seed: Seed = 0
+    json: Json = False
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
         check_count("answers", self.answers)
 
 
-def align_run(config: AlignConfig, say: Say) -> list[Row]:
+def align_run(config: AlignOptions, say: Say) -> list[Row]:
     """Ask, learn, and write the profile to ``profiles/<name>`` of the run. Nothing is written before the end.
 
     Args:
@@ -71,7 +63,11 @@ def align_run(config: AlignConfig, say: Say) -> list[Row]:
     """
     folder = new_profile_folder(config.run, config.name)
     known = alignable(
-        config.run, config.seed_index, config.seed, config.dataset, lambda: step_bar(config.progress)
+        config.run,
+        config.seed_index,
+        config.seed,
+        config.demonstrations,
+        lambda: step_bar(not config.json and sys.stderr.isatty()),
     )
     person = _person(config, known.scene, say)
     answers = ask(known.scene, person, config.answers, say, StoppingRule())
@@ -81,7 +77,7 @@ def align_run(config: AlignConfig, say: Say) -> list[Row]:
     return learned.rows
 
 
-def _person(config: AlignConfig, scene: Scene, say: Say) -> Person:
+def _person(config: AlignOptions, scene: Scene, say: Say) -> Person:
     """Whom to ask."""
     if not config.simulated:
         return PersonAtTerminal(say, read_line)
@@ -94,40 +90,20 @@ def _person(config: AlignConfig, scene: Scene, say: Say) -> Person:
     return SimulatedPerson(preference, say)
 
 
-def align(
-    run: Annotated[Positional[Path], arg(metavar="RUN", help="Folder that `latentarm train` wrote.")],
-    name: Annotated[str, arg(metavar="NAME", help="The person's name, as given to `drive --profile`.")],
-    answers: Annotated[int, arg(help="Ask at most this many questions.")] = 10,
-    seed_index: Annotated[int, arg(help="Which of the run's seeds decodes, from 0.")] = 0,
-    simulated: Annotated[
-        bool, arg(help="Let a simulated person answer, for whom the stick's axes are those of the base.")
-    ] = False,
-    demonstrations: MovedDataset = None,
-    seed: Seed = 0,
-    json: Json = False,
-) -> int:
+def align(options: AlignOptions) -> int:
     """Ask what a person means by their input, and keep it as their profile (section 6 of the paper).
 
     Shows motions and asks for each how they would push the stick for it: numbers from -1 to 1, or arrow keys.
     For example: latentarm align runs/pour-cae --name ada
     """
-    config = AlignConfig(
-        run=run,
-        name=name,
-        answers=answers,
-        seed_index=seed_index,
-        simulated=simulated,
-        seed=seed,
-        dataset=demonstrations,
-        progress=not json and sys.stderr.isatty(),
-    )
+    run, name, json = options.run, options.name, options.json
     try:
-        rows = align_run(config, lambda sentence: say(sentence, json))
+        rows = align_run(options, lambda sentence: say(sentence, json))
     except KeyboardInterrupt:
         print("\nNothing is saved.", file=sys.stderr)
         raise
     write_options(profile_folder(run, name), "align")
     show(rows, json)
-    whose = "simulated person's profile" if simulated else "profile"
+    whose = "simulated person's profile" if options.simulated else "profile"
     say(f"The {whose} is {run}/profiles/{name}/; next: latentarm drive {run} --profile {name}", json)
     return 0

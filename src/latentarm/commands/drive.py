@@ -57,58 +57,74 @@ HELD_OUT_LIMIT_S: Final = 300.0
 
 
 @dataclass(frozen=True)
-class DriveConfig:
-    """Options of `latentarm drive`; its ``--help`` describes each field.
-
-    Attributes:
-        run: a trained run, or None for mode switching alone.
-        controller: what drives.
-        out: folder for drives.json and the figure.
-        task: what to do; None for the task that the run was trained for.
-        robot: a robot's name or model file; that of the run where None.
-        arm: what moves, a simulated arm of `latentarm.arms.catalogue`.
-        end_effector: site, body or link of a model file.
-        limits: a limits file, or None.
-        profile: name of the person whose alignment maps input to latent action; None for z = u.
-        drives: for each goal.
-        operator: who gives inputs; None for the task's `usual_operator`.
-        beta: rationality of the simulated operator.
-        belief: how inputs change the robot's belief over the goals.
-        arbitration: how alpha is set while the robot helps; None for a fixed alpha.
-        alpha: arbitration at full input, in [0, 1], the most of it for confidence; that of `FixedAlpha`
-            or `ConfidenceAlpha` where None.
-        time_limit_s: a drive that lasts longer has failed; `TIME_LIMIT_S` or `HELD_OUT_LIMIT_S` where None.
-        seed: of everything random.
-        jobs: processes side by side; -1 is one per core. A recording is driven by one.
-        record: folder of a new dataset that the drives are exported to, or None.
-        dataset: where the run's dataset is now, if it was moved.
-        bars: show on standard error how many drives are done.
+class DriveOptions:
+    """Options of `latentarm drive`.
 
     Raises:
-        UserError: a figure is out of its range.
+        UserError: a figure is out of its range, or options contradict each other.
     """
 
-    run: Path | None
-    controller: ControllerName
-    out: Path
-    task: str | None = None
-    robot: str | None = None
-    arm: str = DEFAULT_ARM
-    end_effector: str | None = None
-    limits: Path | None = None
-    profile: str | None = None
-    drives: int = 3
-    operator: OperatorName | None = None
-    beta: float = BoltzmannConfig.beta
-    belief: str = "boltzmann"
-    arbitration: ArbitrationName | None = None
-    alpha: float | None = None
-    time_limit_s: float | None = None
-    seed: int = 0
-    jobs: int = 1
-    record: Path | None = None
-    dataset: Path | None = None
-    bars: bool = False
+    run: Annotated[
+        Positional[Path | None], arg(metavar="RUN", help="A trained run; without one, mode switching drives.")
+    ] = None
+    controller: Annotated[
+        Literal["latent", "latent_assist", "end_effector"] | None,
+        arg(help="Latent actions, with shared autonomy, or mode switching."),
+    ] = None
+    task: Annotated[
+        TaskName | None,
+        arg(
+            help="What is to be done: items on a table, poses in reach, one of two cups, or to follow"
+            " held-out episodes; that of the run by default."
+        ),
+    ] = None
+    robot: Annotated[
+        str | None,
+        arg(help="A robot's name or the path of an MJCF or URDF file; that of the run by default."),
+    ] = None
+    arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM
+    end_effector: EndEffector = None
+    limits: LimitsFile = None
+    profile: Annotated[
+        str | None, arg(metavar="NAME", help="Profile made by `latentarm align`; z = u without one.")
+    ] = None
+    drives: Annotated[int, arg(help="Drives for each goal.")] = 3
+    operator: Annotated[
+        Literal["greedy", "planning"] | None,
+        arg(
+            help="Simulated operator: greedy looks one step ahead (equation 24), planning looks up to 4 s"
+            " ahead where one step leads no nearer. By default planning on held-out episodes, else greedy."
+        ),
+    ] = None
+    beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0
+    belief: Annotated[
+        BeliefName,
+        arg(help="How inputs change the belief over goals, for help and for models trained on (s, b)."),
+    ] = "boltzmann"
+    arbitration: Annotated[
+        Literal["fixed", "confidence"] | None,
+        arg(help="For latent_assist: a constant alpha (the default), or one that grows with confidence."),
+    ] = None
+    alpha: Annotated[
+        float | None,
+        arg(
+            help="For latent_assist: alpha of equation 2 at full input, a share from 0 (the person alone) to"
+            " 1 (the robot alone); with confidence the most of it. By default 0.15, with confidence 0.5."
+        ),
+    ] = None
+    time_limit_s: Annotated[
+        float | None, arg(help="A longer drive fails; by default 60 s, 300 s on held-out episodes.")
+    ] = None
+    seed: Seed = 0
+    jobs: Jobs = -1
+    demonstrations: MovedDataset = None
+    record: Annotated[
+        Path | None, arg(metavar="DIR", help="Record the drives and export them there as a native dataset.")
+    ] = None
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for drives.json, drives.csv and the figure.")] = (
+        Path("drives")
+    )
+    json: Json = False
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
@@ -117,16 +133,26 @@ class DriveConfig:
         check_positive("rationality beta", self.beta)
         if self.time_limit_s is not None:
             check_positive("time limit in s", self.time_limit_s)
-        if self.controller == "end_effector" and self.profile is not None:
+        if self.driver == "end_effector" and self.profile is not None:
             raise UserError(
                 "A profile aligns latent actions, and mode switching has none: leave one of them out."
             )
-        if self.controller != "latent_assist":
+        if self.driver != "latent_assist":
             for name in ("arbitration", "alpha"):
                 if getattr(self, name) is not None:
                     raise UserError(
                         f"Without help there is no {name} to set: use --controller latent_assist."
                     )
+
+    @property
+    def driver(self) -> ControllerName:
+        """What drives: with a run, latent actions unless something else was asked for."""
+        return self.controller or ("latent" if self.run else "end_effector")
+
+    @property
+    def bars(self) -> bool:
+        """Whether to show on standard error how many drives are done."""
+        return not self.json and sys.stderr.isatty()
 
 
 @dataclass(frozen=True)
@@ -150,7 +176,7 @@ class Driven:
     time_limit_s: float
 
 
-def drive_run(config: DriveConfig, tell: Callable[[Sequence[str]], None] = lambda sentences: None) -> Driven:
+def drive_run(config: DriveOptions, tell: Callable[[Sequence[str]], None] = lambda sentences: None) -> Driven:
     """Drive every goal of a task several times and write ``drives.json``, ``drives.csv`` and a figure.
 
     Args:
@@ -167,7 +193,7 @@ def drive_run(config: DriveConfig, tell: Callable[[Sequence[str]], None] = lambd
     if run is None:
         task = task_without_run(config.task, config.robot, config.end_effector, limits)
     else:
-        task = task_of_run(run, config.task, config.robot, config.end_effector, limits, config.dataset)
+        task = task_of_run(run, config.task, config.robot, config.end_effector, limits, config.demonstrations)
     tell(notices(task.robot))
     operator = config.operator or usual_operator(task.name)
     setup = Setup(
@@ -188,24 +214,22 @@ def drive_run(config: DriveConfig, tell: Callable[[Sequence[str]], None] = lambd
         traces = drive_all([setup], config.drives, config.seed, config.jobs, bars=config.bars)
     else:
         traces = _record_all(setup, config, config.record)
-    model = None if run is None or config.controller == "end_effector" else run.model
-    subject = Subject("drive", task=task.name, model=model, condition=config.controller)
+    model = None if run is None or config.driver == "end_effector" else run.model
+    subject = Subject("drive", task=task.name, model=model, condition=config.driver)
     rows = drive_rows(subject, [trace.figures for trace in traces])
     planned = [
         Planned(task.goals[goal].name, manner, number % config.drives)
         for number, (goal, manner, _) in enumerate(drive_plan(task, config.drives, config.seed))
     ]
-    entries = drive_entries(
-        planned, traces, seed=config.seed, controller=config.controller, operator=operator
-    )
+    entries = drive_entries(planned, traces, seed=config.seed, controller=config.driver, operator=operator)
     write_json(config.out / "drives.json", as_document(rows, about) | {"drives": entries})
     write_drives_csv(config.out / "drives.csv", entries)
-    draw_drives({config.controller: traces}, task, config.out / "paths.png")
-    return Driven(rows, entries, config.controller, operator, task.name, setup.time_limit_s)
+    draw_drives({config.driver: traces}, task, config.out / "paths.png")
+    return Driven(rows, entries, config.driver, operator, task.name, setup.time_limit_s)
 
 
 def _about(
-    config: DriveConfig,
+    config: DriveOptions,
     setup: Setup,
     operator: OperatorName,
     run: Run | None,
@@ -213,12 +237,12 @@ def _about(
 ) -> dict[str, object]:
     """What the figures depend on."""
     robot = setup.task.robot
-    model = None if run is None or config.controller == "end_effector" else run.folder
+    model = None if run is None or config.driver == "end_effector" else run.folder
     return {
         "study": "drive",
         "run": str(config.run),
         "model": None if model is None else weights_fingerprint(model),
-        "controller": config.controller,
+        "controller": config.driver,
         "task": setup.task.name,
         "robot": robot.name,
         "arm": config.arm,
@@ -237,7 +261,7 @@ def _about(
     }
 
 
-def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]:
+def _record_all(setup: Setup, config: DriveOptions, dataset: Path) -> list[Trace]:
     """Drive one after the other and record every step; then export the journal.
 
     Raises:
@@ -265,7 +289,7 @@ def _record_all(setup: Setup, config: DriveConfig, dataset: Path) -> list[Trace]
                         run_fingerprint="" if config.run is None else weights_fingerprint(config.run),
                         profile=config.profile or "",
                         device="simulated",
-                        controller=config.controller,
+                        controller=config.driver,
                     ),
                     end_effector=task.robot.end_effector,
                     limits=task.robot.stated_limits,
@@ -288,126 +312,42 @@ def _counted(plan: Sequence[DrivePlan], bars: bool) -> Generator[DrivePlan]:
             bar.advance(task)
 
 
-def _arbitration(config: DriveConfig) -> FixedAlpha | ConfidenceAlpha | None:
+def _arbitration(config: DriveOptions) -> FixedAlpha | ConfidenceAlpha | None:
     """How much the robot helps, if it helps at all."""
-    if config.controller != "latent_assist":
+    if config.driver != "latent_assist":
         return None
     if config.arbitration == "confidence":
         return ConfidenceAlpha() if config.alpha is None else ConfidenceAlpha(config.alpha)
     return FixedAlpha() if config.alpha is None else FixedAlpha(config.alpha)
 
 
-def _controller(config: DriveConfig, task: Task) -> Controller:
-    if config.controller == "end_effector":
+def _controller(config: DriveOptions, task: Task) -> Controller:
+    if config.driver == "end_effector":
         return EndEffectorController(task.robot)
     if config.run is None:
         raise UserError("Latent actions need a trained run: name one, as in `latentarm drive RUN`.")
     return latent_controller(config.run, config.profile, task.robot)
 
 
-def drive(
-    run: Annotated[
-        Positional[Path | None], arg(metavar="RUN", help="A trained run; without one, mode switching drives.")
-    ] = None,
-    controller: Annotated[
-        Literal["latent", "latent_assist", "end_effector"] | None,
-        arg(help="Latent actions, with shared autonomy, or mode switching."),
-    ] = None,
-    task: Annotated[
-        TaskName | None,
-        arg(
-            help="What is to be done: items on a table, poses in reach, one of two cups, or to follow"
-            " held-out episodes; that of the run by default."
-        ),
-    ] = None,
-    robot: Annotated[
-        str | None,
-        arg(help="A robot's name or the path of an MJCF or URDF file; that of the run by default."),
-    ] = None,
-    arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM,
-    end_effector: EndEffector = None,
-    limits: LimitsFile = None,
-    profile: Annotated[
-        str | None, arg(metavar="NAME", help="Profile made by `latentarm align`; z = u without one.")
-    ] = None,
-    drives: Annotated[int, arg(help="Drives for each goal.")] = 3,
-    operator: Annotated[
-        Literal["greedy", "planning"] | None,
-        arg(
-            help="Simulated operator: greedy looks one step ahead (equation 24), planning looks up to 4 s"
-            " ahead where one step leads no nearer. By default planning on held-out episodes, else greedy."
-        ),
-    ] = None,
-    beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0,
-    belief: Annotated[
-        BeliefName,
-        arg(help="How inputs change the belief over goals, for help and for models trained on (s, b)."),
-    ] = "boltzmann",
-    arbitration: Annotated[
-        Literal["fixed", "confidence"] | None,
-        arg(help="For latent_assist: a constant alpha (the default), or one that grows with confidence."),
-    ] = None,
-    alpha: Annotated[
-        float | None,
-        arg(
-            help="For latent_assist: alpha of equation 2 at full input, a share from 0 (the person alone) to"
-            " 1 (the robot alone); with confidence the most of it. By default 0.15, with confidence 0.5."
-        ),
-    ] = None,
-    time_limit_s: Annotated[
-        float | None, arg(help="A longer drive fails; by default 60 s, 300 s on held-out episodes.")
-    ] = None,
-    seed: Seed = 0,
-    jobs: Jobs = -1,
-    demonstrations: MovedDataset = None,
-    record: Annotated[
-        Path | None, arg(metavar="DIR", help="Record the drives and export them there as a native dataset.")
-    ] = None,
-    out: Annotated[
-        Path, arg(metavar="DIR", help="Folder for drives.json, drives.csv and the figure.")
-    ] = Path("drives"),
-    json: Json = False,
-) -> int:
+def drive(options: DriveOptions) -> int:
     """Drive an arm in simulation with a simulated operator, through Algorithm 1 and its safety filters.
 
     Exits with 1 when no drive reached its goal. For example: latentarm drive runs/pour-cae
     """
-    driven = drive_run(
-        DriveConfig(
-            run=run,
-            controller=controller or ("latent" if run else "end_effector"),
-            task=task,
-            robot=robot,
-            arm=arm,
-            end_effector=end_effector,
-            limits=limits,
-            profile=profile,
-            drives=drives,
-            operator=operator,
-            beta=beta,
-            belief=belief,
-            arbitration=arbitration,
-            alpha=alpha,
-            time_limit_s=time_limit_s,
-            seed=seed,
-            jobs=jobs,
-            record=record,
-            dataset=demonstrations,
-            out=out,
-            bars=not json and sys.stderr.isatty(),
-        ),
-        note,
-    )
+    driven = drive_run(options, note)
     write_options(
-        out,
+        options.out,
         "drive",
         controller=driven.controller,
         operator=driven.operator,
         task=driven.task,
         time_limit_s=driven.time_limit_s,
     )
-    show(driven.rows, json)
+    show(driven.rows, options.json)
     for sentence in endings_in_words(driven.entries):
-        say(sentence, json)
-    say(f"One row per drive is in {out}/drives.csv; drives.json and paths.png are next to it.", json)
+        say(sentence, options.json)
+    say(
+        f"One row per drive is in {options.out}/drives.csv; drives.json and paths.png are next to it.",
+        options.json,
+    )
     return 0 if any(entry["success"] for entry in driven.entries) else 1
