@@ -141,7 +141,7 @@ def drive(page: Page, for_s: float) -> dict[str, Any]:
     turn_s = time.monotonic() + 1.5
     while time.monotonic() < until_s and page.open:
         if page.state["phase"] not in ("ready", "moving"):
-            why.append(page.state["why"])
+            why.append(str(page.state["reason"]))
             page.set_going([1.0, 0.0])
         if time.monotonic() > turn_s and page.u:
             page.u = [-page.u[0], 0.0]

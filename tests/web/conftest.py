@@ -17,13 +17,13 @@ from websockets.sync.client import ClientConnection, connect
 
 from latentarm.arms.catalogue import make_live_arm
 from latentarm.control.clock import SimulatedClock
-from latentarm.control.loop import ControlLoop
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
-from latentarm.web.arm_process.cockpit import Cockpit
+from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.drive_setup import PERIOD_S, Setting, Spec, load_setting
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.protocol.channel import Given, Order, Report, new_channel, parse_report
+from latentarm.web.protocol.notice import Notice
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.connections import ConnectionLimits
@@ -66,8 +66,14 @@ def setting(trained: Path) -> Setting:
     return load_setting(Spec(trained))
 
 
+def said(told: Any) -> str:
+    """What a report, or a state as a page receives it, tells people, in English."""
+    state = told.model_dump() if isinstance(told, Report) else told
+    return " ".join(Notice(**one).text for one in (state["note"], state["reason"]) if one is not None)
+
+
 class Desk:
-    """A cockpit in this process, in simulated time: both ends of the channel are here.
+    """A drive in this process, in simulated time: both ends of the channel are here.
 
     `each_tick` is called before every tick with the time, s.
     """
@@ -79,13 +85,17 @@ class Desk:
         self.channel = new_channel(reading)
         self.orphaned = False
         self.writer = EpisodeWriter(folder)
-        self.cockpit = Cockpit(setting, self.channel, self.clock, self.writer, lambda: self.orphaned)
         self.arm = make_live_arm(setting.spec.arm, setting.task.robot, setting.start, self.clock.now_s)
-        self.step = setting.step()
-        self.loop = ControlLoop(
-            self.step, self.arm, self.cockpit, self.clock, [self.cockpit.observe, self._saw]
+        self.drive = Drive(
+            setting,
+            self.arm,
+            self.channel,
+            self.clock,
+            self.writer,
+            lambda: self.orphaned,
+            Steering(setting.modes[0]),
+            observers=[self._saw],
         )
-        self.cockpit.take_seat(self.loop, self.step, self.arm, setting, "")
         self.each_tick: Callable[[float], None] = lambda now_s: None
         self.records: list[Any] = []
         self.reports: list[Report] = []
@@ -93,7 +103,7 @@ class Desk:
 
     def run(self, for_s: float) -> None:
         """So much time; afterwards the loop has ended and the arm is at rest."""
-        self.loop.run(round(for_s / PERIOD_S))
+        self.drive.run(round(for_s / PERIOD_S))
 
     def give(self, *u: float, nonce: str | None = None, latched: bool = False, driver: int = 1) -> None:
         self.sequence += 1
@@ -187,7 +197,7 @@ class Client:
                 elif message["type"] == "workshop":
                     self.workshop = message
                 else:
-                    self.refused = message["why"]
+                    self.refused = message["notice"]["code"]
         self.closed = self.socket.close_code
 
     def talk(self) -> None:

@@ -55,7 +55,7 @@ def test_a_page_drives_the_arm_and_stops_it(site):
         drive(page)
         page.send(type="stop")
         at_rest(page)
-        assert "Ada pressed Stop." in page.state["why"]
+        assert page.state["reason"] == {"code": "stop_pressed_by", "parameters": {"name": "Ada"}}
 
 
 def test_nothing_moves_without_enable(site):
@@ -102,7 +102,7 @@ def test_only_the_driver_drives_and_everybody_stops(site):
         drive(ada)
         bob.send(type="stop")
         at_rest(ada)
-        assert "Bob pressed Stop." in ada.state["why"]
+        assert ada.state["reason"] == {"code": "stop_pressed_by", "parameters": {"name": "Bob"}}
 
 
 def test_the_wheel_is_handed_over_and_the_arm_stops_for_it(site):

@@ -15,7 +15,7 @@ from latentarm.web.arm_process.drive_setup import Spec
 
 from .conftest import served
 
-pytestmark = pytest.mark.slow  # on the real clock; test_cockpit.py holds the same in simulated time
+pytestmark = pytest.mark.slow  # on the real clock; test_drive.py holds the same in simulated time
 
 ZERO_WITHIN_S = 0.15
 REST_WITHIN_S = 0.4
@@ -153,7 +153,7 @@ def test_a_killed_server(trained, tmp_path):
 def test_a_control_process_that_dies_is_told_to_every_page(trained, tmp_path):
     with served(Spec(trained, out=tmp_path)) as site, site.page() as page:
         os.kill(site.control.pid, signal.SIGKILL)
-        page.wait(lambda state: "has ended" in state["why"])
+        page.wait(lambda state: (state["note"] or {}).get("code") == "arm_process_ended")
         assert page.state["phase"] == "disengaged"
 
 

@@ -14,7 +14,7 @@ from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.server import run_check
 from latentarm.web.server.run_check import Trial
 
-from .conftest import wait_for
+from .conftest import said, wait_for
 
 
 def config(**changes: object) -> Callable[[Path], None]:
@@ -73,9 +73,9 @@ def test_a_hostile_run_is_refused_and_driving_goes_on(tmp_path, serve, trained, 
         assert set(names) <= set(page.workshop["runs"])
         for name in names:
             page.send(type="run", run=name)
-            page.wait(lambda state, name=name: f"Checking the run {name}" in state["why"], within_s=20.0)
-            page.wait(lambda state: "Checking" not in state["why"], within_s=60.0)
-            why = page.state["why"]
+            page.wait(lambda state, name=name: f"Checking the run {name}" in said(state), within_s=20.0)
+            page.wait(lambda state: "Checking" not in said(state), within_s=60.0)
+            why = said(page.state)
             assert why.count("\n") == 0
             assert "\x1b" not in why
             assert any(
@@ -94,7 +94,7 @@ def test_while_the_arm_moves_no_run_is_tried(tmp_path, serve, trained):
     with serve(Spec(trained, out=tmp_path)) as site, site.page() as page:
         page.enable()
         page.send(type="run", run="deep")
-        page.wait(lambda state: "Stop the arm first" in state["why"])
+        page.wait(lambda state: "Stop the arm first" in said(state))
         assert page.state["phase"] == "ready"
 
 
@@ -102,7 +102,9 @@ def test_a_run_that_loads_for_ever_is_given_up(tmp_path, trained, monkeypatch):
     monkeypatch.setattr(run_check, "WITHIN_S", 0.0)
     tried = Trial(Spec(out=tmp_path), trained, "mine")
     try:
-        assert "The run mine takes more than" in str(asyncio.run(tried.failure()))
+        failure = asyncio.run(tried.failure())
+        assert failure is not None
+        assert failure.code == "run_too_slow"
         assert wait_for(lambda: not tried._job.alive)
     finally:
         tried.end()
@@ -114,6 +116,6 @@ def test_a_hostile_profile_is_refused(tmp_path, serve, trained):
     os.mkfifo(run / "profiles" / "ada" / "config.json")
     with serve(Spec(run, out=tmp_path)) as site, site.page() as page:
         page.send(type="profile", name="ada")
-        page.wait(lambda state: "is a named pipe" in state["why"], within_s=20.0)
+        page.wait(lambda state: "is a named pipe" in said(state), within_s=20.0)
         assert page.state["profile"] is None
         page.enable()

@@ -11,10 +11,11 @@ from typing import Literal
 from pydantic import TypeAdapter
 
 from latentarm.errors import UserError
-from latentarm.web.jobs.job import Job, JobMessage, Wire
+from latentarm.web.jobs.job import Job, Wire
+from latentarm.web.protocol.notice import Message
 
 
-class Number(JobMessage):
+class Number(Message):
     type: Literal["number"] = "number"
     value: int
 
@@ -69,7 +70,7 @@ def test_a_job_hears_and_says_and_then_is_done():
 def test_an_error_of_the_user_arrives_as_its_sentence():
     job = Job(refuse, (), NUMBERS, "Nothing")
     finished(job)
-    assert job.failure == "There is nothing to do: bring something."
+    assert job.failure.text == "There is nothing to do: bring something."
     job.end()
 
 
@@ -85,7 +86,7 @@ def test_a_job_that_is_killed_has_broken_off_and_one_that_is_ended_has_not(tmp_p
         else:
             os.kill(pid, signal.SIGKILL)
             finished(job)
-            assert job.failure == "Sleeping broke off unexpectedly: try it again."
+            assert job.failure.code == "work_broke_off"
             job.end()
 
 

@@ -100,7 +100,7 @@ def test_whoever_knows_nothing_is_told_so(run):
             asked_last = job.look().question
             job.skip(asked_last)
         time.sleep(0.002)
-    assert "No question was answered" in job.look().why
+    assert "No question was answered" in job.look().why.text
     assert not trial_folder(run).exists()
     job.end()
 
@@ -111,7 +111,7 @@ def test_a_job_that_dies_says_so(job):
     job._job._process.kill()
     failed = ended(job)
     assert failed.phase == "failed"
-    assert failed.why.endswith("try it again.")
+    assert failed.why.text.endswith("try it again.")
     assert failed.motion is None
 
 
@@ -121,7 +121,7 @@ def test_a_run_that_cannot_be_asked_about_says_why(run):
     job = PersonaliseJob(PersonalisePlan(run, "ada", 2, trial_folder(run)))
     failed = ended(job)
     assert failed.phase == "failed"
-    assert "model.safetensors" in failed.why
+    assert "model.safetensors" in failed.why.text
     job.end()
 
 
@@ -181,23 +181,23 @@ def begin(name="ada"):
 def test_a_name_that_is_none_begins_nothing(desk, name):
     state = desk.take(begin(name))
     assert state.phase == "failed"
-    assert "no name for a profile" in state.why
+    assert "no name for a profile" in state.why.text
     assert desk.personalising.standstill is None
 
 
 def test_a_name_that_is_taken_begins_nothing(desk, run):
     (run / "profiles" / "ada").mkdir(parents=True)
-    assert desk.take(begin()).why == "There is an alignment of ada already: choose another name."
+    assert desk.take(begin()).why.code == "profile_exists"
 
 
 def test_without_a_run_at_rest_nobody_is_asked(desk):
     desk.report = Report("ready")
-    assert desk.take(begin()).why == "Stop the arm first."
+    assert desk.take(begin()).why.code == "stop_first"
     desk.report = Report()
     desk.latent_dim = 3
-    assert "two axes" in desk.take(begin()).why
+    assert desk.take(begin()).why.code == "too_many_axes"
     desk.run = None
-    assert "No run is loaded" in desk.take(begin()).why
+    assert desk.take(begin()).why.code == "no_run"
 
 
 class Instant:
@@ -244,7 +244,7 @@ def test_what_was_learned_is_tried_and_kept(learned, run):
     learned.take(TRY)
     assert learned.control.orders == [ChooseProfile(name=TRIAL)]
     learned.report = Report("moving", TRIAL)
-    assert learned.take(KEEP).why == "Stop the arm first."
+    assert learned.take(KEEP).why.code == "stop_first"
     learned.report = Report("disengaged", TRIAL)
     assert learned.take(KEEP).phase == "kept"
     assert learned.control.orders[1:] == [ChooseProfile(name="ada")]
@@ -266,7 +266,7 @@ def test_a_name_taken_meanwhile_loses_nothing(learned, run):
     (other / "config.json").write_text("{}")
     state = learned.take(KEEP)
     assert state.phase == "learned"
-    assert "already exists" in state.why
+    assert "already exists" in state.why.text
     assert trial_folder(run).exists()
 
 
@@ -287,7 +287,7 @@ def test_nobody_drives_while_somebody_is_asked_and_an_end_leaves_nothing(desk, r
     async def cancel():
         desk.take(begin())
         assert desk.control.stops, "an Enable that is on its way counts for nothing"
-        assert "ada is being asked" in desk.personalising.standstill
+        assert desk.personalising.standstill.code == "asking"
         assert desk.take(begin("bob")).name == "ada", "one at a time"
         assert desk.take(CANCEL) is None
         await desk.personalising.close()
@@ -318,7 +318,7 @@ def test_only_the_driver_is_asked_and_nobody_drives_meanwhile(run, tmp_path, ser
         ada.send(**BEGIN)
         wait_for(lambda: bob.workshop["personalise"])
         assert bob.workshop["personalise"]["name"] == "ada"
-        bob.wait(lambda state: "being asked" in state["why"])
+        bob.wait(lambda state: (state["note"] or {}).get("code") == "asking")
         ada.u = [0.0, 0.0]
         before = ada.state
         time.sleep(0.1)

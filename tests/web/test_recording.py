@@ -43,9 +43,9 @@ def test_an_episode_ends_before_what_cannot_be_trusted_and_says_why(tmp_path, ba
     for tick in range(20):
         writer.add(sample(tick, **(bad if tick >= 12 else {})))
     assert not writer.on
-    assert "The recording was ended before this" in writer.status.problem
+    assert writer.status.problem.code == ("recording_ended" if "stop" in bad else "joints_unreadable")
     if "stop" in bad:
-        assert bad["stop"].reason in writer.status.problem
+        assert bad["stop"].reason in writer.status.problem.text
     episode = recorded(writer)
     assert episode.complete
     assert len(episode.records) == 12
@@ -70,7 +70,7 @@ def test_a_full_journal_ends_the_episode_whole_and_says_so(tmp_path):
     for tick in range(400):
         writer.add(sample(tick, state=0.5 + 1e-4 * tick))
     episode = recorded(writer)
-    assert "reached its limit" in writer.status.problem
+    assert "reached its limit" in writer.status.problem.text
     assert not writer.on
     assert episode.complete
     assert 0 < len(episode.records) < 400
@@ -92,7 +92,7 @@ def test_a_deleted_journal_is_noticed_and_the_next_episode_goes_into_another(tmp
     files[0].unlink()
     # Its thread ends when it has noticed.
     writer._thread.join(timeout=20.0)
-    assert "was deleted, moved or replaced" in writer.status.problem
+    assert "was deleted, moved or replaced" in writer.status.problem.text
     assert not writer.on
     writer.begin(HEADER)
     writer.add(sample(10))

@@ -17,7 +17,7 @@ from latentarm.web.jobs.training import FEWEST, TrainingJob, TrainingPlan, train
 from latentarm.web.protocol.messages import parse_message
 from latentarm.web.server.run_list import Shelf
 
-from .conftest import wait_for
+from .conftest import said, wait_for
 
 JOINTS = tuple(f"joint{number}" for number in range(1, 8))
 
@@ -91,10 +91,9 @@ def test_episodes_that_are_too_short_are_named_in_a_sentence_and_nothing_is_left
     job = TrainingJob(planned(tmp_path, (2.0, 2.0, 0.4)))
     failed = ended(job)
     assert failed.phase == "failed"
-    assert failed.why == (
-        "The arm moves for at least 1 s in 2 of the 3 chosen episodes: leave the others out, or record longer"
-        " ones."
-    )
+    (why,) = failed.why
+    assert why.code == "episodes_too_short"
+    assert "in 2 of the 3 chosen episodes" in why.text
     assert not list(tmp_path.glob("*/waving"))
 
 
@@ -113,7 +112,7 @@ def test_an_axis_that_moves_nothing_is_said_in_the_words_of_the_page(tmp_path):
     journal_of(tmp_path / "alike.sqlite", (2.0, 2.0, 2.0), alike=True)
     wire = Listener()
     train_as_planned(wire, replace(plan, journal=tmp_path / "alike.sqlite"))
-    assert "choose one axis" in wire.said[-1].warned
+    assert [one.code for one in wire.said[-1].warned] == ["one_axis_weak"]
 
 
 def test_a_full_disk_is_said_and_leaves_nothing(tmp_path):
@@ -121,7 +120,7 @@ def test_a_full_disk_is_said_and_leaves_nothing(tmp_path):
     (tmp_path / "datasets").write_text("a file where a folder must be")
     failed = ended(TrainingJob(plan))
     assert failed.phase == "failed"
-    assert "datasets" in failed.why
+    assert "datasets" in failed.why[0].text
     assert not (tmp_path / "runs").exists()
 
 
@@ -146,7 +145,7 @@ def test_a_name_that_is_taken_and_too_few_episodes_are_refused(tmp_path):
     (tmp_path / "runs" / "waving").mkdir(parents=True)
     with pytest.raises(UserError, match="already: choose another name"):
         planned(tmp_path)
-    with pytest.raises(UserError, match="Training needs at least 3 episodes, and 1 of them is chosen"):
+    with pytest.raises(UserError, match="Training needs at least 3 episodes, and one of them is chosen"):
         planned(tmp_path, name="other", episodes=(2, 2, 2))
 
 
@@ -217,7 +216,7 @@ def test_what_is_recorded_is_trained_and_driven_without_a_terminal(tmp_path, ser
         page.send(**(train | {"name": "../pushed"}))
         wait_for(lambda: bob.workshop["training"])
         assert bob.workshop["training"]["phase"] == "failed"
-        assert "choose another" in bob.workshop["training"]["why"]
+        assert [one["code"] for one in bob.workshop["training"]["why"]] == ["name_invalid"]
         page.send(**train)
         page.send(**(train | {"name": "second"}))
         wait_for(lambda: page.workshop["training"]["phase"] == "done")
@@ -226,7 +225,7 @@ def test_what_is_recorded_is_trained_and_driven_without_a_terminal(tmp_path, ser
 
         page.enable()
         page.send(type="run", run="pushed")
-        page.wait(lambda state: "Stop the arm first" in state["why"])
+        page.wait(lambda state: "Stop the arm first" in said(state))
         page.send(type="stop")
         page.u = None
         page.wait(lambda state: state["phase"] == "disengaged")
@@ -251,6 +250,6 @@ def test_a_run_that_has_gone_is_not_driven_and_the_arm_stays_as_it_was(tmp_path,
         assert page.workshop["runs"] == ["copy", "run"]
         (tmp_path / "runs" / "copy" / "model.safetensors").write_bytes(b"broken")
         page.send(type="run", run="copy")
-        page.wait(lambda state: "model.safetensors" in state["why"], within_s=60.0)
+        page.wait(lambda state: "model.safetensors" in said(state), within_s=60.0)
         assert page.welcome["run"] == "run"
         page.enable()

@@ -142,7 +142,9 @@ class Arm:
     def wait(self, until: Callable[[], Any], within_s: float = 8.0) -> None:
         if self.comes_to(until, within_s):
             return
-        shown = {key: self.state.get(key) for key in ("phase", "why", "mode", "axes", "driver", "tool")}
+        shown = {
+            key: self.state.get(key) for key in ("phase", "note", "reason", "mode", "axes", "driver", "tool")
+        }
         raise AssertionError(f"it never came to that: {shown}")
 
     def comes_to_rest(self) -> None:
@@ -247,7 +249,7 @@ def enable(page: Page, arm: Arm) -> None:
         page.get_by_role("button", name="Enable", exact=True).click()
         if arm.comes_to(lambda: arm.enabled, 1.5):
             return
-    raise AssertionError(f"the arm is never enabled: {arm.state['why']}")
+    raise AssertionError(f"the arm is never enabled: {arm.state['reason']}")
 
 
 def move(page: Page, arm: Arm, press: Callable[[], Any], let_go: Callable[[], Any]) -> None:
@@ -258,7 +260,7 @@ def move(page: Page, arm: Arm, press: Callable[[], Any], let_go: Callable[[], An
             return
         let_go()
         enable(page, arm)
-    raise AssertionError(f"the arm never moves: {arm.state['why']}")
+    raise AssertionError(f"the arm never moves: {arm.state['reason']}")
 
 
 @pytest.fixture

@@ -135,7 +135,9 @@ def drive(hand, arm, goal):
     end_s = time.monotonic() + PATIENCE_S
     pushed = None
     while np.linalg.norm(arm.tool - goal) > NEAR_M:
-        assert time.monotonic() < end_s, f"{np.linalg.norm(arm.tool - goal):.3f} m away; {arm.state['why']}"
+        assert time.monotonic() < end_s, (
+            f"{np.linalg.norm(arm.tool - goal):.3f} m away; {arm.state['reason']}"
+        )
         if not arm.enabled:
             hand.let_go()
             pushed = None

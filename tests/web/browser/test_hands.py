@@ -27,7 +27,7 @@ def go(arm, press_until_moving):
             if arm.comes_to(lambda start=before: np.linalg.norm(arm.tool - start) > FAR_M, 2.0):
                 return arm.tool - before
             let_go()
-        raise AssertionError(f"the arm does not get anywhere: {arm.state['why']}")
+        raise AssertionError(f"the arm does not get anywhere: {arm.state['reason']}")
 
     return go
 
@@ -108,7 +108,7 @@ def test_two_switches_drive_the_arm(page, arm):
         return arm.comes_to(lambda: np.linalg.norm(arm.tool - before) > FAR_M, 2.0)
 
     page.get_by_role("button", name="Switch", exact=True).focus()
-    assert any(drive() for _ in range(TRIES)), arm.state["why"]
+    assert any(drive() for _ in range(TRIES)), arm.state["reason"]
     page.keyboard.press(SWITCH_KEY)
     arm.is_let_go()
 

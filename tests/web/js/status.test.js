@@ -2,8 +2,10 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { Connection } from "#pages/connection/connection.js";
-import { attachStatus } from "#pages/connection/status.js";
+import { attachStatus, statusOf } from "#pages/connection/status.js";
 import { FakeElement, FakeSocket, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
+
+const ADA = { code: "stop_pressed_by", parameters: { name: "Ada" } };
 
 let socket;
 let line;
@@ -60,15 +62,31 @@ test("why this page stopped the arm is said until the arm is enabled again", () 
 });
 
 test("what the server refused the page for is said until it is welcome again", () => {
-  socket.says({ type: "refused", why: "This is not what a page may send." });
+  socket.says({ type: "refused", notice: { code: "page_refused", parameters: {} } });
   socket.close();
-  assert.deepEqual(settled(), ["lost", "This is not what a page may send."]);
+  assert.deepEqual(settled(), ["lost", "The page sent a message that the server does not accept."]);
   pass(500);
   FakeSocket.newest.opens();
   FakeSocket.newest.says(welcomeOf());
   FakeSocket.newest.close();
   assert.match(settled()[1], /Connection lost/);
 });
+
+for (const [fields, canEnable, words] of [
+  [{ phase: "ready" }, true, "Enabled: push to move."],
+  [{ phase: "moving" }, true, "Moving."],
+  [{ phase: "moving", held_back: "clearance" }, true, "Moving slower than you ask: it is close to something."],
+  [{ phase: "stopping", reason: ADA }, true, "Stopping. Ada pressed Stop."],
+  [{ phase: "disengaged", reason: ADA }, true, "Ada pressed Stop. Press Enable to move the arm."],
+  [{ phase: "disengaged", reason: ADA }, false, "Ada pressed Stop."],
+  [{ phase: "neutral_needed", reason: ADA }, true, "Ada pressed Stop. Let go of the stick, then press Enable."],
+  [{ phase: "disengaged", reason: ADA, note: { code: "stop_first", parameters: {} } }, true, "Stop the arm first."],
+]) {
+  test(`the arm's state in words: ${words}`, () => {
+    const connection = { open: true, silenceMs: 0, engaged: false, state: stateOf(fields) };
+    assert.equal(statusOf(connection, { halted: null, refused: "", canEnable }).text, words);
+  });
+}
 
 test("what lasts shorter than 0.12 s is not announced", () => {
   settled({ phase: "ready" });

@@ -16,13 +16,12 @@ from threadpoolctl import threadpool_limits
 from latentarm.arms.catalogue import make_live_arm
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
-from latentarm.control.loop import ControlLoop
 from latentarm.errors import UserError
-from latentarm.untrusted.terminal import one_line
-from latentarm.web.arm_process.cockpit import Cockpit
+from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.drive_setup import Setting, Spec, load_setting, with_profile
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.protocol.channel import Channel, ChooseProfile, ChooseRun, Reset
+from latentarm.web.protocol.notice import Notice, notice_of, sentence
 
 T = TypeVar("T")
 
@@ -45,6 +44,9 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
     def end(number: int, frame: FrameType | None) -> None:
         channel.ending.raise_()
 
+    def orphaned() -> bool:
+        return os.getppid() != server
+
     # Ctrl-C in a terminal reaches both processes: the server then ends this one in good order.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, end)
@@ -53,20 +55,17 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
         setting = load_setting(spec)
         clock = MonotonicClock()
         writer = EpisodeWriter(spec.out, spec.journal)
-        cockpit = Cockpit(setting, channel, clock, writer, orphaned=lambda: os.getppid() != server)
+        steering = Steering(setting.modes[0])
         arm = _arm(setting, clock)
         # Nothing that is there by now is ever garbage: the collector need not look through it.
         gc.collect()
         gc.freeze()
-        note = ""
+        note: Notice | None = None
         try:
             while True:
-                step = setting.step()
-                loop = ControlLoop(step, arm, cockpit, clock, [cockpit.observe])
-                cockpit.take_seat(loop, step, arm, setting, note)
-                loop.run()
-                note = ""
-                match cockpit.change:
+                drive = Drive(setting, arm, channel, clock, writer, orphaned, steering, note)
+                note = None
+                match drive.run():
                     case None:
                         break
                     case Reset():
@@ -76,6 +75,8 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                     case ChooseRun(run=run):
                         spec = replace(setting.spec, run=Path(run), profile=None)
                         (setting, arm), note = _loaded(partial(_other_run, spec, clock), (setting, arm))
+                        if note is None:
+                            steering.mode, steering.axes = setting.modes[0], 0
         finally:
             writer.close()
             gc.unfreeze()
@@ -103,11 +104,11 @@ def _other_run(spec: Spec, clock: Clock) -> tuple[Setting, Arm]:
     return setting, _arm(setting, clock)
 
 
-def _loaded(load: Callable[[], T], before: T) -> tuple[T, str]:
+def _loaded(load: Callable[[], T], before: T) -> tuple[T, Notice | None]:
     """What is loaded, or what there was before and why the other cannot be used."""
     try:
-        return load(), ""
+        return load(), None
     except UserError as error:
-        return before, one_line(str(error))
+        return before, notice_of(error)
     except Exception as error:  # noqa: BLE001 - whatever a file does, the process that owns the arm goes on
-        return before, one_line(f"It cannot be loaded ({error!r}): the arm is as before.")
+        return before, sentence(f"It cannot be loaded ({error!r}): the arm is as before.")

@@ -13,6 +13,7 @@ from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.errors import UserError
 from latentarm.types import StepRecord, Stop
 from latentarm.web.protocol.channel import Recording
+from latentarm.web.protocol.notice import Notice, notice_of
 
 _MOST_WAITING: Final = 6000
 """Samples that may wait for the disk: a minute of them."""
@@ -55,7 +56,7 @@ class EpisodeWriter:
         self._on = False
         self._samples = 0
         self._episodes = 0
-        self._problem: str | None = None
+        self._problem: Notice | None = None
         self._lost = False
 
     @property
@@ -99,9 +100,11 @@ class EpisodeWriter:
         if not self._on:
             return
         if (untrusted is not None and news) or math.isnan(record.state[0]):
-            why = "The joints could not be read." if stop is None else stop.reason
             self.end()
-            self._problem = f"The recording was ended before this: {why}"
+            if stop is None:
+                self._problem = Notice(code="joints_unreadable")
+            else:
+                self._problem = Notice(code="recording_ended", parameters={"text": stop.reason})
         else:
             self._samples += 1
             self._put(record)
@@ -126,9 +129,9 @@ class EpisodeWriter:
         try:
             self._waiting.put_nowait(item)
         except Full:
-            self._break_off("The disk cannot keep up with the recording: the episode was broken off.")
+            self._break_off(Notice(code="disk_too_slow"))
 
-    def _break_off(self, problem: str) -> None:
+    def _break_off(self, problem: Notice) -> None:
         self._on = False
         self._problem = problem
 
@@ -145,7 +148,7 @@ class EpisodeWriter:
                 recorder.close()
         except UserError as error:
             self._lost = isinstance(error, JournalLostError)
-            self._break_off(str(error))
+            self._break_off(notice_of(error))
             while True:
                 try:
                     self._waiting.get_nowait()
@@ -175,7 +178,7 @@ class EpisodeWriter:
         if error.ended_episode:
             self._episodes += 1
         if self._on:
-            self._break_off(str(error))
+            self._break_off(notice_of(error))
 
     def _new_path(self) -> Path:
         """A journal that is not there yet, named after the time."""

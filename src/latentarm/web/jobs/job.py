@@ -16,10 +16,11 @@ from multiprocessing.connection import Connection, wait
 from types import FrameType
 from typing import Final, Generic, TypeVar, final
 
-from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 from threadpoolctl import threadpool_limits
 
 from latentarm.errors import UserError
+from latentarm.web.protocol.notice import Message, Notice, notice_of
 
 MESSAGE_LIMIT: Final = 1 << 20
 """The longest message, bytes."""
@@ -32,15 +33,9 @@ Said = TypeVar("Said", bound=BaseModel)
 Told = TypeVar("Told", bound=BaseModel)
 
 
-class JobMessage(BaseModel):
-    """What a job and its parent say to each other; each kind has a field ``type`` of its own."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
 @final
-class _Failed(JobMessage):
-    failed: str
+class _Failed(Message):
+    failed: Notice
 
 
 @final
@@ -56,7 +51,7 @@ class Wire:
         self._hearing = hearing
         self._saying = saying
 
-    def say(self, message: JobMessage) -> None:
+    def say(self, message: Message) -> None:
         """Tell the parent.
 
         Raises:
@@ -94,7 +89,7 @@ class Job(Generic[Said]):
             be of a module that loads torch when it is imported: the number of threads is set before.
         arguments: for ``work``; they are pickled by multiprocessing.
         kind: what the child says.
-        name: what the work is called in a sentence, such as "The training".
+        name: what the work is called in the list of processes.
     """
 
     def __init__(
@@ -105,9 +100,8 @@ class Job(Generic[Said]):
         self._hearing, child_says = context.Pipe(duplex=False)
         os.set_blocking(self._saying.fileno(), False)
         self._kind = kind
-        self._name = name
         self._heard: deque[Said] = deque()
-        self._failure: str | None = None
+        self._failure: Notice | None = None
         self._ended = False
         self._process = context.Process(
             target=_run, args=(work, arguments, child_hears, child_says), name=name, daemon=True
@@ -125,15 +119,15 @@ class Job(Generic[Said]):
         return self._listener.is_alive()
 
     @property
-    def failure(self) -> str | None:
-        """Why it did not come to its end, in a sentence for people; None while it is at work or went well."""
+    def failure(self) -> Notice | None:
+        """Why it did not come to its end; None while it is at work or went well."""
         return self._failure
 
     def heard(self) -> list[Said]:
         """What the child has said since this was last asked, oldest first."""
         return [self._heard.popleft() for _ in range(len(self._heard))]
 
-    def say(self, message: JobMessage) -> bool:
+    def say(self, message: Message) -> bool:
         """Tell the child something short.
 
         Returns:
@@ -162,7 +156,7 @@ class Job(Generic[Said]):
                 self._take(self._hearing.recv_bytes(MESSAGE_LIMIT))
         self._process.join()
         if self._process.exitcode != 0 and self._failure is None and not self._ended:
-            self._failure = f"{self._name} broke off unexpectedly: try it again."
+            self._failure = Notice(code="work_broke_off")
 
     def _take(self, message: bytes) -> None:
         with suppress(ValidationError):
@@ -188,7 +182,7 @@ def _run(
         try:
             work(wire, *arguments)
         except UserError as error:
-            wire.say(_Failed(failed=str(error)))
+            wire.say(_Failed(failed=notice_of(error)))
 
 
 def _tidy_up(number: int, frame: FrameType | None) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 from pydantic import Field, TypeAdapter
 
 from latentarm.runs.person import Kind, Person, Question, Reply
-from latentarm.web.jobs.job import Job, JobMessage, Wire
+from latentarm.web.jobs.job import Job, Wire
+from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import Personalise, ShownMotion
 from latentarm.web.protocol.scene import pose_of
 
@@ -43,7 +44,7 @@ class PersonalisePlan:
 
 
 @final
-class _Asked(JobMessage):
+class _Asked(Message):
     type: Literal["asked"] = "asked"
     number: int
     of: int
@@ -52,14 +53,14 @@ class _Asked(JobMessage):
 
 
 @final
-class _Fitting(JobMessage):
+class _Fitting(Message):
     type: Literal["fitting"] = "fitting"
     last: bool
     share: float
 
 
 @final
-class _Learned(JobMessage):
+class _Learned(Message):
     type: Literal["learned"] = "learned"
     answers: int
     error: float
@@ -71,13 +72,13 @@ _SAID: Final[TypeAdapter[_Said]] = TypeAdapter(Annotated[_Said, Field(discrimina
 
 
 @final
-class _Answer(JobMessage):
+class _Answer(Message):
     type: Literal["answer"] = "answer"
     u: tuple[float, ...]
 
 
 @final
-class _Instead(JobMessage):
+class _Instead(Message):
     type: Literal["skip", "back"]
 
 
@@ -94,7 +95,7 @@ class PersonaliseJob:
     """
 
     def __init__(self, plan: PersonalisePlan) -> None:
-        self._job = Job(ask_and_learn, (plan,), _SAID, "The asking")
+        self._job = Job(ask_and_learn, (plan,), _SAID, "asking")
         self._state = Personalise(phase="preparing", name=plan.name, of=plan.questions)
 
     @property
@@ -125,7 +126,7 @@ class PersonaliseJob:
                         phase="learned", answers=answers, error=error, error_without=error_without, share=1.0
                     )
         if not alive and self.under_way:
-            failure = self._job.failure or "The asking broke off unexpectedly: try it again."
+            failure = self._job.failure or Notice(code="work_broke_off")
             self._change(phase="failed", motion=None, why=failure)
         return self._state
 

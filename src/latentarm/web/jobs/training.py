@@ -14,11 +14,11 @@ from pydantic import Field, TypeAdapter
 
 from latentarm.control.export import ImplausibleWarning, demonstrations_of
 from latentarm.control.journal import read_journal
-from latentarm.errors import UserError
 from latentarm.models.catalogue import KINDS
 from latentarm.types import Demonstrations
-from latentarm.web.jobs.job import Job, JobMessage, Wire
+from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.protocol.learning_messages import Training, TrainingPhase
+from latentarm.web.protocol.notice import Message, Notice, NoticeError, sentence
 
 RATE_HZ: Final = 10.0
 """Samples a second of motion that a model is trained on: an action then looks half a second ahead."""
@@ -32,20 +32,16 @@ SHORTEST_S: Final = 1.0
 STATE_NOISE_RAD: Final = 0.01
 """As `latentarm train` has it."""
 
-_FIRST: Final = ("cvae", "cae", "homogeneous", "pca")
-"""Models at the top of the page's list."""
+_FIRST_MODELS: Final = ("cvae", "cae", "homogeneous", "pca")
+"""Those that people most likely want."""
 
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
 _TELL_EVERY_S: Final = 0.1
-_COLLAPSED: Final = (
-    "One axis of the stick moves hardly anything, because the episodes differ too little: choose one axis, or"
-    " record motions that differ."
-)
 
 
 def model_names() -> tuple[str, ...]:
-    """Names in the catalogue of models, those of the most use first. Nothing of a model is loaded for it."""
-    return tuple(dict.fromkeys((*_FIRST, *KINDS)))
+    """Names in the catalogue of models, the usual one first. No model is loaded for it."""
+    return tuple(dict.fromkeys((*_FIRST_MODELS, *KINDS)))
 
 
 @final
@@ -63,7 +59,7 @@ class TrainingPlan:
         end_effector: site, body or link, where the robot is a model file.
 
     Raises:
-        UserError: the name cannot be that of a folder or is taken, or there are too few episodes.
+        NoticeError: the name cannot be that of a folder or is taken, or there are too few episodes.
     """
 
     journal: Path
@@ -76,22 +72,14 @@ class TrainingPlan:
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):
-            raise UserError(
-                "A name has 1 to 60 letters, digits, spaces, dots, dashes and underscores, and begins and"
-                " ends with a letter or a digit: choose another one."
-            )
+            raise NoticeError("name_invalid")
         if self.dataset.exists() or self.run.exists():
-            raise UserError(f"There is a run or a dataset named {self.name} already: choose another name.")
+            raise NoticeError("run_exists", name=self.name)
         if self.model not in model_names():
-            raise UserError(
-                f"There is no model named {self.model}: choose one of {', '.join(model_names())}."
-            )
+            raise NoticeError("model_unknown", name=self.model, known=", ".join(model_names()))
         chosen = len(set(self.episodes))
         if chosen < FEWEST:
-            raise UserError(
-                f"Training needs at least {FEWEST} episodes, and {chosen or 'none'} of them"
-                f" {'is' if chosen == 1 else 'are'} chosen: record more on the Drive page."
-            )
+            raise NoticeError("too_few_episodes", least=FEWEST, count=chosen)
 
     @property
     def dataset(self) -> Path:
@@ -105,7 +93,7 @@ class TrainingPlan:
 
 
 @final
-class _Epoch(JobMessage):
+class _Epoch(Message):
     type: Literal["epoch"] = "epoch"
     epoch: int
     epochs: int
@@ -114,9 +102,9 @@ class _Epoch(JobMessage):
 
 
 @final
-class _Finished(JobMessage):
+class _Finished(Message):
     type: Literal["finished"] = "finished"
-    warned: str | None
+    warned: tuple[Notice, ...]
 
 
 _Said = _Epoch | _Finished
@@ -132,7 +120,7 @@ class TrainingJob:
     """
 
     def __init__(self, plan: TrainingPlan) -> None:
-        self._job = Job(train_as_planned, (plan,), _SAID, "The training")
+        self._job = Job(train_as_planned, (plan,), _SAID, "training")
         self._state = Training(phase="exporting", run=plan.name)
         self._finished = self._cancelled = False
 
@@ -157,7 +145,8 @@ class TrainingJob:
                     self._change(why=warned)
         if self._finished or not alive:
             self._change(phase=self._outcome(), seconds_left=None)
-            self._change(why=self._job.failure or self._state.why)
+            failure = self._job.failure
+            self._change(why=self._state.why if failure is None else (failure,))
         return self._state
 
     def cancel(self) -> None:
@@ -190,9 +179,11 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
     demonstrations = without_pauses(recorded, RATE_HZ)
     long_enough = [one for one in demonstrations.episodes if one.timestamp[-1] >= SHORTEST_S]
     if len(long_enough) < max(FEWEST, len(set(plan.episodes))):
-        raise UserError(
-            f"The arm moves for at least {SHORTEST_S:.0f} s in {len(long_enough)} of the"
-            f" {len(set(plan.episodes))} chosen episodes: leave the others out, or record longer ones."
+        raise NoticeError(
+            "episodes_too_short",
+            seconds=round(SHORTEST_S),
+            count=len(long_enough),
+            all=len(set(plan.episodes)),
         )
     try:
         warned = _train(wire, plan, demonstrations)
@@ -200,10 +191,10 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
         shutil.rmtree(plan.run, ignore_errors=True)
         shutil.rmtree(plan.dataset, ignore_errors=True)
         raise
-    wire.say(_Finished(warned=" ".join([*(str(one.message) for one in cut), *warned]) or None))
+    wire.say(_Finished(warned=(*(sentence(str(one.message)) for one in cut), *warned)))
 
 
-def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[str]:
+def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[Notice]:
     """Write the dataset and the run; what was warned of."""
     # pyarrow, and then torch, which take seconds to load: in this process alone.
     from latentarm.demonstrations.dataset import write_dataset
@@ -225,7 +216,9 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
         warnings.simplefilter("always", UserWarning)
         train_run(config, _report_to(wire))
     return [
-        _COLLAPSED if issubclass(one.category, CollapseWarning) else str(one.message)
+        Notice(code="one_axis_weak")
+        if issubclass(one.category, CollapseWarning)
+        else sentence(str(one.message))
         for one in caught
         if issubclass(one.category, UserWarning)
     ]

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Annotated, Final, Literal, final
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 
+from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.shared_memory import Flag, LatestSlot
 
 ORDER_LIMIT: Final = 4096
@@ -20,16 +21,13 @@ _GIVEN_LIMIT: Final = 1024
 _REASON_LIMIT: Final = 512
 
 ModeName = Literal["latent", "assisted", "end_effector"]
+HeldBack = Literal["clearance", "freshness", "workspace", "joint_position"]
 Phase = Literal["disengaged", "neutral_needed", "ready", "moving", "stopping"]
 Point = tuple[float, float, float]
 
 
-class _Message(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
 @final
-class Given(_Message):
+class Given(Message):
     """What the person at the wheel does.
 
     Attributes:
@@ -50,7 +48,7 @@ class Given(_Message):
 
 
 @final
-class Enable(_Message):
+class Enable(Message):
     """Let the arm move, if the driver's input is neutral.
 
     Attributes:
@@ -64,7 +62,7 @@ class Enable(_Message):
 
 
 @final
-class ChooseMode(_Message):
+class ChooseMode(Message):
     """Steer in another way; ``axes`` is which pair of the end-effector's, None for the one before."""
 
     order: Literal["mode"] = "mode"
@@ -73,7 +71,7 @@ class ChooseMode(_Message):
 
 
 @final
-class ChooseProfile(_Message):
+class ChooseProfile(Message):
     """Take another person's alignment, or None for z = u; only while the arm stands disengaged."""
 
     order: Literal["profile"] = "profile"
@@ -81,7 +79,7 @@ class ChooseProfile(_Message):
 
 
 @final
-class ChooseRun(_Message):
+class ChooseRun(Message):
     """Drive another run from its start, without anybody's alignment; only while the arm stands disengaged."""
 
     order: Literal["run"] = "run"
@@ -89,7 +87,7 @@ class ChooseRun(_Message):
 
 
 @final
-class Record(_Message):
+class Record(Message):
     """Begin an episode of what is driven, or end it once the arm is at rest."""
 
     order: Literal["record"] = "record"
@@ -99,7 +97,7 @@ class Record(_Message):
 
 
 @final
-class Reset(_Message):
+class Reset(Message):
     """Put the simulated arm back to its start; only while it stands disengaged."""
 
     order: Literal["reset"] = "reset"
@@ -110,7 +108,7 @@ _ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discrimi
 
 
 @final
-class Ghosts(_Message):
+class Ghosts(Message):
     """Where each full deflection would take the tool over the next second: points, m."""
 
     up: tuple[Point, ...]
@@ -120,7 +118,7 @@ class Ghosts(_Message):
 
 
 @final
-class Recording(_Message):
+class Recording(Message):
     """A recording under way or done.
 
     Attributes:
@@ -134,12 +132,12 @@ class Recording(_Message):
     on: bool
     samples: int
     episodes: int
-    problem: str | None
+    problem: Notice | None
     journal: str
 
 
 @final
-class Report(_Message):
+class Report(Message):
     """What the control process says of itself, in every tick.
 
     Attributes:
@@ -149,7 +147,9 @@ class Report(_Message):
         driver: whose inputs it takes.
         phase: ``disengaged``, ``neutral_needed`` (the stick must be let go), ``ready`` (enabled and standing
             still), ``moving``, ``stopping``.
-        why: one sentence for people.
+        note: shown for a while instead of what the arm does; None for nothing.
+        reason: why the arm may not move; None where it may.
+        held_back: why it moves slower than it is asked to; None where it does not.
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
         run: path of the run that is driven, as it was named; None without one.
@@ -172,7 +172,9 @@ class Report(_Message):
     time_s: float
     driver: int
     phase: Phase
-    why: str
+    note: Notice | None
+    reason: Notice | None
+    held_back: HeldBack | None
     mode: ModeName
     axes: int
     run: str | None
@@ -198,7 +200,7 @@ class Channel:
     Attributes:
         given: the newest input.
         report: the newest report.
-        stop: the newest reason to stop; every new one stops the arm.
+        stop: the newest reason to stop, a `Notice`; every new one stops the arm.
         ending: raised when the control process shall bring the arm to rest and end.
         orders: everything else; bounded, for whoever is too slow to read loses orders, not time.
     """
@@ -243,6 +245,14 @@ def parse_given(message: bytes) -> Given | None:
         return Given.model_validate_json(message)
     except ValidationError:
         return None
+
+
+def parse_stop(message: bytes) -> Notice:
+    """A reason to stop as it lies in its slot; whatever lies there is one."""
+    try:
+        return Notice.model_validate_json(message)
+    except ValidationError:
+        return Notice(code="stop_pressed")
 
 
 def parse_report(message: bytes) -> Report | None:

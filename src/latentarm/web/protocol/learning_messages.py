@@ -2,8 +2,9 @@
 
 from typing import Annotated, Literal, final
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import Personalise
 
 RunName = Annotated[str, Field(min_length=1, max_length=80)]
@@ -11,14 +12,8 @@ ModelName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
 TrainingPhase = Literal["exporting", "training", "done", "failed", "cancelled"]
 
 
-class WorkshopMessage(BaseModel):
-    """Base of all of them."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
 @final
-class Train(WorkshopMessage):
+class Train(Message):
     """Train a model on recorded episodes; from the page that drives.
 
     Attributes:
@@ -36,14 +31,14 @@ class Train(WorkshopMessage):
 
 
 @final
-class CancelTraining(WorkshopMessage):
+class CancelTraining(Message):
     """End the training under way; nothing of it stays. From the page that drives."""
 
     type: Literal["cancel_training"]
 
 
 @final
-class PickRun(WorkshopMessage):
+class PickRun(Message):
     """Drive another run, one of `Workshop.runs`; from the page that drives, while the arm is not enabled."""
 
     type: Literal["run"]
@@ -51,7 +46,7 @@ class PickRun(WorkshopMessage):
 
 
 @final
-class Recorded(WorkshopMessage):
+class Recorded(Message):
     """A whole episode in the journal.
 
     Attributes:
@@ -66,7 +61,7 @@ class Recorded(WorkshopMessage):
 
 
 @final
-class Training(WorkshopMessage):
+class Training(Message):
     """A training under way, or the last one.
 
     Attributes:
@@ -76,7 +71,7 @@ class Training(WorkshopMessage):
         epochs: how many there are at most.
         loss: validation loss so far, or null.
         seconds_left: about how long it will take yet, or null.
-        why: what people should know: why it failed, or what the model warned of; or null.
+        why: why it failed, or what was warned of.
     """
 
     phase: TrainingPhase
@@ -85,11 +80,11 @@ class Training(WorkshopMessage):
     epochs: int = 0
     loss: float | None = None
     seconds_left: float | None = None
-    why: str | None = None
+    why: tuple[Notice, ...] = ()
 
 
 @final
-class Workshop(WorkshopMessage):
+class Workshop(Message):
     """What there is to learn from and to drive; sent after `Welcome` and whenever it changes.
 
     Attributes:

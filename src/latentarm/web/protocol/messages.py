@@ -7,10 +7,11 @@ the driver and 30 to watchers, and says `Refused` before it hangs up.
 
 from typing import Annotated, Final, Literal, final
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import Field, TypeAdapter
 
-from latentarm.web.protocol.channel import Ghosts, ModeName, Phase, Point
+from latentarm.web.protocol.channel import Ghosts, HeldBack, ModeName, Phase, Point
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
+from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
 
 VERSION: Final = 1
@@ -22,12 +23,8 @@ Id = Annotated[str, Field(max_length=32)]
 Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
 
 
-class _Message(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
 @final
-class Hello(_Message):
+class Hello(Message):
     """A page introduces itself. The first page drives; the others watch until they ask."""
 
     type: Literal["hello"]
@@ -36,7 +33,7 @@ class Hello(_Message):
 
 
 @final
-class DriverInput(_Message):
+class DriverInput(Message):
     """What the person does, 50 times a second while the arm is enabled, neutral too.
 
     Attributes:
@@ -56,21 +53,21 @@ class DriverInput(_Message):
 
 
 @final
-class PressEnable(_Message):
+class PressEnable(Message):
     """Let the arm move. A fresh neutral input must come within 0.3 s, before or after."""
 
     type: Literal["enable"]
 
 
 @final
-class PressStop(_Message):
+class PressStop(Message):
     """Stop the arm, from any page."""
 
     type: Literal["stop"]
 
 
 @final
-class Mode(_Message):
+class Mode(Message):
     """Steer in another way; at any time."""
 
     type: Literal["mode"]
@@ -79,7 +76,7 @@ class Mode(_Message):
 
 
 @final
-class Profile(_Message):
+class Profile(Message):
     """Use a person's alignment, or null for none; while the arm is not enabled."""
 
     type: Literal["profile"]
@@ -87,14 +84,14 @@ class Profile(_Message):
 
 
 @final
-class AskToDrive(_Message):
+class AskToDrive(Message):
     """Take the wheel where nobody has it, else ask the driver for it."""
 
     type: Literal["ask_to_drive"]
 
 
 @final
-class HandOver(_Message):
+class HandOver(Message):
     """Give the wheel to the page that has asked for it."""
 
     type: Literal["hand_over"]
@@ -102,21 +99,21 @@ class HandOver(_Message):
 
 
 @final
-class Release(_Message):
+class Release(Message):
     """Give the wheel up."""
 
     type: Literal["release"]
 
 
 @final
-class TrailClear(_Message):
+class TrailClear(Message):
     """Empty the trail of the tool on every page."""
 
     type: Literal["trail_clear"]
 
 
 @final
-class RecordEpisode(_Message):
+class RecordEpisode(Message):
     """Begin an episode, or end it once the arm is at rest; a change of the driver ends it too."""
 
     type: Literal["record"]
@@ -125,7 +122,7 @@ class RecordEpisode(_Message):
 
 
 @final
-class ResetArm(_Message):
+class ResetArm(Message):
     """Put the simulated arm back to its start; while it is not enabled."""
 
     type: Literal["reset"]
@@ -155,7 +152,7 @@ _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
 
 
 @final
-class NamedGoal(_Message):
+class NamedGoal(Message):
     """A goal: its name and where the tool is at it, m."""
 
     name: str
@@ -163,14 +160,14 @@ class NamedGoal(_Message):
 
 
 @final
-class Limits(_Message):
+class Limits(Message):
     """What a page must know of limits."""
 
     latch_max_s: float
 
 
 @final
-class Welcome(_Message):
+class Welcome(Message):
     """What is driven.
 
     Attributes:
@@ -201,24 +198,26 @@ class Welcome(_Message):
 
 
 @final
-class RecordingState(_Message):
+class RecordingState(Message):
     """See `latentarm.web.protocol.channel.Recording`."""
 
     on: bool
     samples: int
     episodes: int
-    problem: str | None
+    problem: Notice | None
 
 
 @final
-class State(_Message):
+class State(Message):
     """What the arm does now.
 
     Attributes:
         nonce: to be echoed by the next input.
         tick: grows.
         phase: see `latentarm.web.protocol.channel.Report`.
-        why: for people, to be announced.
+        note: to be shown instead of what the arm does, or null.
+        reason: why the arm may not move, or null where it may.
+        held_back: why it moves slower than it is asked to, or null.
         mode: how the arm is steered.
         axes: which pair of the end-effector's.
         profile: whose alignment.
@@ -243,7 +242,9 @@ class State(_Message):
     nonce: str
     tick: int
     phase: Phase
-    why: str
+    note: Notice | None
+    reason: Notice | None
+    held_back: HeldBack | None
     mode: ModeName
     axes: int
     profile: str | None
@@ -265,11 +266,11 @@ class State(_Message):
 
 
 @final
-class Refused(_Message):
+class Refused(Message):
     """Why the server hangs up."""
 
     type: Literal["refused"] = "refused"
-    why: str
+    notice: Notice
 
 
 def parse_message(frame: str) -> ClientMessage:

@@ -2,9 +2,10 @@
 
 from typing import Annotated, Final, Literal, final
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from latentarm.web.protocol.channel import Point
+from latentarm.web.protocol.notice import Message, Notice
 
 MOST_QUESTIONS: Final = 30
 
@@ -13,12 +14,8 @@ QuestionId = Annotated[int, Field(ge=0, le=2**31)]
 Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
 
 
-class _Message(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
 @final
-class BeginPersonalise(_Message):
+class BeginPersonalise(Message):
     """Ask a person what they mean by their stick; from the page that drives, while the arm is not enabled.
 
     Attributes:
@@ -32,7 +29,7 @@ class BeginPersonalise(_Message):
 
 
 @final
-class AnswerQuestion(_Message):
+class AnswerQuestion(Message):
     """By which input the person would ask for the motion that is shown; from the page that drives.
 
     Attributes:
@@ -46,7 +43,7 @@ class AnswerQuestion(_Message):
 
 
 @final
-class SkipQuestion(_Message):
+class SkipQuestion(Message):
     """The person would not know; from the page that drives."""
 
     type: Literal["skip_question"]
@@ -54,7 +51,7 @@ class SkipQuestion(_Message):
 
 
 @final
-class QuestionBefore(_Message):
+class QuestionBefore(Message):
     """Ask the question before once more; from the page that drives."""
 
     type: Literal["question_before"]
@@ -62,28 +59,28 @@ class QuestionBefore(_Message):
 
 
 @final
-class CancelPersonalise(_Message):
+class CancelPersonalise(Message):
     """Ask no more, and forget what was answered; from the page that drives."""
 
     type: Literal["cancel_personalise"]
 
 
 @final
-class TryAlignment(_Message):
+class TryAlignment(Message):
     """Drive with what was learned; from the page that drives, while the arm is not enabled."""
 
     type: Literal["try_alignment"]
 
 
 @final
-class KeepAlignment(_Message):
+class KeepAlignment(Message):
     """Keep what was learned under the person's name; from the page that drives."""
 
     type: Literal["keep_alignment"]
 
 
 @final
-class DiscardAlignment(_Message):
+class DiscardAlignment(Message):
     """Forget what was learned, and drive as before; from the page that drives."""
 
     type: Literal["discard_alignment"]
@@ -102,7 +99,7 @@ PersonaliseMessage = (
 
 
 @final
-class ShownMotion(_Message):
+class ShownMotion(Message):
     """A motion that a person is asked about.
 
     Attributes:
@@ -117,7 +114,7 @@ class ShownMotion(_Message):
 
 
 @final
-class Personalise(_Message):
+class Personalise(Message):
     """A person's alignment as far as it is.
 
     Attributes:
@@ -146,4 +143,4 @@ class Personalise(_Message):
     answers: int = 0
     error: float | None = None
     error_without: float | None = None
-    why: str | None = None
+    why: Notice | None = None

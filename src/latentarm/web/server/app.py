@@ -17,6 +17,7 @@ from latentarm.robots.notices import notices
 from latentarm.web.arm_process.drive_setup import Setting, load_setting
 from latentarm.web.jobs.training import model_names
 from latentarm.web.protocol.messages import FRAME_LIMIT
+from latentarm.web.protocol.notice import Notice
 from latentarm.web.server.addresses import TeleopConfig, check_certificate, listen, origin
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
@@ -31,8 +32,6 @@ from latentarm.web.server.run_list import Shelf
 from latentarm.web.server.security import DRIVE, ENTRY, Gate, Keys
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
-
-STOPPED_BY_POST: Final = "Somebody pressed Stop."
 
 _STARTED_S: Final = 0.01
 """How often is looked whether uvicorn has started, s."""
@@ -168,7 +167,7 @@ def gated(
         origins,
         keys,
         secure=config.scheme == "https",
-        stop=lambda: control.stop(STOPPED_BY_POST),
+        stop=lambda: control.stop(Notice(code="stop_pressed")),
         entered=entered,
     )
 

@@ -8,6 +8,7 @@ from typing import final
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.arm_process.process import run_control
 from latentarm.web.protocol.channel import ORDER_LIMIT, Given, Order, Report, new_channel, parse_report
+from latentarm.web.protocol.notice import Notice
 
 
 @final
@@ -51,13 +52,13 @@ class ControlProcess:
         """Hand over the newest input."""
         self._channel.given.write(given.model_dump_json().encode())
 
-    def stop(self, reason: str) -> None:
+    def stop(self, reason: Notice) -> None:
         """Stop the arm.
 
         Args:
-            reason: one short sentence for people.
+            reason: why; names in it have 40 characters at most.
         """
-        self._channel.stop.write(reason.encode()[:400])
+        self._channel.stop.write(reason.model_dump_json().encode())
 
     def order(self, order: Order) -> bool:
         """Send an order.

@@ -26,6 +26,7 @@ from latentarm.web.protocol.messages import (
     TrailClear,
     parse_message,
 )
+from latentarm.web.protocol.notice import Notice, NoticeCode
 from latentarm.web.protocol.personalise_messages import AnswerQuestion, PersonaliseMessage
 from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.frames import TOO_MANY
@@ -45,9 +46,6 @@ what makes the next input fresh."""
 _PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)
 """Codes with which the server below us hangs up: no frame, no text, too many frames, or one far too long."""
 
-_EXPIRED_DRIVER: Final = "The access of the person who drove has expired: the arm was stopped."
-_BROKEN: Final = "A page sent what is no message: the arm was stopped."
-
 
 class _ViolationError(Exception):
     """A page has sent what it must not."""
@@ -57,11 +55,11 @@ class _ExpiredError(Exception):
     """A page's cookie has expired."""
 
 
-async def _hang_up(socket: WebSocket, code: int, why: str) -> None:
+async def _hang_up(socket: WebSocket, code: int, why: NoticeCode) -> None:
     """Say why, and close; a page that takes nothing any more is not waited for."""
     with suppress(RuntimeError, WebSocketDisconnect, TimeoutError):
         async with asyncio.timeout(HANG_UP_WITHIN_S):
-            await socket.send_text(Refused(why=why).model_dump_json())
+            await socket.send_text(Refused(notice=Notice(code=why)).model_dump_json())
             await socket.close(code, why)
 
 
@@ -97,7 +95,7 @@ class DriveSocket:
 
     def stop(self, who: str) -> None:
         """Stop the arm, for somebody."""
-        self._control.stop(f"{who} pressed Stop.")
+        self._control.stop(Notice(code="stop_pressed_by", parameters={"name": who}))
 
     async def _serve(self, socket: WebSocket) -> None:
         page: Page | None = None
@@ -111,14 +109,14 @@ class DriveSocket:
             while True:
                 self._take(page, await _receive(socket))
         except _ViolationError:
-            self._control.stop(_BROKEN)
-            await _hang_up(socket, 1008, "This is not what a page may send.")
+            self._control.stop(Notice(code="message_invalid"))
+            await _hang_up(socket, 1008, "page_refused")
         except TimeoutError:
             # It is nobody yet: a slow network or a silent stranger is no reason to stop the arm.
-            await _hang_up(socket, 1008, "The page did not introduce itself.")
+            await _hang_up(socket, 1008, "no_hello")
         except _ExpiredError:
             if page is not None and self._sessions.drives(page):
-                self._control.stop(_EXPIRED_DRIVER)
+                self._control.stop(Notice(code="driver_expired"))
             await _hang_up(socket, EXPIRED, EXPIRED_WHY)
         except WebSocketDisconnect:
             pass
@@ -126,7 +124,7 @@ class DriveSocket:
             if sender is not None:
                 sender.cancel()
             if page is not None and self._sessions.leave(page):
-                self._wheel_changed("The page of the person who drove has gone.")
+                self._driver_changed("driver_gone")
 
     async def _send_states(self, socket: WebSocket, page: Page) -> None:
         """States as fast as the page takes them, always the newest: nothing queues up.
@@ -196,18 +194,18 @@ class DriveSocket:
                 self._bench.choose_run(run)
             case HandOver(to=to):
                 if self._sessions.hand_over(page, to):
-                    self._wheel_changed("The wheel was handed over.")
+                    self._driver_changed("handed_over")
             case Release():
                 if self._sessions.release(page):
-                    self._wheel_changed("The driver has given up the wheel.")
+                    self._driver_changed("driver_released")
             case _ if isinstance(message, PersonaliseMessage):
                 self._bench.personalising.take(message)
             case _:
                 pass
 
-    def _wheel_changed(self, why: str) -> None:
+    def _driver_changed(self, why: NoticeCode) -> None:
         """The arm stops for it, and an episode is one driver's."""
-        self._control.stop(why)
+        self._control.stop(Notice(code=why))
         self._control.order(Record(on=False, task=""))
 
     def _give(self, message: DriverInput) -> None:

@@ -10,6 +10,7 @@ from latentarm.runs.folder import read_run
 from latentarm.web.jobs.training import TrainingJob, TrainingPlan
 from latentarm.web.protocol.channel import ChooseRun
 from latentarm.web.protocol.learning_messages import Recorded, Train, Training, Workshop
+from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.personalising import Driven, Personalising
 from latentarm.web.server.run_check import WITHIN_S, Trial
@@ -18,8 +19,6 @@ from latentarm.web.server.states import States
 
 LOOK_S: Final = 0.2
 """How often the jobs and the recordings are looked at, s."""
-
-_NOTHING: Final = "Nothing is recorded yet: record episodes on the Drive page first."
 
 
 @final
@@ -77,7 +76,7 @@ class Bench:
         journal = None if report is None or report.recording is None else Path(report.recording.journal)
         try:
             if journal is None:
-                raise UserError(_NOTHING)
+                raise NoticeError("nothing_recorded")
             name = wish.name.strip()
             plan = TrainingPlan(
                 journal=journal,
@@ -92,7 +91,7 @@ class Bench:
             self._training = self._job.look()
         except UserError as error:
             self._job = None
-            self._training = Training(phase="failed", run=wish.name.strip()[:80], why=str(error))
+            self._training = Training(phase="failed", run=wish.name.strip()[:80], why=(notice_of(error),))
 
     def cancel(self) -> None:
         """End the training under way."""
@@ -106,7 +105,7 @@ class Bench:
         if run is None:
             return
         if report is not None and report.phase in ("ready", "moving", "stopping"):
-            self._states.say("Stop the arm first.")
+            self._states.say(Notice(code="stop_first"))
             return
         if self._choosing is not None:
             self._choosing.cancel()
@@ -124,12 +123,12 @@ class Bench:
         """Have a run driven once a child process has loaded it; until then driving goes on as it was."""
         trial = Trial(self._states.stage.spec, run, name)
         try:
-            self._states.say(f"Checking the run {name}.", WITHIN_S)
+            self._states.say(Notice(code="checking_run", parameters={"name": name}), WITHIN_S)
             failure = await trial.failure()
         finally:
             asyncio.get_running_loop().run_in_executor(None, trial.end)
         if failure is None:
-            self._states.say("")
+            self._states.say(None)
             self._control.order(ChooseRun(run=str(run)))
         else:
             self._states.say(failure)

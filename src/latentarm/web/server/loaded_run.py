@@ -7,8 +7,8 @@ from typing import final
 import numpy as np
 
 from latentarm.alignment.profile import profile_names
-from latentarm.web.arm_process.cockpit import LATCH_MAX_S
 from latentarm.web.arm_process.drive_setup import Setting, Spec, load_setting
+from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.channel import Report
 from latentarm.web.protocol.messages import Limits, NamedGoal, Welcome
 from latentarm.web.protocol.scene import scene_of

@@ -11,6 +11,7 @@ from latentarm.alignment.profile import TRIAL, discard_trial, keep_trial, profil
 from latentarm.errors import UserError
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
 from latentarm.web.protocol.channel import ChooseProfile, Report
+from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.protocol.personalise_messages import (
     AnswerQuestion,
     BeginPersonalise,
@@ -27,9 +28,6 @@ from latentarm.web.server.control_process import ControlProcess
 
 STICK_AXES: Final = 2
 """A page's stick cannot answer for more."""
-
-_STOP_FIRST: Final = "Stop the arm first."
-_ASKING: Final = "{name} is being asked: the arm stands still until that is done."
 
 
 @final
@@ -78,11 +76,11 @@ class Personalising:
         self._before: str | None = None
 
     @property
-    def standstill(self) -> str | None:
-        """Why the arm may not be enabled, in a sentence for people; None where it may."""
+    def standstill(self) -> Notice | None:
+        """Why the arm may not be enabled; None where it may."""
         if self._state is None or not self._under_way:
             return None
-        return _ASKING.format(name=self._state.name)
+        return Notice(code="asking", parameters={"name": self._state.name})
 
     def look(self) -> Personalise | None:
         """How far it is; None where there is nothing of it."""
@@ -98,7 +96,7 @@ class Personalising:
         try:
             self._obey(message)
         except UserError as error:
-            self._why(str(error))
+            self._why(notice_of(error))
 
     async def close(self) -> None:
         """End what is under way, and remove what was not kept."""
@@ -135,20 +133,20 @@ class Personalising:
 
     def _begin(self, name: str, questions: int) -> None:
         if self._under_way or (self._ending is not None and not self._ending.done()):
-            raise UserError("Somebody is being asked already: wait for it, or cancel it.")
+            raise NoticeError("asking_already")
         driven = self._driven()
         try:
             run = _alignable(driven)
             if profile_folder(run, name).exists():
-                raise UserError(f"There is an alignment of {name} already: choose another name.")
+                raise NoticeError("profile_exists", name=name)
             self._give_back(driven)
         except UserError as error:
             if self._state is not None and self._state.phase == "learned":
                 raise
-            self._state = Personalise(phase="failed", name=name, of=questions, why=str(error))
+            self._state = Personalise(phase="failed", name=name, of=questions, why=notice_of(error))
             return
         # An Enable from before that has not been carried out counts for nothing after a stop.
-        self._control.stop("A person is asked what they mean by the stick.")
+        self._control.stop(Notice(code="question_began"))
         self._run = run
         self._job = PersonaliseJob(PersonalisePlan(run, name, questions, trial_folder(run)))
         self._state = self._job.look()
@@ -202,7 +200,7 @@ class Personalising:
         if run is not None:
             self._ending = asyncio.create_task(asyncio.to_thread(_clean, job, run))
 
-    def _why(self, why: str | None) -> None:
+    def _why(self, why: Notice | None) -> None:
         if self._state is not None:
             self._state = self._state.model_copy(update={"why": why})
 
@@ -214,18 +212,16 @@ def _alignable(driven: Driven) -> Path:
         UserError: nobody can be asked about what is driven, or not now.
     """
     if driven.run is None:
-        raise UserError("No run is loaded: choose one on the Teach page, or start with one.")
+        raise NoticeError("no_run")
     if driven.latent_dim > STICK_AXES:
-        raise UserError(
-            f"This run has {driven.latent_dim} latent actions, and the page's stick has two axes."
-        )
+        raise NoticeError("too_many_axes", count=driven.latent_dim)
     _check_at_rest(driven)
     return driven.run
 
 
 def _check_at_rest(driven: Driven) -> None:
     if not driven.at_rest:
-        raise UserError(_STOP_FIRST)
+        raise NoticeError("stop_first")
 
 
 def _clean(job: PersonaliseJob | None, run: Path) -> None:

@@ -15,7 +15,8 @@ from pydantic import TypeAdapter
 from latentarm.errors import UserError
 from latentarm.untrusted.memory import bounded_memory
 from latentarm.web.arm_process.drive_setup import Spec, load_setting
-from latentarm.web.jobs.job import Job, JobMessage, Wire
+from latentarm.web.jobs.job import Job, Wire
+from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.server.loaded_run import Stage
 
 WITHIN_S: Final = 30.0
@@ -39,15 +40,16 @@ class Trial:
     def __init__(self, spec: Spec, run: Path, name: str) -> None:
         self._name = name
         arguments = (replace(spec, run=run, profile=None), name)
-        self._job = Job(try_to_load, arguments, TypeAdapter(JobMessage), f"Loading the run {name}")
+        self._job = Job(try_to_load, arguments, TypeAdapter(Message), "loading a run")
         self._until_s = time.monotonic() + WITHIN_S
 
-    async def failure(self) -> str | None:
-        """Why the run cannot be driven, in one sentence; None where it can."""
+    async def failure(self) -> Notice | None:
+        """Why the run cannot be driven; None where it can."""
         while self._job.alive:
             if time.monotonic() > self._until_s:
                 await asyncio.to_thread(self._job.end)
-                return f"The run {self._name} takes more than {WITHIN_S:.0f} s to load: choose another one."
+                parameters = {"name": self._name, "seconds": round(WITHIN_S)}
+                return Notice(code="run_too_slow", parameters=parameters)
             await asyncio.sleep(_LOOK_S)
         return self._job.failure
 

@@ -31,7 +31,8 @@ DRIVE: Final = "/drive"
 EXPIRED: Final = 4401
 """The code that a WebSocket is closed with when its cookie has expired, out of those for applications."""
 
-EXPIRED_WHY: Final = "Your access has ended after 8 hours. Open the newest link that latentarm has printed."
+EXPIRED_WHY: Final = "expired"
+"""The reason that goes with it, a code as `latentarm.web.protocol.notice` has them."""
 
 ENTRY: Final = "/enter"
 STOP: Final = "/stop"

@@ -12,9 +12,9 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
-from latentarm.untrusted.terminal import one_line
 from latentarm.web.protocol.channel import Ghosts, Report
 from latentarm.web.protocol.messages import RecordingState, State
+from latentarm.web.protocol.notice import Notice, notice_of, sentence
 from latentarm.web.protocol.scene import pose_of
 from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.loaded_run import Stage, load_stage
@@ -34,9 +34,6 @@ LOADING_S: Final = 0.2
 """How often pages hear that something is still being loaded, s."""
 
 _SAME_M: Final = 1e-3
-_LOADING: Final = "Loading the run: the arm stands still."
-_DEAD: Final = "The arm's control process has ended: start latentarm teleop again."
-_SILENT: Final = "The arm's control process does not answer: the arm has stopped by itself."
 
 
 @final
@@ -66,24 +63,24 @@ class States:
         shelf: knows what runs are called.
 
     Attributes:
-        standstill: why the arm may not be enabled, for people; None where it may.
+        standstill: why the arm may not be enabled; None where it may.
     """
 
     def __init__(self, stage: Stage, control: ControlProcess, sessions: Sessions, shelf: Shelf) -> None:
         self._stage = stage
         self._control = control
         self._sessions = sessions
-        self.standstill: str | None = None
+        self.standstill: Notice | None = None
         self._shelf = shelf
         self._loading = False
-        self._failed: tuple[str | None, str] | None = None
+        self._failed: tuple[str | None, Notice] | None = None
         self._changing: asyncio.Task[None] | None = None
         self._report: Report | None = None
         self._heard_s = time.monotonic()
         self._trail = 0
         self._changed = asyncio.Event()
         self._set_off = asyncio.Event()
-        self._note = ""
+        self._note: Notice | None = None
         self._note_until_s = -math.inf
         self._moves = False
         self._number = 0
@@ -127,10 +124,10 @@ class States:
             async with asyncio.timeout(span_s):
                 await self._set_off.wait()
 
-    def say(self, note: str, for_s: float = NOTE_S) -> None:
-        """Show every page a sentence for so long, s, instead of what the arm does; "" takes it back."""
-        self._note = one_line(note)
-        self._note_until_s = time.monotonic() + for_s if note else -math.inf
+    def say(self, note: Notice | None, for_s: float = NOTE_S) -> None:
+        """Show every page a note for so long, s, instead of what the arm does; None takes it back."""
+        self._note = note
+        self._note_until_s = time.monotonic() + for_s
 
     def clear_trail(self) -> None:
         """Tell every page to empty its trail."""
@@ -188,9 +185,12 @@ class States:
             self._stage = await asyncio.to_thread(load_stage, self._stage.spec, report, name)
             self._report = report
         except UserError as error:
-            self._failed = report.run, one_line(str(error))
+            self._failed = report.run, notice_of(error)
         except Exception as error:  # noqa: BLE001 - or pages would wait for ever; the arm cannot be enabled
-            self._failed = report.run, one_line(f"The run cannot be shown ({error!r}): choose another one.")
+            self._failed = (
+                report.run,
+                sentence(f"The run cannot be shown ({error!r}): choose another one."),
+            )
         finally:
             self._changing = None
 
@@ -207,7 +207,9 @@ class States:
             nonce=report.nonce,
             tick=report.tick,
             phase="disengaged" if away else report.phase,
-            why=self._why_away() if away else self._why(report),
+            note=self._why_away() if away else self._shown_note(report),
+            reason=None if away else report.reason,
+            held_back=None if away else report.held_back,
             mode=report.mode,
             axes=report.axes,
             profile=report.profile,
@@ -234,19 +236,19 @@ class States:
             you=False,
         )
 
-    def _why(self, report: Report) -> str:
-        if time.monotonic() < self._note_until_s and report.phase != "stopping":
+    def _shown_note(self, report: Report) -> Notice | None:
+        if self._note is not None and time.monotonic() < self._note_until_s and report.phase != "stopping":
             return self._note
         disengaged = report.phase in ("disengaged", "neutral_needed")
-        return self.standstill if disengaged and self.standstill is not None else report.why
+        return self.standstill if disengaged and self.standstill is not None else report.note
 
-    def _why_away(self) -> str:
+    def _why_away(self) -> Notice:
         """Why the newest report says nothing of now."""
         if not self._control.alive:
-            return _DEAD
+            return Notice(code="arm_process_ended")
         if not self._loading:
-            return _SILENT
-        return _LOADING if self._failed is None else self._failed[1]
+            return Notice(code="arm_process_silent")
+        return Notice(code="loading_run") if self._failed is None else self._failed[1]
 
     def _bodies(self, report: Report) -> tuple[tuple[float, ...], ...]:
         links = self._stage.chain.link_transforms(np.array(report.q))

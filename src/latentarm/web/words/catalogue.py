@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from types import MappingProxyType
 from typing import Final, final
 
 DEFAULT: Final = "en"
@@ -43,17 +44,20 @@ class Words:
         """What the language calls itself."""
         return self.say("language.name")
 
-    def say(self, key: str) -> str:
-        """A text without parameters.
+    def say(self, key: str, parameters: Mapping[str, str | int] = MappingProxyType({})) -> str:
+        """A text.
+
+        Args:
+            key: of the text.
+            parameters: what it names; with a ``count`` of 1 the singular is taken where there is one.
 
         Raises:
-            KeyError: there is no such text.
-            TypeError: it depends on a count.
+            KeyError: there is no such text, or it names other parameters.
         """
         text = self.texts[key]
         if not isinstance(text, str):
-            raise TypeError(f"{key} depends on a count")
-        return text
+            text = text["one" if parameters.get("count") == 1 and "one" in text else "other"]
+        return text.format_map(parameters)
 
 
 @cache
@@ -61,7 +65,7 @@ def languages() -> dict[str, Words]:
     """Every language that there is, by its code, in the order of the codes; English fills its gaps."""
     texts = {
         file.name.removesuffix(".json"): json.loads(file.read_text(encoding="utf-8"))
-        for file in files(__package__).iterdir()
+        for file in files("latentarm.web.words").iterdir()
         if file.name.endswith(".json")
     }
     return {code: Words(code, {**texts[DEFAULT], **own}) for code, own in sorted(texts.items())}

@@ -74,6 +74,11 @@ export interface NamedGoal {
   position: [number, number, number];
 }
 
+export interface Notice {
+  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "checking_run" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "handed_over" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "nothing_recorded" | "one_axis_weak" | "page_refused" | "profile_exists" | "question_began" | "recording_ended" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "work_broke_off";
+  parameters: Record<string, string | number>;
+}
+
 export interface Personalise {
   phase: "preparing" | "asking" | "thinking" | "learning" | "learned" | "kept" | "failed";
   name: string;
@@ -86,7 +91,7 @@ export interface Personalise {
   answers: number;
   error: number | null;
   error_without: number | null;
-  why: string | null;
+  why: Notice | null;
 }
 
 export interface PickRun {
@@ -128,12 +133,12 @@ export interface RecordingState {
   on: boolean;
   samples: number;
   episodes: number;
-  problem: string | null;
+  problem: Notice | null;
 }
 
 export interface Refused {
   type: "refused";
-  why: string;
+  notice: Notice;
 }
 
 export interface Release {
@@ -160,7 +165,9 @@ export interface State {
   nonce: string;
   tick: number;
   phase: "disengaged" | "neutral_needed" | "ready" | "moving" | "stopping";
-  why: string;
+  note: Notice | null;
+  reason: Notice | null;
+  held_back: "clearance" | "freshness" | "workspace" | "joint_position" | null;
   mode: "latent" | "assisted" | "end_effector";
   axes: number;
   profile: string | null;
@@ -200,7 +207,7 @@ export interface Training {
   epochs: number;
   loss: number | null;
   seconds_left: number | null;
-  why: string | null;
+  why: Notice[];
 }
 
 export interface TryAlignment {

@@ -1,17 +1,16 @@
 /** The state of things in one sentence, for eyes and for screen readers. */
 
 import { setText } from "../layout/dom.js";
-import { say } from "../layout/words.js";
+import { say, sayNotice } from "../layout/words.js";
 
 /** @import {HaltReason} from "../inputs/deflection.js" */
 /** @import {Connection} from "./connection.js" */
+/** @import {State} from "./messages.js" */
 
 /** A sentence that lasts shorter than this, ms, is not announced: people who nudge would hear nothing else. */
 const SETTLE_MS = 120;
 const SILENT_MS = 400;
 const LOOK_MS = 200;
-/** What the server says to do next, on pages that have no such button. */
-const NEXT_STEP = / (Let go of the stick, then press|Press) Enable[^.]*\.$/;
 
 /**
  * What to say, and the phase that gives it its colour.
@@ -26,7 +25,24 @@ export function statusOf({ open, state, silenceMs, engaged }, { halted, refused,
   if (state === null) return { phase: "connecting", text: say("status.connecting") };
   if (silenceMs > SILENT_MS) return { phase: "lost", text: say("status.silent") };
   if (halted !== null && !engaged) return { phase: "disengaged", text: say(`halted.${halted}`) };
-  return { phase: state.phase, text: canEnable ? state.why : state.why.replace(NEXT_STEP, "") };
+  return { phase: state.phase, text: phaseWords(state, canEnable) };
+}
+
+/**
+ * What the arm does, and what to do next.
+ *
+ * @param {State} state
+ * @param {boolean} canEnable
+ */
+function phaseWords({ phase, note, reason, held_back }, canEnable) {
+  if (note !== null) return sayNotice(note);
+  const parameters = { reason: reason === null ? "" : sayNotice(reason) };
+  switch (phase) {
+    case "ready": return say("status.ready");
+    case "moving": return held_back === null ? say("status.moving") : say("status.held_back", { cause: say(`held_back.${held_back}`) });
+    case "stopping": return say("status.stopping", parameters);
+    default: return canEnable ? say(`status.${phase}`, parameters) : parameters.reason;
+  }
 }
 
 /**
@@ -57,7 +73,7 @@ export function attachStatus(parts, connection) {
     refused = "";
   });
   connection.addEventListener("refused", (event) => {
-    refused = /** @type {CustomEvent} */ (event).detail.why;
+    refused = sayNotice(/** @type {CustomEvent} */ (event).detail.notice);
     show();
   });
   setInterval(show, LOOK_MS);

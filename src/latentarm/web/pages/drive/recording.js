@@ -1,7 +1,7 @@
 /** Recording what is driven into a dataset, one episode at a time. */
 
 import { setText } from "../layout/dom.js";
-import { say } from "../layout/words.js";
+import { say, sayNotice } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {State} from "../connection/messages.js" */
@@ -11,7 +11,7 @@ const RATE_HZ = 100;
 
 /** How the recording stands, in words. @param {Pick<State, "recording" | "you">} state */
 export function recordingWords({ recording, you }) {
-  if (recording?.problem) return recording.problem;
+  if (recording?.problem) return sayNotice(recording.problem);
   const episodes = recording?.episodes ?? 0;
   if (recording?.on) return say("recording.on", { episode: episodes + 1, seconds: Math.floor(recording.samples / RATE_HZ) });
   if (!you) return say("recording.not_you");

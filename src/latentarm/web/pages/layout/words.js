@@ -6,6 +6,7 @@
  */
 
 /** @typedef {keyof typeof import("../../words/en.json")} WordKey */
+/** @import {Notice} from "../connection/messages.js" */
 /** @typedef {string | Record<string, string>} Entry */
 
 /** @type {Record<string, Entry>} */
@@ -37,6 +38,15 @@ export function say(key, parameters = {}) {
   if (entry === undefined) throw new Error(`the catalogue has no words for ${key}`);
   const text = typeof entry === "string" ? entry : entry[pluralForm(Number(parameters.count))] ?? entry.other;
   return text.replace(/\{(\w+)\}/g, (_, name) => String(parameters[name]));
+}
+
+/**
+ * What the server tells people: a code with its parameters.
+ *
+ * @param {Notice} notice
+ */
+export function sayNotice({ code, parameters }) {
+  return say(`notice.${code}`, parameters);
 }
 
 /** A number as the language writes it. @param {number} value @param {number} [digits] after the decimal point */

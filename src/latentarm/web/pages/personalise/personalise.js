@@ -9,7 +9,7 @@ import { latentInput } from "../inputs/shaping.js";
 import { attachStick, deflectionWords } from "../inputs/stick.js";
 import { byId, fillBar, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
-import { say } from "../layout/words.js";
+import { say, sayNotice } from "../layout/words.js";
 import { attachViews } from "../views/attach_views.js";
 import { motionWords } from "../views/directions.js";
 import { displacement } from "../views/predictions.js";
@@ -134,7 +134,7 @@ function show() {
   // Who was on a button that is gone goes on at the new step.
   if (hadFocus?.hidden) byId(now).querySelector("h2")?.focus({ preventScroll: true });
   byId("problem").hidden = !state?.why;
-  setText(byId("problem"), state?.why ?? "");
+  setText(byId("problem"), state?.why ? sayNotice(state.why) : "");
   if (now === "begin") begin.person.value ||= state?.name || settings.name;
   if (state && now === "asking") setText(byId("question"), say("personalise.question_of", { number: state.number, of: state.of }));
   if (state && now === "working") showWorking(state);

@@ -1,7 +1,7 @@
 /** An alignment that is tried: whose it is, and whether it is kept. */
 
 import { byId, setText } from "../layout/dom.js";
-import { say } from "../layout/words.js";
+import { say, sayNotice } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {DriverLease} from "../connection/driver_lease.js" */
@@ -53,7 +53,7 @@ export function attachTrialBanner(connection, settings, lease) {
     if (tried === null) return;
     setText(byId("trial-title"), say("trial.title", { name: tried.name }));
     byId("trial-why").hidden = !tried.why;
-    setText(byId("trial-why"), tried.why ?? "");
+    setText(byId("trial-why"), tried.why ? sayNotice(tried.why) : "");
   };
   connection.addEventListener("workshop", show);
   connection.addEventListener("state", show);

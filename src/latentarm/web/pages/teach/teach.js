@@ -2,7 +2,7 @@
 
 import { byId, create, fillBar, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
-import { say, sayNumber } from "../layout/words.js";
+import { say, sayNotice, sayNumber } from "../layout/words.js";
 import { freeName, isBusy, progressShare, progressWords } from "./training.js";
 
 /** @import {ClientMessage, Recorded, Workshop} from "../connection/messages.js" */
@@ -119,8 +119,8 @@ function showTraining({ training }) {
   byId("training-bar").hidden = !busy && phase !== "done";
   fillBar(byId("training-bar"), progressShare(training));
   setText(byId("training-text"), busy || phase === "done" ? progressWords(training) : "");
-  byId("training-why").hidden = why === null;
-  setText(byId("training-why"), why ?? "");
+  byId("training-why").hidden = why.length === 0;
+  setText(byId("training-why"), why.map(sayNotice).join(" "));
   byId("training-cancel").hidden = !busy;
   byId("training-cancel", HTMLButtonElement).disabled = watching;
   byId("training-drive").hidden = phase !== "done";

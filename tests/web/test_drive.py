@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from latentarm.control.journal import read_journal
-from latentarm.web.arm_process.cockpit import LATCH_MAX_S
+from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.channel import ChooseMode, ChooseProfile, ChooseRun, Enable, Record, Reset
+from latentarm.web.protocol.notice import Notice
+
+ADA = Notice(code="stop_pressed_by", parameters={"name": "Ada"})
 
 
 def enabled_at(desk, now_s, at_s=0.1):
@@ -19,7 +22,7 @@ def test_nothing_moves_before_enable(desk):
     desk.run(1.0)
     assert not desk.speeds().any()
     assert desk.reports[-1].phase == "neutral_needed"
-    assert "Let go of the stick" in desk.reports[-1].why
+    assert desk.reports[-1].reason.code == "arm_stopped"
 
 
 def test_a_pressed_stick_cannot_be_enabled(desk):
@@ -83,13 +86,13 @@ def test_stop_works_while_the_pipe_of_orders_is_full(desk):
         for _ in range(6):  # more than are read in a tick
             desk.order(ChooseMode(mode="latent", axes=None))
         if abs(now_s - 1.0) < 0.005:
-            desk.channel.stop.write(b"Ada pressed Stop.")
+            desk.channel.stop.write(ADA.model_dump_json().encode())
 
     desk.each_tick = tick
     desk.run(1.5)
     stopped = desk.times()[desk.speeds() > 0.0].max()
     assert 1.0 < stopped < 1.15
-    assert "Ada pressed Stop." in desk.reports[-1].why
+    assert desk.reports[-1].reason == ADA
 
 
 def test_after_a_stop_the_stick_must_be_let_go_and_enable_pressed(desk):
@@ -129,7 +132,7 @@ def test_latched_motion_ends(desk):
     desk.run(LATCH_MAX_S + 1.5)
     moving = desk.times()[desk.speeds() > 0.0]
     assert LATCH_MAX_S - 0.05 < moving[-1] - moving[0] < LATCH_MAX_S + 0.15
-    assert "Latched motion ends" in desk.reports[-1].why
+    assert desk.reports[-1].reason.code == "latch_ended"
 
 
 def test_switching_modes_never_makes_the_arm_jump(desk):
@@ -178,10 +181,10 @@ def test_an_orphan_brings_the_arm_to_rest_and_ends(desk):
         desk.orphaned = now_s > 1.0
 
     desk.each_tick = tick
-    desk.loop.run()
+    desk.drive.run()
     assert desk.clock.now_s() < 1.2
     assert not desk.records[-1].command.velocity.any()
-    assert desk.cockpit.change is None
+    assert desk.drive.change is None
 
 
 @pytest.mark.parametrize("order", [Reset(), ChooseProfile(name="ada"), ChooseRun(run="other")])
@@ -197,10 +200,10 @@ def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
             desk.order(order)
 
     desk.each_tick = tick
-    desk.loop.run()
+    desk.drive.run()
     assert 0.99 < desk.clock.now_s() < 1.05
-    assert desk.cockpit.change == order
-    assert "Stop the arm first." in {report.why for report in desk.reports}
+    assert desk.drive.change == order
+    assert "stop_first" in {report.note.code for report in desk.reports if report.note is not None}
     # Nothing more is said until it is there, and that is said.
     assert [report.loading for report in desk.reports[-2:]] == [False, True]
 
@@ -214,9 +217,9 @@ def test_an_episode_ends_before_the_arm_is_put_back(desk):
             desk.order(Reset())
 
     desk.each_tick = tick
-    desk.loop.run()
+    desk.drive.run()
     desk.writer.close()
-    assert desk.cockpit.change == Reset()
+    assert desk.drive.change == Reset()
     assert desk.writer.status.episodes == 1
     assert not desk.writer.status.on
 
@@ -270,6 +273,6 @@ def test_a_disk_that_cannot_be_written_ends_the_recording_and_not_the_drive(desk
     desk.each_tick = tick
     desk.run(2.0)
     desk.writer.close()
-    assert "cannot be written" in desk.writer.status.problem
+    assert "cannot be written" in desk.writer.status.problem.text
     assert not desk.writer.status.on
     assert desk.speeds()[desk.times() > 1.0].max() > 0.0

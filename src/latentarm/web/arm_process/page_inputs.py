@@ -1,0 +1,92 @@
+"""Inputs of the person who drives, as their page sends them."""
+
+import math
+from collections.abc import Callable
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.control.clock import Clock
+from latentarm.control.input_port import InputPort, InputSource
+from latentarm.types import Input
+from latentarm.web.arm_process.drive_setup import INPUT_TIMEOUT_S
+from latentarm.web.protocol.channel import Given, parse_given
+from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.shared_memory import LatestSlot
+
+LATCH_MAX_S: Final = 10.0
+"""For how long an input that nobody holds goes on, s."""
+
+
+@final
+class PageInputs(InputSource):
+    """The newest input in a slot, where it is the driver's and fresh.
+
+    Args:
+        slot: where the server puts inputs.
+        clock: the loop's.
+        input_dim: axes of the controller.
+        dead_zone: a smaller deflection is neutral.
+        stop: stops the arm: when a latched motion has lasted for too long, or another person begins to drive.
+
+    Attributes:
+        driver: whose inputs are taken; -1 before the first.
+        fresh: whether the newest input still counts.
+        deflected: whether it is outside the dead zone.
+        devices: kinds of device that have moved the arm since this was last emptied.
+    """
+
+    def __init__(
+        self, slot: LatestSlot, clock: Clock, input_dim: int, dead_zone: float, stop: Callable[[Notice], None]
+    ) -> None:
+        self._slot = slot
+        self._clock = clock
+        self._input_dim = input_dim
+        self._dead_zone = dead_zone
+        self._stop = stop
+        self._version = slot.version
+        self._port = InputPort(input_dim, clock)
+        self._latched_since_s = math.inf
+        self.driver = -1
+        self.fresh = self.deflected = False
+        self.devices: set[str] = set()
+
+    def latest(self, now_s: float) -> tuple[Input, float]:
+        """See the base class."""
+        if self._slot.version != self._version:
+            self._take()
+        given, age_s = self._port.latest(now_s)
+        self.fresh = age_s <= INPUT_TIMEOUT_S
+        if now_s - self._latched_since_s > LATCH_MAX_S:
+            self._latched_since_s = math.inf
+            self._stop(Notice(code="latch_ended", parameters={"seconds": round(LATCH_MAX_S)}))
+        return given, age_s
+
+    def issue_nonce(self) -> str:
+        """A nonce for the driver's page to echo."""
+        return self._port.issue_nonce()
+
+    def _take(self) -> None:
+        found = self._slot.read()
+        if found is None:
+            return
+        self._version, message = found
+        given = parse_given(message)
+        if given is None or len(given.u) != self._input_dim:
+            return
+        if given.driver != self.driver:
+            self.driver = given.driver
+            self._port = InputPort(self._input_dim, self._clock)
+            self._latched_since_s = math.inf
+            self._stop(Notice(code="driver_changed"))
+        if self._port.offer(Input(np.array(given.u)), given.nonce, given.seq):
+            self._note(given)
+
+    def _note(self, given: Given) -> None:
+        self.deflected = math.hypot(*given.u) > self._dead_zone
+        if self.deflected and given.source:
+            self.devices.add(given.source)
+        if not (given.latched and self.deflected):
+            self._latched_since_s = math.inf
+        elif self._latched_since_s == math.inf:
+            self._latched_since_s = self._clock.now_s()

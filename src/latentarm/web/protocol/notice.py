@@ -1,0 +1,100 @@
+"""What people are told, on the wire: a code and its parameters, for which each language has words."""
+
+from typing import Literal, final
+
+from pydantic import BaseModel, ConfigDict
+
+from latentarm.errors import UserError
+from latentarm.untrusted.terminal import one_line
+from latentarm.web.words.catalogue import DEFAULT, languages
+
+NoticeCode = Literal[
+    "arm_process_ended",
+    "arm_process_silent",
+    "arm_stopped",
+    "asking",
+    "asking_already",
+    "checking_run",
+    "disk_too_slow",
+    "driver_changed",
+    "driver_expired",
+    "driver_gone",
+    "driver_released",
+    "episodes_too_short",
+    "error",
+    "expired",
+    "handed_over",
+    "joints_unreadable",
+    "latch_ended",
+    "let_go_first",
+    "loading_run",
+    "message_invalid",
+    "model_unknown",
+    "name_invalid",
+    "no_hello",
+    "no_run",
+    "nothing_recorded",
+    "one_axis_weak",
+    "page_refused",
+    "profile_exists",
+    "question_began",
+    "recording_ended",
+    "run_exists",
+    "run_too_slow",
+    "stop_first",
+    "stop_pressed",
+    "stop_pressed_by",
+    "too_few_episodes",
+    "too_many_axes",
+    "work_broke_off",
+]
+"""Texts have the key ``notice.<code>``."""
+
+
+class Message(BaseModel):
+    """Base of everything that goes between processes and pages."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+@final
+class Notice(Message):
+    """Something that a person is told.
+
+    Attributes:
+        code: which text it is. ``arm_stopped`` and ``error`` carry an English sentence in their parameter
+            ``text``; pages show it and never look into it.
+        parameters: what the text names.
+    """
+
+    code: NoticeCode
+    parameters: dict[str, str | int] = {}
+
+    @property
+    def text(self) -> str:
+        """The text in English, for logs, journals and the terminal."""
+        return languages()[DEFAULT].say(f"notice.{self.code}", self.parameters)
+
+
+@final
+class NoticeError(UserError):
+    """A problem that the user can fix, which every language has words for.
+
+    Args:
+        code: of the notice.
+        parameters: of the notice.
+    """
+
+    def __init__(self, code: NoticeCode, **parameters: str | int) -> None:
+        self.notice = Notice(code=code, parameters=parameters)
+        super().__init__(self.notice.text)
+
+
+def notice_of(error: UserError) -> Notice:
+    """What people are told of an error."""
+    return error.notice if isinstance(error, NoticeError) else sentence(str(error))
+
+
+def sentence(text: str) -> Notice:
+    """A sentence that has no code."""
+    return Notice(code="error", parameters={"text": one_line(text)})

@@ -1,0 +1,61 @@
+"""Every text of the pages is in every language's catalogue, and every key that is used has words."""
+
+import re
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from latentarm.web.jobs.training import model_names
+from latentarm.web.protocol.channel import HeldBack, ModeName
+from latentarm.web.protocol.notice import Notice, NoticeCode
+from latentarm.web.server.assets import FOLDER
+from latentarm.web.words.catalogue import DEFAULT, languages
+
+ENGLISH = languages()[DEFAULT].texts
+SOURCES = [*FOLDER.rglob("*.js"), *FOLDER.rglob("*.html")]
+
+
+def forms(text):
+    return [text] if isinstance(text, str) else list(text.values())
+
+
+def parameters(text):
+    return {name for form in forms(text) for name in re.findall(r"\{(\w*)\}", form)}
+
+
+def test_every_code_has_words():
+    keys = {f"notice.{code}" for code in get_args(NoticeCode)}
+    assert {key for key in ENGLISH if key.startswith("notice.")} == keys
+    assert {f"held_back.{cause}" for cause in get_args(HeldBack)} <= set(ENGLISH)
+    assert {f"model.{name}.help" for name in model_names()} <= set(ENGLISH)
+    assert len(get_args(ModeName)) == 3
+
+
+def test_every_key_that_a_page_names_has_words():
+    parts = "|".join({key.split(".")[0] for key in ENGLISH})
+    named = re.compile(rf"""["']((?:{parts})\.[a-z_0-9]+(?:\.[a-z_0-9]+)*)["']""")
+    used = {key for path in SOURCES for key in named.findall(path.read_text())}
+    used -= {key for key in used if key.endswith((".html", ".js", ".css", ".svg"))}
+    assert len(used) > 150
+    assert used - set(ENGLISH) == set()
+
+
+@pytest.mark.parametrize("language", sorted(languages()))
+def test_a_language_has_every_text_with_the_same_parameters(language):
+    texts = languages()[language].texts
+    path = Path(str(FOLDER.parent / "words" / f"{language}.json"))
+    assert path.is_file()
+    own = path.read_text()
+    missing = [key for key in ENGLISH if f'"{key}":' not in own]
+    assert missing == []
+    assert {key: parameters(text) for key, text in texts.items()} == {
+        key: parameters(text) for key, text in ENGLISH.items()
+    }
+    assert all("other" in text for text in texts.values() if not isinstance(text, str))
+
+
+def test_a_notice_is_a_sentence_in_english():
+    notice = Notice(code="too_few_episodes", parameters={"least": 3, "count": 1})
+    assert notice.text.startswith("Training needs at least 3 episodes, and one of them")
+    assert Notice(code="stop_pressed_by", parameters={"name": "{x}"}).text == "{x} pressed Stop."
