@@ -10,7 +10,7 @@ from latentarm.studies.alignment.figures.conditions import conditions_figure
 from latentarm.studies.alignment.figures.curves import curves_figure
 from latentarm.studies.alignment.figures.draw import FIGURES, draw_figures
 from latentarm.style import MM_PER_INCH, TWO_COLUMNS_MM
-from latentarm.tasks.pouring.catalogue import POURING_TASKS
+from latentarm.tasks.pouring.tasks import POURING_TASKS
 
 TASKS = tuple(POURING_TASKS)
 NOISES = (0.0, 0.1, 0.5)

@@ -5,10 +5,17 @@ import pytest
 
 from latentarm.errors import UserError
 from latentarm.kinematics.rotations import pose_error
-from latentarm.tasks.pouring.catalogue import POURING_TASKS
-from latentarm.tasks.pouring.plane import FAR_LEFT_M, HEIGHT_M, NEAR_RIGHT_M
-from latentarm.tasks.pouring.pour import HIGHEST, LOWEST
-from latentarm.tasks.pouring.reach_and_pour import AT_BOWL_M, PAUSE_S, at_bowl
+from latentarm.tasks.pouring.tasks import (
+    AT_BOWL_M,
+    FAR_LEFT_M,
+    HEIGHT_M,
+    HIGHEST,
+    LOWEST,
+    NEAR_RIGHT_M,
+    PAUSE_S,
+    POURING_TASKS,
+    at_bowl,
+)
 from latentarm.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
 from latentarm.types import Pose
 

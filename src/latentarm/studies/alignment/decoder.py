@@ -13,7 +13,7 @@ from latentarm.models.scaling import CollapseWarning
 from latentarm.studies.alignment.preset import Preset
 from latentarm.studies.alignment.streams import Stream, generator
 from latentarm.studies.streams import integer, sequence
-from latentarm.tasks.pouring.catalogue import POURING_TASKS
+from latentarm.tasks.pouring.tasks import POURING_TASKS
 from latentarm.types import Demonstrations
 
 VALIDATION_SHARE: Final = 0.2

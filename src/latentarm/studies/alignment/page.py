@@ -38,8 +38,7 @@ from latentarm.studies.page import listed
 from latentarm.studies.pages import shown
 from latentarm.studies.statistics import LEVEL
 from latentarm.studies.verdicts import Verdict
-from latentarm.tasks.pouring.pour import BOWL_M
-from latentarm.tasks.pouring.reach_and_pour import AT_BOWL_M
+from latentarm.tasks.pouring.tasks import AT_BOWL_M, BOWL_M
 from latentarm.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
 
 HYPOTHESES: Final = {

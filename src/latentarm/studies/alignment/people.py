@@ -2,7 +2,7 @@
 
 from latentarm.kinematics.chain import Chain
 from latentarm.operators.preference import ByPlace, HeightAndTilt, Preference, ToolAxes
-from latentarm.tasks.pouring.reach_and_pour import at_bowl
+from latentarm.tasks.pouring.tasks import at_bowl
 from latentarm.tasks.pouring.tool_path import SPEED_M_S, TURN_RAD_S
 
 

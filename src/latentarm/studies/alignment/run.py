@@ -25,7 +25,7 @@ from latentarm.studies.alignment.preset import Preset
 from latentarm.studies.alignment.rows import STUDY, rows_of
 from latentarm.studies.alignment.targets import PAPER_MODEL, targets
 from latentarm.studies.tasks import check_tasks
-from latentarm.tasks.pouring.catalogue import POURING_TASKS
+from latentarm.tasks.pouring.tasks import POURING_TASKS
 from latentarm.types import Row
 from latentarm.untrusted.console import VisibleConsole
 

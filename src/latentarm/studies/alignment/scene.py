@@ -20,7 +20,7 @@ from latentarm.operators.preference import Imprecise, Preference
 from latentarm.studies.alignment.decoder import LearnedDecoder, demonstrate
 from latentarm.studies.alignment.people import preference_of
 from latentarm.studies.alignment.streams import Stream, generator
-from latentarm.tasks.pouring.catalogue import POURING_TASKS
+from latentarm.tasks.pouring.tasks import POURING_TASKS
 from latentarm.types import FloatArray
 
 ALL: Final = 10**9
