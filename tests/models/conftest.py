@@ -3,28 +3,13 @@ import pytest
 import torch
 
 from latentarm.robots.planar import planar
-from latentarm.types import Demonstrations, Episode
-
-JOINTS = 4
+from latentarm.testing.models import JOINTS, ring
+from latentarm.types import Demonstrations
 
 
 @pytest.fixture(autouse=True, scope="session")
 def one_thread():
     torch.set_num_threads(1)
-
-
-def ring(rng, samples=80, rate_hz=20.0):
-    """A motion back and forth around a ring whose radius swells: what a joint does depends on where
-    the arm is. Two-dimensional at every state, and the last joint never moves."""
-    time = np.arange(samples) / rate_hz
-    angle = rng.uniform(-np.pi, np.pi) + 2.0 * np.sin(rng.uniform(0.5, 1.0) * time + rng.uniform(0, 6))
-    radius = rng.uniform(0.5, 1.0) + 0.3 * np.sin(rng.uniform(1.0, 2.0) * time + rng.uniform(0, 6))
-    state = np.stack(
-        [radius * np.cos(angle), radius * np.sin(angle), 0.4 * np.sin(2 * angle), np.full(samples, 0.3)],
-        axis=-1,
-    )
-    belief = np.stack([0.5 + 0.4 * np.sin(angle), 0.5 - 0.4 * np.sin(angle)], axis=-1)
-    return Episode(state=state, timestamp=time, extras={"belief": belief})
 
 
 @pytest.fixture(scope="session")

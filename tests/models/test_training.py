@@ -8,7 +8,6 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -57,30 +56,11 @@ def test_training_lowers_the_loss_and_keeps_the_best_epoch(demonstrations):
     assert (model.validation_loss_ < 0.7 * model.history_[0]).all()
 
 
-@pytest.mark.parametrize("name", MODELS)
-def test_validation_episodes_leave_the_weights_alone(name, demonstrations, samples):
-    """What they hold decides when to stop; weights, normalisers and scaling never see it."""
-    context, z = samples
-    settings = {**SMALL, "epochs": 1}
-    altered = list(demonstrations.episodes)
-    for index in (0, 11):
-        state = 3.0 - 7.0 * altered[index].state[::-1]
-        altered[index] = replace(altered[index], state=state)
-    plain, changed = (
-        MODELS[name](**settings).fit(replace(demonstrations, episodes=tuple(episodes)), validation=[0, 11])
-        for episodes in (demonstrations.episodes, altered)
-    )
-    for tensor, values in plain.trained_.tensors.items():
-        np.testing.assert_array_equal(changed.trained_.tensors[tensor], values, err_msg=tensor)
-    np.testing.assert_array_equal(changed.decode(z, context), plain.decode(z, context))
-    assert (changed.validation_loss_ != plain.validation_loss_).all()
-
-
 class KilledError(Exception):
     pass
 
 
-@pytest.mark.parametrize("name", NEURAL)
+@pytest.mark.parametrize("name", ["cvae", "isometric", "homogeneous"])  # noise, a start, a look ahead
 def test_resuming_gives_what_an_uninterrupted_training_gives(
     name, demonstrations, samples, tmp_path, monkeypatch
 ):
@@ -118,9 +98,8 @@ import sys
 from pathlib import Path
 import torch
 torch.set_num_threads(1)
-sys.path.insert(0, {tests!r})
 import numpy as np
-from conftest import ring
+from latentarm.testing.models import ring
 from latentarm.models.catalogue import MODELS
 from latentarm.types import Demonstrations
 rng = np.random.default_rng(3)
@@ -134,7 +113,7 @@ def test_a_training_killed_outright_goes_on(demonstrations, samples, tmp_path):
     context, z = samples
     epochs = 25
     path = tmp_path / "checkpoint.safetensors"
-    script = KILLED_SCRIPT.format(tests=str(Path(__file__).parent), epochs=epochs)
+    script = KILLED_SCRIPT.format(epochs=epochs)
     process = subprocess.Popen([sys.executable, "-c", script, str(path)])
     deadline = time.monotonic() + 60
     while not path.exists() and process.poll() is None and time.monotonic() < deadline:

@@ -37,8 +37,10 @@ import pytest
 from latentarm_example.arm import CountingArm
 from latentarm_example.belief import NearnessBelief
 from latentarm_example.task import TwoButtons
+from latentarm_example.training import Straight
 from latentarm.testing.arms import ArmContract
 from latentarm.testing.beliefs import BeliefContract
+from latentarm.testing.models import ModelContract
 from latentarm.testing.tasks import TaskContract
 
 class TestArm(ArmContract):
@@ -51,6 +53,11 @@ class TestBelief(BeliefContract):
     @pytest.fixture
     def rule(self):
         return NearnessBelief
+
+class TestModel(ModelContract):
+    @pytest.fixture
+    def estimator(self):
+        return Straight
 
 class TestTask(TaskContract):
     @pytest.fixture

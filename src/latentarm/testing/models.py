@@ -1,0 +1,316 @@
+"""What every latent action model does."""
+
+import warnings
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pytest
+import torch
+from sklearn.base import clone
+from sklearn.exceptions import NotFittedError
+from sklearn.utils import estimator_checks
+from sklearn.utils.validation import check_is_fitted
+
+from latentarm.demonstrations.pairs import make_pairs
+from latentarm.errors import UserError
+from latentarm.models.catalogue import KINDS
+from latentarm.models.decoder import load_decoder
+from latentarm.models.model import LatentActionModel
+from latentarm.models.saving import load_model
+from latentarm.models.scaling import CollapseWarning
+from latentarm.robots.planar import planar
+from latentarm.types import Demonstrations, Episode
+
+JOINTS: Final = 4
+SMALL: Final[dict[str, Any]] = {"seeds": 2, "epochs": 2, "hidden": (8, 8), "window": 2}
+"""Parameters of a training that takes a second or less."""
+
+
+def ring(rng: np.random.Generator, samples: int = 80, rate_hz: float = 20.0) -> Episode:
+    """A motion back and forth around a ring whose radius swells: two-dimensional at every state.
+
+    What a joint does depends on where the arm is, and the last joint never moves.
+    """
+    time = np.arange(samples) / rate_hz
+    angle = rng.uniform(-np.pi, np.pi) + 2.0 * np.sin(rng.uniform(0.5, 1.0) * time + rng.uniform(0, 6))
+    radius = rng.uniform(0.5, 1.0) + 0.3 * np.sin(rng.uniform(1.0, 2.0) * time + rng.uniform(0, 6))
+    state = np.stack(
+        [radius * np.cos(angle), radius * np.sin(angle), 0.4 * np.sin(2 * angle), np.full(samples, 0.3)],
+        axis=-1,
+    )
+    belief = np.stack([0.5 + 0.4 * np.sin(angle), 0.5 - 0.4 * np.sin(angle)], axis=-1)
+    return Episode(state=state, timestamp=time, extras={"belief": belief})
+
+
+@cache
+def demonstrations(episodes: int = 12) -> Demonstrations:
+    """So many motions of a planar arm."""
+    rng = np.random.default_rng(3)
+    names = tuple(f"joint{joint + 1}" for joint in range(JOINTS))
+    return Demonstrations(tuple(ring(rng) for _ in range(episodes)), 20.0, names)
+
+
+def fit(model: LatentActionModel, episodes: int = 12) -> LatentActionModel:
+    """Fit a model to `demonstrations` of an arm that is known; what collapsed is of no interest."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CollapseWarning)
+        return model.fit(demonstrations(episodes), chain=planar(JOINTS).chain)
+
+
+@cache
+def fitted(estimator: type[LatentActionModel], context: str) -> LatentActionModel:
+    """A model that all tests of a session look at, and none changes."""
+    return fit(estimator(**SMALL, context=context))
+
+
+class ModelContract:
+    """Tests of a latent action model that is registered in the catalogue of models.
+
+    Override the fixture ``estimator``::
+
+        class TestTheirModel(ModelContract):
+            @pytest.fixture
+            def estimator(self):
+                return TheirModel
+
+    A model is trained on small data a few times; on the same two trainings most tests look.
+    """
+
+    @pytest.fixture
+    def estimator(self) -> type[LatentActionModel]:
+        """The class of the model."""
+        raise NotImplementedError("override the fixture `estimator`")
+
+    @pytest.fixture
+    def model(self, estimator: type[LatentActionModel]) -> LatentActionModel:
+        """A fitted one, of two seeds, which nothing changes."""
+        return fitted(estimator, "state")
+
+    @pytest.fixture
+    def context(self) -> np.ndarray:
+        """Contexts (30, 4) that no model was trained on."""
+        return np.random.default_rng(4).uniform(-1, 1, size=(30, JOINTS))
+
+    @pytest.fixture
+    def z(self) -> np.ndarray:
+        """Inputs (30, 2)."""
+        return np.random.default_rng(5).uniform(-1, 1, size=(30, 2))
+
+    def test_the_catalogue_has_its_kind(self, estimator: type[LatentActionModel]) -> None:
+        assert KINDS[estimator.kind.name] is estimator.kind
+
+    @pytest.mark.parametrize(
+        "check",
+        [
+            estimator_checks.check_parameters_default_constructible,
+            estimator_checks.check_no_attributes_set_in_init,
+            estimator_checks.check_do_not_raise_errors_in_init_or_set_params,
+            estimator_checks.check_get_params_invariance,
+            estimator_checks.check_set_params,
+            estimator_checks.check_estimator_cloneable,
+            estimator_checks.check_estimator_repr,
+            estimator_checks.check_mixin_order,
+            estimator_checks.check_estimator_tags_renamed,
+            estimator_checks.check_valid_tag_types,
+        ],
+        ids=lambda check: check.__name__,
+    )
+    def test_scikit_learn_finds_an_estimator(self, estimator: type[LatentActionModel], check: Any) -> None:
+        """The checks of scikit-learn that do not call fit: ours takes demonstrations, not a table."""
+        check(estimator.__name__, estimator())
+
+    def test_the_constructor_stores_what_it_is_given(self, estimator: type[LatentActionModel]) -> None:
+        """Even where fit will refuse it."""
+        given: dict[str, Any] = {key: object() for key in estimator().get_params()}
+        assert estimator(**given).get_params() == given
+
+    def test_the_representation_is_the_call_that_makes_the_model(
+        self, estimator: type[LatentActionModel]
+    ) -> None:
+        made = estimator(**SMALL)
+        again = eval(repr(made), {estimator.__name__: estimator})  # noqa: S307
+        assert again.get_params() == made.get_params()
+        assert repr(estimator()) == f"{estimator.__name__}()"
+
+    def test_a_clone_is_unfitted_and_the_same_seed_fits_the_same_model(
+        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+    ) -> None:
+        again = clone(model)
+        assert type(again) is type(model)
+        assert again.get_params() == model.get_params()
+        with pytest.raises(NotFittedError):
+            check_is_fitted(again)
+        np.testing.assert_array_equal(fit(again).decode(z, context), model.decode(z, context))
+        check_is_fitted(again)
+
+    def test_shapes(self, model: LatentActionModel, z: np.ndarray, context: np.ndarray) -> None:
+        assert model.encode(context, np.ones((30, JOINTS))).shape == (2, 30, 2)
+        assert model.decode(z, context).shape == (2, 30, JOINTS)
+        assert model.decode(np.stack([z, -z]), context).shape == (2, 30, JOINTS)
+        assert model.collapsed_.shape == (2, 2)
+        assert model.validation_loss_.shape == (2,)
+        assert model.history_.shape[1] == 2
+
+    def test_a_stack_of_latents_decodes_seed_by_seed(
+        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+    ) -> None:
+        both = model.decode(np.stack([z, -z]), context)
+        np.testing.assert_array_equal(both[0], model.decode(z, context)[0])
+        np.testing.assert_array_equal(both[1], model.decode(-z, context)[1])
+
+    def test_different_seeds_give_different_models(
+        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+    ) -> None:
+        first, second = model.decode(z, context)
+        trained_in_epochs = len(model.history_) > 0
+        assert np.array_equal(first, second) != trained_in_epochs
+
+    def test_validation_episodes_leave_the_weights_alone(
+        self, estimator: type[LatentActionModel], z: np.ndarray, context: np.ndarray
+    ) -> None:
+        """What they hold decides when to stop; weights, normalisers and scaling never see it."""
+        data = demonstrations(6)
+        altered = list(data.episodes)
+        for index in (0, 5):
+            altered[index] = replace(altered[index], state=3.0 - 7.0 * altered[index].state[::-1])
+        plain, changed = (
+            estimator(**{**SMALL, "epochs": 1}).fit(
+                replace(data, episodes=tuple(episodes)), validation=[0, 5], chain=planar(JOINTS).chain
+            )
+            for episodes in (data.episodes, altered)
+        )
+        for tensor, values in plain.trained_.tensors.items():
+            np.testing.assert_array_equal(changed.trained_.tensors[tensor], values, err_msg=tensor)
+        np.testing.assert_array_equal(changed.decode(z, context), plain.decode(z, context))
+        assert (changed.validation_loss_ != plain.validation_loss_).all()
+
+    def test_saved_and_loaded_is_the_same(
+        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray, tmp_path: Path
+    ) -> None:
+        model.save(tmp_path, run={"dataset": "ring"})
+        loaded = load_model(tmp_path)
+        action = z @ np.ones((2, JOINTS))
+        assert type(loaded) is type(model)
+        assert loaded.get_params() == model.get_params()
+        np.testing.assert_array_equal(loaded.decode(z, context), model.decode(z, context))
+        np.testing.assert_array_equal(loaded.encode(context, action), model.encode(context, action))
+        np.testing.assert_array_equal(loaded.history_, model.history_)
+        assert loaded.validation_episodes_ == model.validation_episodes_
+
+    @pytest.mark.parametrize(("kind", "width"), [("state", JOINTS), ("state_belief", JOINTS + 2)])
+    def test_the_runtime_in_numpy_equals_the_model(
+        self, estimator: type[LatentActionModel], z: np.ndarray, tmp_path: Path, kind: str, width: int
+    ) -> None:
+        model = fitted(estimator, kind)
+        context = np.random.default_rng(6).uniform(-1, 1, (30, width))
+        expected = model.decode(z, context)
+        model.save(tmp_path)
+        for seed in range(2):
+            for decoder in (model.decoder(seed), load_decoder(tmp_path, seed)):
+                np.testing.assert_allclose(decoder.decode(z, context), expected[seed], rtol=0, atol=1e-12)
+                assert (decoder.context, decoder.latent_dim) == (kind, 2)
+                assert (decoder.context_dim, decoder.action_dim) == (width, JOINTS)
+
+    @pytest.mark.parametrize(("latent_dim", "hidden"), [(1, (8,)), (3, (6, 5, 4)), (4, ()), (2, (16, 4))])
+    def test_the_runtime_in_numpy_equals_the_model_at_any_size(
+        self, estimator: type[LatentActionModel], latent_dim: int, hidden: tuple[int, ...]
+    ) -> None:
+        sizes = {**SMALL, "latent_dim": latent_dim, "hidden": hidden, "epochs": 1}
+        model = fit(estimator(**sizes), episodes=4)
+        rng = np.random.default_rng(1)
+        z, context = rng.uniform(-1, 1, (20, latent_dim)), rng.uniform(-1, 1, (20, JOINTS))
+        expected = model.decode(z, context)
+        tolerance = 1e-12 * max(np.abs(expected).max(), 1)
+        np.testing.assert_allclose(model.decoder(1).decode(z, context), expected[1], rtol=0, atol=tolerance)
+
+    @pytest.mark.parametrize(("kind", "width"), [("state", JOINTS), ("state_belief", JOINTS + 2)])
+    def test_the_torch_decoder_equals_the_model_and_its_gradient_is_the_slope(
+        self, estimator: type[LatentActionModel], kind: str, width: int
+    ) -> None:
+        model = fitted(estimator, kind)
+        rng = np.random.default_rng(2)
+        z, context = rng.uniform(-1, 1, (2, 3, 2)), rng.uniform(-1, 1, (2, 3, width))
+        for seed in range(2):
+            decoder = model.torch_decoder(seed, torch.float64)
+            assert (decoder.context, decoder.latent_dim) == (kind, 2)
+            assert (decoder.context_dim, decoder.action_dim) == (width, JOINTS)
+
+            def action(z: torch.Tensor, context: torch.Tensor, decoder: Any = decoder) -> torch.Tensor:
+                return decoder.decode(z, decoder.observe(context))
+
+            inputs = [torch.from_numpy(values).requires_grad_() for values in (z, context)]
+            expected = model.decoder(seed).decode(z, context)
+            np.testing.assert_allclose(action(*inputs).detach().numpy(), expected, rtol=0, atol=1e-10)
+            assert torch.autograd.gradcheck(action, inputs, atol=1e-5)
+
+    def test_what_the_torch_decoder_sees_begins_with_the_normalised_context(
+        self, model: LatentActionModel, context: np.ndarray
+    ) -> None:
+        seen = model.torch_decoder(0, torch.float64).observe(torch.from_numpy(context))[..., :JOINTS].numpy()
+        tensors = model.trained_.tensors
+        expected = (context - tensors["context.centre"]) / tensors["context.scale"]
+        np.testing.assert_allclose(seen, expected, rtol=0, atol=1e-12)
+
+    def test_one_pair_alone_equals_the_same_pair_in_a_batch(
+        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+    ) -> None:
+        action = z @ np.ones((2, JOINTS))
+        batch, encoded, decoder = model.decode(z, context), model.encode(context, action), model.decoder(1)
+        for i in (0, 17):
+            one = slice(i, i + 1)
+            np.testing.assert_allclose(model.decode(z[one], context[one]), batch[:, one], rtol=0, atol=1e-12)
+            np.testing.assert_allclose(
+                model.encode(context[one], action[one]), encoded[:, one], rtol=0, atol=1e-9
+            )
+            np.testing.assert_allclose(decoder.decode(z[i], context[i]), batch[1, i], rtol=0, atol=1e-12)
+
+    def test_leading_axes_of_the_decoder_broadcast(
+        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+    ) -> None:
+        decoder = model.decoder()
+        grid = decoder.decode(z[:9, None], context[:5])
+        assert grid.shape == (9, 5, JOINTS)
+        np.testing.assert_allclose(grid[3, 2], decoder.decode(z[3], context[2]), atol=1e-12)
+        np.testing.assert_allclose(decoder.decode(z[:9], context[2]), grid[:, 2], atol=1e-12)
+        np.testing.assert_allclose(decoder.decode(z[3], context[:5]), grid[3], atol=1e-12)
+
+    def test_unit_inputs_span_what_was_demonstrated(self, model: LatentActionModel) -> None:
+        pairs = make_pairs(demonstrations(), SMALL["window"], 0.0, "state", np.random.default_rng(0))
+        trained_on = ~np.isin(pairs.episode, model.validation_episodes_)
+        used = np.abs(model.encode(pairs.context[trained_on], pairs.action[trained_on]))
+        if model.kind.encoder != "nearest":
+            np.testing.assert_allclose(np.quantile(used, 0.99, axis=1), 1.0, atol=1e-6)
+        else:
+            # The same in every direction: the longest latent action, not each axis, reaches 1.
+            longest = np.quantile(np.linalg.norm(used, axis=-1), 0.99, axis=1)
+            assert ((longest > 0.6) & (longest < 1.2)).all()
+
+    def test_at_rest_it_rests_and_reverses_where_its_kind_says_so(
+        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+    ) -> None:
+        if model.kind.reverses:
+            np.testing.assert_allclose(model.decode(0 * z, context), 0.0, atol=1e-9)
+            np.testing.assert_allclose(model.decode(-z, context), -model.decode(z, context), atol=1e-9)
+        if not model.kind.sees_context:
+            there = model.decode(z, np.roll(context, 1, axis=0))
+            np.testing.assert_array_equal(there, model.decode(z, context))
+
+    def test_unfitted_it_says_so(
+        self, estimator: type[LatentActionModel], z: np.ndarray, context: np.ndarray, tmp_path: Path
+    ) -> None:
+        fresh = estimator()
+        for use in (
+            lambda: fresh.decode(z, context),
+            lambda: fresh.encode(context, context),
+            fresh.decoder,
+            fresh.torch_decoder,
+            lambda: fresh.save(tmp_path),
+            lambda: fresh.collapsed_,
+        ):
+            with pytest.raises(UserError, match="not fitted yet") as refused:
+                use()
+            assert isinstance(refused.value, NotFittedError)
+        assert not list(tmp_path.iterdir())
