@@ -10,12 +10,12 @@ from typing import Any, Final, final, get_args
 
 from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 
-from latentarm.web.protocol.learning_messages import Workshop
+from latentarm.web.protocol.learning_messages import LearningState
 from latentarm.web.protocol.messages import ClientMessage, Refused, State, Welcome
 
 TARGET: Final = Path(__file__).parents[1] / "src/latentarm/web/pages/connection/messages.d.ts"
 
-_SERVER: Final = (Welcome, State, Workshop, Refused)
+_SERVER: Final = (Welcome, State, LearningState, Refused)
 _PLAIN: Final = {
     "integer": "number",
     "number": "number",

@@ -27,7 +27,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from latentarm.control.clock import MonotonicClock
-from latentarm.web.arm_process.drive_setup import Spec, load_setting
+from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.connections import ConnectionLimits
@@ -124,7 +124,7 @@ def serve(spec: Spec, sender: Any) -> None:
     listening = listen(config)
     port = int(listening.getsockname()[1])
     control = ControlProcess(spec)
-    app = gated(build_app(load_setting(spec), control), control, config, port, None, lambda: None)
+    app = gated(build_app(load_setup(spec), control), control, config, port, None, lambda: None)
     server = uvicorn.Server(server_config(app, config))
 
     def block() -> None:

@@ -205,7 +205,7 @@ def take(run: Path, names: list[str], out: Path) -> None:
                     page.screenshot(path=out / f"teleop-{name}-{size_name}-{scheme}.png")
                     tidy(page)
                     context.close()
-                    # So that the next page finds nobody at the wheel.
+                    # So that the next page finds nobody who drives.
                     time.sleep(0.3)
 
 

@@ -20,7 +20,7 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process.drive import Drive, Steering
-from latentarm.web.arm_process.drive_setup import PERIOD_S, Setting, Spec, load_setting
+from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.protocol.channel import Given, Order, Report, new_channel, parse_report
 from latentarm.web.protocol.notice import Notice
@@ -62,8 +62,8 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def setting(trained: Path) -> Setting:
-    return load_setting(Spec(trained))
+def setup(trained: Path) -> DriveSetup:
+    return load_setup(Spec(trained))
 
 
 def said(told: Any) -> str:
@@ -78,22 +78,22 @@ class Desk:
     `each_tick` is called before every tick with the time, s.
     """
 
-    def __init__(self, setting: Setting, folder: Path) -> None:
-        self.setting = setting
+    def __init__(self, setup: DriveSetup, folder: Path) -> None:
+        self.setup = setup
         self.clock = SimulatedClock([self._passed])
         reading, self.orders = Pipe(duplex=False)
         self.channel = new_channel(reading)
         self.orphaned = False
         self.writer = EpisodeWriter(folder)
-        self.arm = make_live_arm(setting.spec.arm, setting.task.robot, setting.start, self.clock.now_s)
+        self.arm = make_live_arm(setup.spec.arm, setup.task.robot, setup.start, self.clock.now_s)
         self.drive = Drive(
-            setting,
+            setup,
             self.arm,
             self.channel,
             self.clock,
             self.writer,
             lambda: self.orphaned,
-            Steering(setting.modes[0]),
+            Steering(setup.modes[0]),
             observers=[self._saw],
         )
         self.each_tick: Callable[[float], None] = lambda now_s: None
@@ -133,8 +133,8 @@ class Desk:
 
 
 @pytest.fixture
-def desk(setting: Setting, tmp_path: Path) -> Iterator[Desk]:
-    desk = Desk(setting, tmp_path / "teleop")
+def desk(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
+    desk = Desk(setup, tmp_path / "teleop")
     yield desk
     desk.writer.close()
     desk.orders.close()
@@ -148,7 +148,7 @@ class Client:
     socket: ClientConnection
     state: dict[str, Any] = field(default_factory=dict)
     welcome: dict[str, Any] = field(default_factory=dict)
-    workshop: dict[str, Any] = field(default_factory=dict)
+    learning: dict[str, Any] = field(default_factory=dict)
     refused: str | None = None
     closed: int | None = None
     u: list[float] | None = None
@@ -194,8 +194,8 @@ class Client:
                     self.state = message
                 elif message["type"] == "welcome":
                     self.welcome = message
-                elif message["type"] == "workshop":
-                    self.workshop = message
+                elif message["type"] == "learning":
+                    self.learning = message
                 else:
                     self.refused = message["notice"]["code"]
         self.closed = self.socket.close_code
@@ -258,7 +258,7 @@ class Site:
         self._settled()
 
     def _settled(self) -> None:
-        """Whoever comes next finds the arm at rest and nobody at the wheel."""
+        """Whoever comes next finds the arm at rest and nobody who drives."""
         time.sleep(0.1)
 
 
@@ -270,7 +270,7 @@ def served(spec: Spec) -> Iterator[Site]:
     control = ControlProcess(spec)
     server = uvicorn.Server(
         server_config(
-            gated(build_app(load_setting(spec), control), control, config, port, None, lambda: None), config
+            gated(build_app(load_setup(spec), control), control, config, port, None, lambda: None), config
         )
     )
     loops: list[asyncio.AbstractEventLoop] = []

@@ -155,7 +155,7 @@ def test_switching_modes_never_makes_the_arm_jump(desk):
     commands = np.array([record.command.velocity for record in desk.records])
     driven = desk.times() < 2.0
     gained = np.abs(np.diff(commands[driven], axis=0))
-    assert (gained <= 0.2 * desk.setting.task.robot.limits.acceleration * 0.01 + 1e-9).all()
+    assert (gained <= 0.2 * desk.setup.task.robot.limits.acceleration * 0.01 + 1e-9).all()
     assert {record.mode for record in desk.records} == {0, 1, 3}
     assert desk.speeds()[(desk.times() > 1.9) & driven].min() > 0.0
     helped = [record.alpha > 0.0 for record in desk.records if 1.5 < record.time_s < 1.7]

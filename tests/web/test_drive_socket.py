@@ -12,7 +12,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from latentarm.web.protocol.messages import FRAME_LIMIT
-from latentarm.web.server.allowance import BURST
+from latentarm.web.server.frames import BURST
 
 HELLO = '{"type": "hello", "version": 1}'
 
@@ -105,7 +105,7 @@ def test_only_the_driver_drives_and_everybody_stops(site):
         assert ada.state["reason"] == {"code": "stop_pressed_by", "parameters": {"name": "Bob"}}
 
 
-def test_the_wheel_is_handed_over_and_the_arm_stops_for_it(site):
+def test_driving_is_handed_over_and_the_arm_stops_for_it(site):
     with site.page() as ada, site.page("Bob") as bob:
         drive(ada)
         bob.send(type="ask_to_drive")
@@ -363,12 +363,12 @@ def get(site, path):
         return answer.read()
 
 
-def test_the_scene_has_a_pose_for_every_body(site, setting):
+def test_the_scene_has_a_pose_for_every_body(site, setup):
     scene = json.loads(get(site, "/scene.json"))
     with site.page() as page:
         poses = np.array(page.state["bodies"])
-    assert len(scene["bodies"]) == len(poses) == setting.task.robot.dof + 1
+    assert len(scene["bodies"]) == len(poses) == setup.task.robot.dof + 1
     np.testing.assert_allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, atol=1e-3)
-    assert sum(len(body["geoms"]) for body in scene["bodies"]) == setting.task.robot.model().ngeom
+    assert sum(len(body["geoms"]) for body in scene["bodies"]) == setup.task.robot.model().ngeom
     with pytest.raises(urllib.error.HTTPError):
         get(site, "/mesh/0")

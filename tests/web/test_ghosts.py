@@ -11,18 +11,18 @@ from latentarm.web.arm_process.ghosts import GhostPaths
 DIRECTIONS = {"up": (0.0, 1.0), "down": (0.0, -1.0), "left": (-1.0, 0.0), "right": (1.0, 0.0)}
 
 
-def looked(setting, q, mode):
-    ghosts = GhostPaths(setting)
+def looked(setup, q, mode):
+    ghosts = GhostPaths(setup)
     assert ghosts.newest is None
-    belief = np.full(len(setting.task.goals), 1.0 / len(setting.task.goals))
+    belief = np.full(len(setup.task.goals), 1.0 / len(setup.task.goals))
     for direction in range(4):
         ghosts.look(direction, Context(q, belief), mode)
     return ghosts.newest
 
 
-def driven(setting, q, u, mode):
+def driven(setup, q, u, mode):
     """Where the tool is after a second of a full deflection, through all safety filters."""
-    step, arm = setting.step(), KinematicArm(setting.task.robot, q)
+    step, arm = setup.step(), KinematicArm(setup.task.robot, q)
     step.reset(q)
     step.choose_mode(mode)
     step(Input(np.zeros(2)), 0.0, q, 0.0)
@@ -30,34 +30,34 @@ def driven(setting, q, u, mode):
     for tick in range(1, 101):
         arm.send(step(Input(np.array(u)), 0.0, arm.state(), tick * PERIOD_S).command)
         arm.advance(PERIOD_S)
-    return setting.task.robot.chain.forward(arm.state()).position
+    return setup.task.robot.chain.forward(arm.state()).position
 
 
 @pytest.mark.parametrize("mode", ["latent", "assisted", "end_effector"])
-def test_the_arm_goes_where_the_ghosts_show(setting, mode):
-    setting.help.on = mode == "assisted"
-    index = setting.mode_index(mode, 0)
-    at = setting.task.robot.chain.forward(setting.start).position
+def test_the_arm_goes_where_the_ghosts_show(setup, mode):
+    setup.help.on = mode == "assisted"
+    index = setup.mode_index(mode, 0)
+    at = setup.task.robot.chain.forward(setup.start).position
     try:
-        ghosts = looked(setting, setting.start, index)
+        ghosts = looked(setup, setup.start, index)
         for name, u in DIRECTIONS.items():
             shown = np.array(getattr(ghosts, name))[-1]
-            there = driven(setting, setting.start, u, index)
+            there = driven(setup, setup.start, u, index)
             # The ramp, which ghosts leave out, costs a good part of the first second.
             assert np.linalg.norm(shown - there) < 0.45 * np.linalg.norm(shown - at) + 0.005
     finally:
-        setting.help.on = False
+        setup.help.on = False
 
 
-def test_ghosts_do_not_go_through_the_table(setting):
-    low = setting.task.goals[1].configuration
-    chain = setting.task.robot.chain
-    index = setting.mode_index("end_effector", 1)
+def test_ghosts_do_not_go_through_the_table(setup):
+    low = setup.task.goals[1].configuration
+    chain = setup.task.robot.chain
+    index = setup.mode_index("end_effector", 1)
     q = low
     for _ in range(12):
-        path = np.array(looked(setting, q, index).left)
+        path = np.array(looked(setup, q, index).left)
         assert path[:, 2].min() > 0.0
-        step, arm = setting.step(), KinematicArm(setting.task.robot, q)
+        step, arm = setup.step(), KinematicArm(setup.task.robot, q)
         step.reset(q)
         step.choose_mode(index)
         step(Input(np.zeros(2)), 0.0, q, 0.0)
@@ -67,4 +67,4 @@ def test_ghosts_do_not_go_through_the_table(setting):
             arm.advance(PERIOD_S)
         q = arm.state()
     lowest = chain.forward(q).position
-    np.testing.assert_allclose(np.array(looked(setting, q, index).left)[-1], lowest, atol=0.03)
+    np.testing.assert_allclose(np.array(looked(setup, q, index).left)[-1], lowest, atol=0.03)

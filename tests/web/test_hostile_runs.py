@@ -70,7 +70,7 @@ def test_a_hostile_run_is_refused_and_driving_goes_on(tmp_path, serve, trained, 
     names = make_runs(trained, tmp_path, kinds)
     with serve(Spec(trained, out=tmp_path)) as site, site.page() as page:
         # A pipe named config.json is listed by name alone: nothing is opened before somebody picks it.
-        assert set(names) <= set(page.workshop["runs"])
+        assert set(names) <= set(page.learning["runs"])
         for name in names:
             page.send(type="run", run=name)
             page.wait(lambda state, name=name: f"Checking the run {name}" in said(state), within_s=20.0)

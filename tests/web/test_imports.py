@@ -8,8 +8,8 @@ def test_neither_the_server_nor_the_control_process_loads_torch_or_scikit_learn(
     code = (
         "import sys; from pathlib import Path;"
         "import latentarm.web.server.app, latentarm.web.server.pages, latentarm.web.arm_process.process;"
-        "from latentarm.web.arm_process.drive_setup import Spec, load_setting;"
-        f"load_setting(Spec(Path({str(trained)!r}))).step();"
+        "from latentarm.web.arm_process.drive_setup import Spec, load_setup;"
+        f"load_setup(Spec(Path({str(trained)!r}))).step();"
         "print({'torch', 'sklearn'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -314,10 +314,10 @@ def test_only_the_driver_is_asked_and_nobody_drives_meanwhile(run, tmp_path, ser
     with serve(Spec(run, out=tmp_path / "out")) as site, site.page() as ada, site.page("Bob") as bob:
         bob.send(**BEGIN)
         time.sleep(0.5)
-        assert bob.workshop["personalise"] is None
+        assert bob.learning["personalise"] is None
         ada.send(**BEGIN)
-        wait_for(lambda: bob.workshop["personalise"])
-        assert bob.workshop["personalise"]["name"] == "ada"
+        wait_for(lambda: bob.learning["personalise"])
+        assert bob.learning["personalise"]["name"] == "ada"
         bob.wait(lambda state: (state["note"] or {}).get("code") == "asking")
         ada.u = [0.0, 0.0]
         before = ada.state
@@ -329,18 +329,18 @@ def test_only_the_driver_is_asked_and_nobody_drives_meanwhile(run, tmp_path, ser
         for message in ({"type": "cancel_personalise"}, {"type": "skip_question", "question": 1}):
             bob.send(**message)
         time.sleep(0.5)
-        assert bob.workshop["personalise"] is not None
+        assert bob.learning["personalise"] is not None
         # The person's page is closed and opened again: the same is asked.
-        wait_for(lambda: bob.workshop["personalise"]["phase"] == "asking")
+        wait_for(lambda: bob.learning["personalise"]["phase"] == "asking")
         ada.send(type="release")
         bob.send(type="ask_to_drive")
         bob.wait(lambda state: state["you"])
-        motion = bob.workshop["personalise"]["motion"]
+        motion = bob.learning["personalise"]["motion"]
         with site.page("Ada again") as back:
-            wait_for(lambda: back.workshop)
-            assert back.workshop["personalise"]["motion"] == motion
+            wait_for(lambda: back.learning)
+            assert back.learning["personalise"]["motion"] == motion
         bob.send(type="cancel_personalise")
-        wait_for(lambda: bob.workshop["personalise"] is None)
+        wait_for(lambda: bob.learning["personalise"] is None)
         bob.enable()
 
 
@@ -348,13 +348,13 @@ def test_only_the_driver_is_asked_and_nobody_drives_meanwhile(run, tmp_path, ser
 def test_the_server_removes_what_was_not_kept(run, tmp_path, serve):
     with serve(Spec(run, out=tmp_path / "out")) as site, site.page() as ada:
         ada.send(**{**BEGIN, "questions": 1})
-        wait_for(lambda: ada.workshop["personalise"] and ada.workshop["personalise"]["phase"] == "asking")
-        ada.send(type="answer", question=ada.workshop["personalise"]["question"], u=[0.3, 0.4])
-        wait_for(lambda: ada.workshop["personalise"]["phase"] == "learned")
+        wait_for(lambda: ada.learning["personalise"] and ada.learning["personalise"]["phase"] == "asking")
+        ada.send(type="answer", question=ada.learning["personalise"]["question"], u=[0.3, 0.4])
+        wait_for(lambda: ada.learning["personalise"]["phase"] == "learned")
         ada.send(type="try_alignment")
         ada.wait(lambda state: state["profile"] == TRIAL)
         assert trial_folder(run).exists()
-        assert ada.workshop["profiles"] == []
+        assert ada.learning["profiles"] == []
     assert not trial_folder(run).exists()
 
 

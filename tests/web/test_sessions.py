@@ -1,4 +1,4 @@
-"""At most one page drives, and nobody is given or loses the wheel without a word."""
+"""At most one page drives, and nobody begins or stops driving without a word."""
 
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
@@ -14,7 +14,7 @@ def test_the_first_page_drives_and_the_next_watches():
     assert sessions.driver.name == "Ada"
 
 
-def test_the_wheel_is_handed_over_only_to_who_asked():
+def test_driving_is_handed_over_only_to_who_asked():
     sessions = Sessions()
     ada, bob, eve = (sessions.join(name) for name in ("Ada", "Bob", "Eve"))
     assert not sessions.hand_over(ada, bob.id)
@@ -28,7 +28,7 @@ def test_the_wheel_is_handed_over_only_to_who_asked():
     assert sessions.asking is None
 
 
-def test_a_driver_who_goes_leaves_the_wheel_to_who_asked_or_to_nobody():
+def test_a_driver_who_goes_leaves_the_arm_to_who_asked_or_to_nobody():
     sessions = Sessions()
     ada, bob = sessions.join("Ada"), sessions.join("Bob")
     assert sessions.leave(ada)

@@ -12,7 +12,7 @@ from latentarm.web.server.states import States
 LONG_S = 0.4
 
 
-class AnyStage:
+class AnyRun:
     def shows(self, report):
         return True
 
@@ -40,7 +40,7 @@ def report(height):
 )
 def test_a_pause_ends_as_soon_as_the_arm_sets_off(heights, at_once):
     async def paused_s():
-        states = States(AnyStage(), Control(heights), Sessions(), None)
+        states = States(AnyRun(), Control(heights), Sessions(), None)
         following = asyncio.create_task(states.follow())
         began_s = time.monotonic()
         await states.pause(LONG_S)

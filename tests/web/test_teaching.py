@@ -15,7 +15,7 @@ from latentarm.types import Command, StepRecord
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.jobs.training import FEWEST, TrainingJob, TrainingPlan, train_as_planned
 from latentarm.web.protocol.messages import parse_message
-from latentarm.web.server.run_list import Shelf
+from latentarm.web.server.run_list import RunList
 
 from .conftest import said, wait_for
 
@@ -84,7 +84,7 @@ def test_a_training_goes_from_the_journal_to_a_run_that_says_what_it_learned_fro
     assert dataset.rate_hz == 10.0
     assert [len(episode.state) for episode in dataset.episodes] == [21] * 3
     assert {episode.task for episode in dataset.episodes} == {"wave"}
-    assert Shelf(tmp_path, None).runs() == {"waving": tmp_path / "runs" / "waving"}
+    assert RunList(tmp_path, None).runs() == {"waving": tmp_path / "runs" / "waving"}
 
 
 def test_episodes_that_are_too_short_are_named_in_a_sentence_and_nothing_is_left(tmp_path):
@@ -171,12 +171,12 @@ def test_a_run_has_one_name_however_it_is_reached(tmp_path, monkeypatch):
         (tmp_path / place).mkdir(parents=True)
         (tmp_path / place / "config.json").write_text("{}")
     monkeypatch.chdir(tmp_path)
-    shelf = Shelf(Path("out"), Path("elsewhere/one"))
-    assert list(shelf.runs()) == ["one", "one (as started)"]
-    assert shelf.name_of(tmp_path / "out" / "runs" / "one") == "one"
-    assert shelf.name_of(tmp_path / "elsewhere" / "one") == "one (as started)"
-    assert shelf.name_of(None) is None
-    assert list(Shelf(Path("elsewhere"), Path("elsewhere/two")).runs()) == ["two"]
+    run_list = RunList(Path("out"), Path("elsewhere/one"))
+    assert list(run_list.runs()) == ["one", "one (as started)"]
+    assert run_list.name_of(tmp_path / "out" / "runs" / "one") == "one"
+    assert run_list.name_of(tmp_path / "elsewhere" / "one") == "one (as started)"
+    assert run_list.name_of(None) is None
+    assert list(RunList(Path("elsewhere"), Path("elsewhere/two")).runs()) == ["two"]
 
 
 def record(page, direction):
@@ -200,28 +200,28 @@ def record(page, direction):
 @pytest.mark.slow
 def test_what_is_recorded_is_trained_and_driven_without_a_terminal(tmp_path, serve):
     with serve(Spec(out=tmp_path)) as site, site.page() as page, site.page("Bob") as bob:
-        assert page.workshop["runs"] == []
+        assert page.learning["runs"] == []
         assert page.welcome["modes"] == ["end_effector"]
         for direction in ([1.0, 0.3], [1.0, -0.3], [0.9, 0.0]):
             record(page, direction)
-        wait_for(lambda: len(page.workshop["recordings"]) == FEWEST)
-        assert {one["task"] for one in page.workshop["recordings"]} == {"push"}
-        assert all(1.0 < one["seconds"] < 6.0 for one in page.workshop["recordings"])
-        numbers = [one["number"] for one in page.workshop["recordings"]]
+        wait_for(lambda: len(page.learning["recordings"]) == FEWEST)
+        assert {one["task"] for one in page.learning["recordings"]} == {"push"}
+        assert all(1.0 < one["seconds"] < 6.0 for one in page.learning["recordings"])
+        numbers = [one["number"] for one in page.learning["recordings"]]
 
         train = {"type": "train", "name": "pushed", "model": "pca", "latent_dim": 1, "episodes": numbers}
         bob.send(**train)
         time.sleep(0.5)
-        assert page.workshop["training"] is None, "only the driver may train"
+        assert page.learning["training"] is None, "only the driver may train"
         page.send(**(train | {"name": "../pushed"}))
-        wait_for(lambda: bob.workshop["training"])
-        assert bob.workshop["training"]["phase"] == "failed"
-        assert [one["code"] for one in bob.workshop["training"]["why"]] == ["name_invalid"]
+        wait_for(lambda: bob.learning["training"])
+        assert bob.learning["training"]["phase"] == "failed"
+        assert [one["code"] for one in bob.learning["training"]["why"]] == ["name_invalid"]
         page.send(**train)
         page.send(**(train | {"name": "second"}))
-        wait_for(lambda: page.workshop["training"]["phase"] == "done")
-        assert page.workshop["training"]["run"] == "pushed"
-        wait_for(lambda: bob.workshop["runs"] == ["pushed"])
+        wait_for(lambda: page.learning["training"]["phase"] == "done")
+        assert page.learning["training"]["run"] == "pushed"
+        wait_for(lambda: bob.learning["runs"] == ["pushed"])
 
         page.enable()
         page.send(type="run", run="pushed")
@@ -237,7 +237,7 @@ def test_what_is_recorded_is_trained_and_driven_without_a_terminal(tmp_path, ser
         wait_for(lambda: page.welcome["run"] == bob.welcome["run"] == "pushed")
         assert page.welcome["latent_dim"] == 1
         page.wait(lambda state: state["mode"] == "latent")
-        wait_for(lambda: page.workshop["run"] == "pushed")
+        wait_for(lambda: page.learning["run"] == "pushed")
         before = np.array(page.state["tool"])
         page.enable()
         page.u = [1.0]
@@ -247,7 +247,7 @@ def test_what_is_recorded_is_trained_and_driven_without_a_terminal(tmp_path, ser
 def test_a_run_that_has_gone_is_not_driven_and_the_arm_stays_as_it_was(tmp_path, serve, trained):
     shutil.copytree(trained, tmp_path / "runs" / "copy")
     with serve(Spec(trained, out=tmp_path)) as site, site.page() as page:
-        assert page.workshop["runs"] == ["copy", "run"]
+        assert page.learning["runs"] == ["copy", "run"]
         (tmp_path / "runs" / "copy" / "model.safetensors").write_bytes(b"broken")
         page.send(type="run", run="copy")
         page.wait(lambda state: "model.safetensors" in said(state), within_s=60.0)

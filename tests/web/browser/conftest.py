@@ -115,7 +115,7 @@ class Arm:
     def __init__(self) -> None:
         self.state: dict[str, Any] = {}
         self.welcome: dict[str, Any] = {}
-        self.workshop: dict[str, Any] = {}
+        self.learning: dict[str, Any] = {}
         self.ghosts: dict[str, list[list[float]]] = {}
         self.states: list[dict[str, Any]] = []
 
@@ -172,8 +172,8 @@ class Arm:
                 message = json.loads(frame)
                 if message["type"] == "welcome":
                     self.welcome = message
-                elif message["type"] == "workshop":
-                    self.workshop = message
+                elif message["type"] == "learning":
+                    self.learning = message
                 elif message["type"] == "state":
                     self.ghosts = message["ghosts"] or self.ghosts
                     self.state = message
@@ -229,12 +229,12 @@ def open_page(chromium: Browser, address: str, arm: Arm) -> Iterator[Callable[..
 
 @pytest.fixture
 def page(open_page: Callable[..., Page], arm: Arm) -> Page:
-    """A page at the wheel, the arm at its start in latent actions with help, not enabled."""
+    """A page who drives, the arm at its start in latent actions with help, not enabled."""
     return seated(open_page(), arm)
 
 
 def seated(page: Page, arm: Arm) -> Page:
-    """The page takes the wheel and puts the arm back."""
+    """The page drives, and puts the arm back."""
     page.get_by_role("button", name="Ask to drive").click()
     page.get_by_role("button", name="Let others drive").wait_for()
     page.get_by_role("radio", name="Learned, with help").check()
@@ -270,7 +270,7 @@ def seat() -> Callable[[Page, Arm], Page]:
 
 @pytest.fixture
 def enabled(page: Page, arm: Arm) -> Page:
-    """A page at the wheel of an enabled arm."""
+    """A page who drives of an enabled arm."""
     enable(page, arm)
     return page
 

@@ -128,8 +128,8 @@ def question(page, arm, number):
     expect(heading).to_be_visible(timeout=PATIENCE_MS)
     if not heading.inner_text().startswith("Question"):
         return None
-    arm.wait(lambda: (arm.workshop["personalise"] or {}).get("number") == number)
-    return arm.workshop["personalise"]["motion"]
+    arm.wait(lambda: (arm.learning["personalise"] or {}).get("number") == number)
+    return arm.learning["personalise"]["motion"]
 
 
 def straightness(page, arm, person, drag, press_until_moving, press_enable):
@@ -202,7 +202,7 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
 
     page.get_by_role("heading", name="The robot has learned").wait_for(timeout=PATIENCE_MS)
     assert found(page) == []
-    learned = arm.workshop["personalise"]
+    learned = arm.learning["personalise"]
     assert learned["error"] < 0.2 < learned["error_without"]
     page.get_by_role("button", name="Try it").click()
     expect(page.get_by_role("heading", name="You are trying the directions of ada.")).to_be_visible()
@@ -213,7 +213,7 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
 
     page.get_by_role("button", name="Keep it").click()
     arm.wait(lambda: arm.state["profile"] == "ada")
-    arm.wait(lambda: arm.workshop["profiles"] == ["ada"])
+    arm.wait(lambda: arm.learning["profiles"] == ["ada"])
     assert [folder.name for folder in (run / "profiles").iterdir()] == ["ada"]
     page.get_by_role("button", name="Settings").click()
     expect(page.get_by_label("Your directions")).to_have_value("ada")

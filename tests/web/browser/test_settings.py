@@ -17,7 +17,7 @@ WebSocket.prototype.send = function (text) {
 
 @pytest.fixture
 def person(open_page, seat, arm, press_enable):
-    """A page whose inputs can be looked at, at the wheel of an enabled arm."""
+    """A page whose inputs can be looked at, who drives of an enabled arm."""
     page = seat(open_page(SENT), arm)
     press_enable(page, arm)
     return page

@@ -67,7 +67,7 @@ def test_settings_have_a_stop_of_their_own(enabled, arm):
     enabled.mouse.up()
 
 
-def test_the_wheel_is_handed_over(page, arm, open_page, press_enable, hold_key):
+def test_driving_is_handed_over(page, arm, open_page, press_enable, hold_key):
     other = open_page()
     other.get_by_role("button", name="Ask to drive").click()
     page.get_by_text("asks to drive").wait_for()

@@ -13,7 +13,7 @@ from latentarm.control.loop import ControlLoop
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.types import Context, StepRecord, Stop
-from latentarm.web.arm_process.drive_setup import PERIOD_S, Setting
+from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
@@ -78,13 +78,13 @@ class Steering:
 
 @final
 class Drive:
-    """Everything that the control loop's thread does with one setting, besides driving.
+    """Everything that the control loop's thread does with one setup, besides driving.
 
     It takes a few hundred microseconds a tick. Stops are looked at in every tick, however full the pipe of
     orders is.
 
     Args:
-        setting: what is driven.
+        setup: what is driven.
         arm: what moves.
         channel: to the page's server.
         clock: the loop's.
@@ -100,7 +100,7 @@ class Drive:
 
     def __init__(
         self,
-        setting: Setting,
+        setup: DriveSetup,
         arm: Arm,
         channel: Channel,
         clock: Clock,
@@ -110,24 +110,24 @@ class Drive:
         note: Notice | None = None,
         observers: Sequence[Callable[[StepRecord], None]] = (),
     ) -> None:
-        self._setting = setting
+        self._setup = setup
         self._arm = arm
         self._channel = channel
         self._clock = clock
         self._writer = writer
         self._orphaned = orphaned
         self._steering = steering
-        self._ghosts = GhostPaths(setting)
-        self._step = setting.step()
+        self._ghosts = GhostPaths(setup)
+        self._step = setup.step()
         self._inputs = PageInputs(
-            channel.given, clock, setting.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
+            channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
         self._loop = ControlLoop(self._step, arm, self._inputs, clock, [self._observe, *observers])
         self._stop_version = channel.stop.version
         self._stopped_for = Notice(code="stop_pressed")
         self._enable_until_s = -math.inf
         self._enable_driver = -1
-        self._seen = setting.start
+        self._seen = setup.start
         self._late_share = self._late_p99_ms = 0.0
         self._note = note
         self._note_until_s = -math.inf if note is None else clock.now_s() + NOTE_S
@@ -195,14 +195,14 @@ class Drive:
                     self._enable_driver = driver
                     self._enable_until_s = record.time_s + ENABLE_WAITS_S
             case ChooseMode(mode=mode, axes=axes):
-                if mode in self._setting.modes:
+                if mode in self._setup.modes:
                     self._choose(mode, self._steering.axes if axes is None else axes)
             case Record(on=True, task=task, person=person):
                 self._begin_episode(task, person)
             case Record():
                 # An episode ends with the arm at rest: its last motion belongs to it.
                 self._steering.ending_episode = True
-            case ChooseProfile(name=name) if name == self._setting.spec.profile:
+            case ChooseProfile(name=name) if name == self._setup.spec.profile:
                 pass
             case ChooseProfile() | ChooseRun() | Reset():
                 self._change_to(order)
@@ -221,15 +221,15 @@ class Drive:
     def _choose(self, mode: ModeName, axes: int) -> None:
         steering = self._steering
         steering.mode = mode
-        steering.axes = min(max(axes, 0), len(self._setting.axes) - 1)
-        self._setting.help.on = mode == "assisted"
-        self._step.choose_mode(self._setting.mode_index(mode, steering.axes))
+        steering.axes = min(max(axes, 0), len(self._setup.axes) - 1)
+        self._setup.help.on = mode == "assisted"
+        self._step.choose_mode(self._setup.mode_index(mode, steering.axes))
 
     def _begin_episode(self, task: str, person: str) -> None:
         self._steering.ending_episode = False
         if not self._writer.on:
             self._inputs.devices.clear()
-        robot, spec = self._setting.task.robot, self._setting.spec
+        robot, spec = self._setup.task.robot, self._setup.spec
         self._writer.begin(
             EpisodeHeader(
                 robot=robot.name,
@@ -237,12 +237,12 @@ class Drive:
                 joint_limits=robot.limits,
                 rate_hz=1.0 / PERIOD_S,
                 task=task,
-                goals=self._setting.task.goals,
-                modes=self._setting.controller.modes,
+                goals=self._setup.task.goals,
+                modes=self._setup.controller.modes,
                 provenance=provenance_now(
                     person=person,
                     run="" if spec.run is None else spec.run.name,
-                    run_fingerprint=self._setting.run_fingerprint,
+                    run_fingerprint=self._setup.run_fingerprint,
                     profile=spec.profile or "",
                     controller=self._steering.mode,
                 ),
@@ -294,8 +294,8 @@ class Drive:
         return Notice(code="arm_stopped", parameters={"text": stop.reason})
 
     def _report(self, record: StepRecord) -> Report:
-        phase, spec = self._phase(), self._setting.spec
-        tool = self._setting.task.robot.chain.forward(self._seen).position.tolist()
+        phase, spec = self._phase(), self._setup.spec
+        tool = self._setup.task.robot.chain.forward(self._seen).position.tolist()
         held_back: list[HeldBack] = [
             _HELD_BACK[name] for name in record.command.limited_by if name in _HELD_BACK
         ]

@@ -104,7 +104,7 @@ class Help(Arbitration):
 
 @final
 @dataclass(frozen=True, eq=False)
-class Setting:
+class DriveSetup:
     """Everything that a spec names, loaded.
 
     Attributes:
@@ -164,25 +164,25 @@ class Setting:
         )
 
 
-def with_profile(setting: Setting, profile: str | None) -> Setting:
+def with_profile(setup: DriveSetup, profile: str | None) -> DriveSetup:
     """The same with another person's alignment; neither the dataset nor the robot is read again.
 
     Args:
-        setting: what is driven.
+        setup: what is driven.
         profile: whose alignment; z = u where None.
 
     Raises:
         UserError: nothing trained is driven, or the profile or the model cannot be used.
     """
-    spec = replace(setting.spec, profile=profile)
+    spec = replace(setup.spec, profile=profile)
     if spec.run is None:
-        return setting
-    robot = setting.task.robot
+        return setup
+    robot = setup.task.robot
     latent = latent_controller(spec.run, profile, robot)
-    return replace(setting, spec=spec, controller=JoinedController([latent, EndEffectorController(robot)]))
+    return replace(setup, spec=spec, controller=JoinedController([latent, EndEffectorController(robot)]))
 
 
-def load_setting(spec: Spec) -> Setting:
+def load_setup(spec: Spec) -> DriveSetup:
     """Load what a spec names.
 
     Raises:
@@ -201,7 +201,7 @@ def load_setting(spec: Spec) -> Setting:
             f" {MOST_JOINTS} joints and shows {MOST_GOALS} goals at most."
         )
     end_effector = EndEffectorController(task.robot)
-    return Setting(
+    return DriveSetup(
         spec=spec,
         task=task,
         controller=JoinedController([end_effector] if latent is None else [latent, end_effector]),

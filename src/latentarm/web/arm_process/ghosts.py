@@ -9,7 +9,7 @@ from latentarm.assistance.blending import blend
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.kinematics.obstacles import HalfSpace
 from latentarm.types import Context, FloatArray
-from latentarm.web.arm_process.drive_setup import Setting
+from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.protocol.channel import Ghosts, Point
 
 AHEAD_S: Final = 1.0
@@ -31,12 +31,12 @@ class GhostPaths:
     shows; the safety filters decide.
 
     Args:
-        setting: what is driven.
+        setup: what is driven.
     """
 
-    def __init__(self, setting: Setting) -> None:
-        self._setting = setting
-        robot = setting.task.robot
+    def __init__(self, setup: DriveSetup) -> None:
+        self._setup = setup
+        robot = setup.task.robot
         limits = SafetyConfig()
         self._chain = robot.chain
         self._capsules = robot.capsules
@@ -45,11 +45,11 @@ class GhostPaths:
         self._joint_speed = np.where(robot.chain.slide, limits.link_speed, limits.joint_speed)
         self._tool_speed = limits.link_speed
         self._clearance = limits.clearance
-        planes = [one for one in setting.task.obstacles if isinstance(one, HalfSpace)]
+        planes = [one for one in setup.task.obstacles if isinstance(one, HalfSpace)]
         self._normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
         self._offsets = np.array([plane.normal @ plane.point for plane in planes])
         self._no_heights = np.zeros((0, 0))
-        self._goals = np.array([goal.configuration for goal in setting.task.goals])
+        self._goals = np.array([goal.configuration for goal in setup.task.goals])
         self._found: dict[str, tuple[Point, ...]] = {}
         self._whole: Ghosts | None = None
 
@@ -67,7 +67,7 @@ class GhostPaths:
             mode: index of the controller's mode.
         """
         name, (axis, sign) = list(_DIRECTIONS.items())[direction]
-        u = np.zeros(self._setting.controller.input_dim)
+        u = np.zeros(self._setup.controller.input_dim)
         u[axis] = sign
         self._found[name] = self._path(u, context, mode)
         if direction == len(_DIRECTIONS) - 1 and len(self._found) == len(_DIRECTIONS):
@@ -90,7 +90,7 @@ class GhostPaths:
         return tuple(points)
 
     def _wanted(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        controller, help_ = self._setting.controller, self._setting.help
+        controller, help_ = self._setup.controller, self._setup.help
         action = controller.action(controller.latent(u, context, mode), context, mode)
         if not help_.on:
             return action

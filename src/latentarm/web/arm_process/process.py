@@ -18,7 +18,7 @@ from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.errors import UserError
 from latentarm.web.arm_process.drive import Drive, Steering
-from latentarm.web.arm_process.drive_setup import Setting, Spec, load_setting, with_profile
+from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup, with_profile
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.protocol.channel import Channel, ChooseProfile, ChooseRun, Reset
 from latentarm.web.protocol.notice import Notice, notice_of, sentence
@@ -52,31 +52,31 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
     signal.signal(signal.SIGTERM, end)
     _ask_for_priority()
     with threadpool_limits(1):
-        setting = load_setting(spec)
+        setup = load_setup(spec)
         clock = MonotonicClock()
         writer = EpisodeWriter(spec.out, spec.journal)
-        steering = Steering(setting.modes[0])
-        arm = _arm(setting, clock)
+        steering = Steering(setup.modes[0])
+        arm = _arm(setup, clock)
         # Nothing that is there by now is ever garbage: the collector need not look through it.
         gc.collect()
         gc.freeze()
         note: Notice | None = None
         try:
             while True:
-                drive = Drive(setting, arm, channel, clock, writer, orphaned, steering, note)
+                drive = Drive(setup, arm, channel, clock, writer, orphaned, steering, note)
                 note = None
                 match drive.run():
                     case None:
                         break
                     case Reset():
-                        arm = _arm(setting, clock)
+                        arm = _arm(setup, clock)
                     case ChooseProfile(name=name):
-                        setting, note = _loaded(partial(_other_profile, setting, name), setting)
+                        setup, note = _loaded(partial(_other_profile, setup, name), setup)
                     case ChooseRun(run=run):
-                        spec = replace(setting.spec, run=Path(run), profile=None)
-                        (setting, arm), note = _loaded(partial(_other_run, spec, clock), (setting, arm))
+                        spec = replace(setup.spec, run=Path(run), profile=None)
+                        (setup, arm), note = _loaded(partial(_other_run, spec, clock), (setup, arm))
                         if note is None:
-                            steering.mode, steering.axes = setting.modes[0], 0
+                            steering.mode, steering.axes = setup.modes[0], 0
         finally:
             writer.close()
             gc.unfreeze()
@@ -88,20 +88,20 @@ def _ask_for_priority() -> None:
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
-def _arm(setting: Setting, clock: Clock) -> Arm:
-    return make_live_arm(setting.spec.arm, setting.task.robot, setting.start, clock.now_s)
+def _arm(setup: DriveSetup, clock: Clock) -> Arm:
+    return make_live_arm(setup.spec.arm, setup.task.robot, setup.start, clock.now_s)
 
 
-def _other_profile(setting: Setting, name: str | None) -> Setting:
-    other = with_profile(setting, name)
+def _other_profile(setup: DriveSetup, name: str | None) -> DriveSetup:
+    other = with_profile(setup, name)
     other.step()
     return other
 
 
-def _other_run(spec: Spec, clock: Clock) -> tuple[Setting, Arm]:
-    setting = load_setting(spec)
-    setting.step()
-    return setting, _arm(setting, clock)
+def _other_run(spec: Spec, clock: Clock) -> tuple[DriveSetup, Arm]:
+    setup = load_setup(spec)
+    setup.step()
+    return setup, _arm(setup, clock)
 
 
 def _loaded(load: Callable[[], T], before: T) -> tuple[T, Notice | None]:

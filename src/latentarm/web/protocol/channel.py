@@ -28,7 +28,7 @@ Point = tuple[float, float, float]
 
 @final
 class Given(Message):
-    """What the person at the wheel does.
+    """What the person who drives does.
 
     Attributes:
         driver: counts the drivers: inputs of one who has handed over are none of the next one's.

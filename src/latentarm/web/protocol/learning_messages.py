@@ -39,7 +39,7 @@ class CancelTraining(Message):
 
 @final
 class PickRun(Message):
-    """Drive another run, one of `Workshop.runs`; from the page that drives, while the arm is not enabled."""
+    """Drive another run of `LearningState.runs`; from the page that drives, while the arm is not enabled."""
 
     type: Literal["run"]
     run: RunName
@@ -84,7 +84,7 @@ class Training(Message):
 
 
 @final
-class Workshop(Message):
+class LearningState(Message):
     """What there is to learn from and to drive; sent after `Welcome` and whenever it changes.
 
     Attributes:
@@ -96,7 +96,7 @@ class Workshop(Message):
         profiles: people whose alignment with it can be chosen.
     """
 
-    type: Literal["workshop"] = "workshop"
+    type: Literal["learning"] = "learning"
     training: Training | None
     personalise: Personalise | None
     recordings: tuple[Recorded, ...]

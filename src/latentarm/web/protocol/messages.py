@@ -85,14 +85,14 @@ class Profile(Message):
 
 @final
 class AskToDrive(Message):
-    """Take the wheel where nobody has it, else ask the driver for it."""
+    """Drive where nobody does, else ask the driver to hand over."""
 
     type: Literal["ask_to_drive"]
 
 
 @final
 class HandOver(Message):
-    """Give the wheel to the page that has asked for it."""
+    """Let the page drive that has asked to."""
 
     type: Literal["hand_over"]
     to: Id
@@ -100,7 +100,7 @@ class HandOver(Message):
 
 @final
 class Release(Message):
-    """Give the wheel up."""
+    """Let others drive."""
 
     type: Literal["release"]
 
@@ -230,7 +230,7 @@ class State(Message):
         driver: id of the page that drives, or null.
         driver_name: what its person is called.
         watchers: how many other pages.
-        asking: id of the page that asks for the wheel, or null.
+        asking: id of the page that asks to drive, or null.
         asking_name: what its person is called.
         recording: null where nothing was ever recorded.
         trail: counts how often the trail was emptied.

@@ -14,7 +14,7 @@ from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from latentarm.robots.notices import notices
-from latentarm.web.arm_process.drive_setup import Setting, load_setting
+from latentarm.web.arm_process.drive_setup import DriveSetup, load_setup
 from latentarm.web.jobs.training import model_names
 from latentarm.web.protocol.messages import FRAME_LIMIT
 from latentarm.web.protocol.notice import Notice
@@ -24,11 +24,11 @@ from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Conne
 from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.frames import MeteredSocket
-from latentarm.web.server.learning import Bench
-from latentarm.web.server.loaded_run import Stage
+from latentarm.web.server.learning import Learning
+from latentarm.web.server.loaded_run import LoadedRun
 from latentarm.web.server.logs import LOGGING
 from latentarm.web.server.pages import PAGES, Pages
-from latentarm.web.server.run_list import Shelf
+from latentarm.web.server.run_list import RunList
 from latentarm.web.server.security import DRIVE, ENTRY, Gate, Keys
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
@@ -51,7 +51,7 @@ def serve(
         UserError: the run or profile is not to be had, the address is taken, or a file for TLS is broken.
     """
     check_certificate(config)
-    setting = load_setting(config.spec)
+    setup = load_setup(config.spec)
     listening = listen(config)
     port = int(listening.getsockname()[1])
     base = origin(config.scheme, config.host, port)
@@ -63,11 +63,11 @@ def serve(
     def invite() -> None:
         say(f"For the next person, a link that works once: {link()}")
 
-    for sentence in notices(setting.task.robot):
+    for sentence in notices(setup.task.robot):
         say(sentence)
     control = ControlProcess(config.spec)
     try:
-        app = build_app(setting, control)
+        app = build_app(setup, control)
         gate = gated(app, control, config, port, keys, invite)
         first = link()
         say(f"The page is at {first} (end with Ctrl-C).")
@@ -91,41 +91,41 @@ def serve(
         listening.close()
 
 
-def build_app(setting: Setting, control: ControlProcess) -> FastAPI:
+def build_app(setup: DriveSetup, control: ControlProcess) -> FastAPI:
     """The application: the pages and what they load, the scene, and the socket that drives.
 
     Args:
-        setting: what is driven.
+        setup: what is driven.
         control: drives it.
     """
     sessions = Sessions()
-    spec = setting.spec
-    shelf = Shelf(spec.out, spec.run)
-    states = States(Stage(setting, shelf.name_of(spec.run)), control, sessions, shelf)
-    bench = Bench(control, states, shelf, spec.out)
-    drive = DriveSocket(control, states, sessions, bench)
+    spec = setup.spec
+    run_list = RunList(spec.out, spec.run)
+    states = States(LoadedRun(setup, run_list.name_of(spec.run)), control, sessions, run_list)
+    learning = Learning(control, states, run_list, spec.out)
+    drive = DriveSocket(control, states, sessions, learning)
 
     assets = Assets()
     pages = Pages(assets, model_names())
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
-        following = [asyncio.create_task(one.follow()) for one in (states, bench)]
+        following = [asyncio.create_task(one.follow()) for one in (states, learning)]
         try:
             yield
         finally:
             for task in following:
                 task.cancel()
-            await bench.close()
+            await learning.close()
 
     app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
 
     async def describe(_: Request) -> Response:
-        return JSONResponse(states.stage.scene.description)
+        return JSONResponse(states.loaded.scene.description)
 
     async def mesh(request: Request) -> Response:
         # Compared as text: a number in a path may have any length.
-        named = {str(number): content for number, content in states.stage.scene.meshes.items()}
+        named = {str(number): content for number, content in states.loaded.scene.meshes.items()}
         content = named.get(request.path_params["number"])
         if content is None:
             return JSONResponse({"detail": "There is no such mesh."}, 404)

@@ -30,7 +30,7 @@ from latentarm.web.protocol.notice import Notice, NoticeCode
 from latentarm.web.protocol.personalise_messages import AnswerQuestion, PersonaliseMessage
 from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.frames import TOO_MANY
-from latentarm.web.server.learning import Bench
+from latentarm.web.server.learning import Learning
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
 from latentarm.web.server.sessions import MOST, Page, Sessions
 from latentarm.web.server.states import GhostMemory, States
@@ -71,14 +71,16 @@ class DriveSocket:
         control: the control process.
         states: what pages see.
         sessions: who is there.
-        bench: what is recorded, trained and chosen.
+        learning: what is recorded, trained and chosen.
     """
 
-    def __init__(self, control: ControlProcess, states: States, sessions: Sessions, bench: Bench) -> None:
+    def __init__(
+        self, control: ControlProcess, states: States, sessions: Sessions, learning: Learning
+    ) -> None:
         self._control = control
         self._states = states
         self._sessions = sessions
-        self._bench = bench
+        self._learning = learning
         self._open = 0
 
     async def __call__(self, socket: WebSocket) -> None:
@@ -129,22 +131,22 @@ class DriveSocket:
     async def _send_states(self, socket: WebSocket, page: Page) -> None:
         """States as fast as the page takes them, always the newest: nothing queues up.
 
-        Before them what is driven, and what there is in the workshop; again when it has changed.
+        Before them what is driven, and what there is in the learning; again when it has changed.
         """
         ghosts = GhostMemory()
-        stage = None
-        tick = bench = -1
+        loaded = None
+        tick = learning = -1
         with suppress(RuntimeError, WebSocketDisconnect):
             while True:
-                if stage is not self._states.stage:
-                    stage = self._states.stage
+                if loaded is not self._states.loaded:
+                    loaded = self._states.loaded
                     ghosts = GhostMemory()
-                    await socket.send_text(stage.welcome(page.id).model_dump_json())
-                if bench != self._bench.number:
-                    bench = self._bench.number
-                    await socket.send_text(self._bench.text)
+                    await socket.send_text(loaded.welcome(page.id).model_dump_json())
+                if learning != self._learning.number:
+                    learning = self._learning.number
+                    await socket.send_text(self._learning.text)
                 tick = await self._states.after(tick)
-                if stage is not self._states.stage:
+                if loaded is not self._states.loaded:
                     continue
                 await socket.send_text(self._states.text(page, ghosts))
                 drives = self._sessions.drives(page)
@@ -167,14 +169,14 @@ class DriveSocket:
         """Whether an input or an answer has no more axes than what is driven."""
         return (
             not isinstance(message, DriverInput | AnswerQuestion)
-            or len(message.u) <= self._states.stage.input_dim
+            or len(message.u) <= self._states.loaded.input_dim
         )
 
     def _take_from_driver(self, page: Page, message: ClientMessage) -> None:
         match message:
             case DriverInput():
                 self._give(message)
-            case PressEnable() if self._states.loading or self._bench.personalising.standstill:
+            case PressEnable() if self._states.loading or self._learning.personalising.standstill:
                 pass
             case PressEnable():
                 self._control.order(Enable(driver=self._sessions.turn, stops=self._control.stops))
@@ -187,11 +189,11 @@ class DriveSocket:
             case ResetArm():
                 self._control.order(Reset())
             case Train():
-                self._bench.train(message)
+                self._learning.train(message)
             case CancelTraining():
-                self._bench.cancel()
+                self._learning.cancel()
             case PickRun(run=run):
-                self._bench.choose_run(run)
+                self._learning.choose_run(run)
             case HandOver(to=to):
                 if self._sessions.hand_over(page, to):
                     self._driver_changed("handed_over")
@@ -199,7 +201,7 @@ class DriveSocket:
                 if self._sessions.release(page):
                     self._driver_changed("driver_released")
             case _ if isinstance(message, PersonaliseMessage):
-                self._bench.personalising.take(message)
+                self._learning.personalising.take(message)
             case _:
                 pass
 
@@ -209,7 +211,7 @@ class DriveSocket:
         self._control.order(Record(on=False, task=""))
 
     def _give(self, message: DriverInput) -> None:
-        padded = message.u + (0.0,) * (self._states.stage.input_dim - len(message.u))
+        padded = message.u + (0.0,) * (self._states.loaded.input_dim - len(message.u))
         self._control.give(
             Given(
                 driver=self._sessions.turn,

@@ -6,13 +6,19 @@ on the bytes as they arrive.
 
 import asyncio
 import struct
+import time
+from collections.abc import Callable
 from typing import Any, Final, final
 
 from uvicorn.config import Config
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from uvicorn.server import ServerState
 
-from latentarm.web.server.allowance import Allowance
+RATE: Final = 100.0
+"""Frames a second that a page may send."""
+
+BURST: Final = 100.0
+"""Frames that may come at once, as after a moment without network."""
 
 TOO_MANY: Final = 1008
 """The code that a connection with too many frames is closed with; RFC 6455 calls it a policy violation."""
@@ -25,6 +31,30 @@ _REASON: Final = b"too many frames"
 _CLOSE: Final = b"\x88" + bytes([0x80 | 2 + len(_REASON)]) + bytes(_MASK_BYTES)
 _CLOSE_FOR_TOO_MANY: Final = _CLOSE + struct.pack("!H", TOO_MANY) + _REASON
 """A close frame with a mask of zeros, as the page might have sent it."""
+
+
+@final
+class Allowance:
+    """A token bucket with `BURST` tokens that gains `RATE` a second.
+
+    Args:
+        now_s: the time, s; monotonic.
+    """
+
+    def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:
+        self._now_s = now_s
+        self._left = BURST
+        self._at_s = now_s()
+
+    def spend(self) -> bool:
+        """Take one token. Returns False if none is left."""
+        now_s = self._now_s()
+        self._left = min(self._left + (now_s - self._at_s) * RATE, BURST)
+        self._at_s = now_s
+        if self._left < 1.0:
+            return False
+        self._left -= 1.0
+        return True
 
 
 @final

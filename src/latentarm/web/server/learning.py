@@ -9,12 +9,12 @@ from latentarm.errors import UserError
 from latentarm.runs.folder import read_run
 from latentarm.web.jobs.training import TrainingJob, TrainingPlan
 from latentarm.web.protocol.channel import ChooseRun
-from latentarm.web.protocol.learning_messages import Recorded, Train, Training, Workshop
+from latentarm.web.protocol.learning_messages import LearningState, Recorded, Train, Training
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.personalising import Driven, Personalising
 from latentarm.web.server.run_check import WITHIN_S, Trial
-from latentarm.web.server.run_list import Shelf
+from latentarm.web.server.run_list import RunList
 from latentarm.web.server.states import States
 
 LOOK_S: Final = 0.2
@@ -22,20 +22,20 @@ LOOK_S: Final = 0.2
 
 
 @final
-class Bench:
+class Learning:
     """Recordings, trainings, runs, and people's alignments.
 
     Args:
         control: the control process, which records and drives.
         states: says what is recorded and what is loaded.
-        shelf: the runs.
+        run_list: the runs.
         out: folder that holds ``datasets`` and ``runs``.
     """
 
-    def __init__(self, control: ControlProcess, states: States, shelf: Shelf, out: Path) -> None:
+    def __init__(self, control: ControlProcess, states: States, run_list: RunList, out: Path) -> None:
         self._control = control
         self._states = states
-        self._shelf = shelf
+        self._run_list = run_list
         self._out = out
         self._job: TrainingJob | None = None
         self._training: Training | None = None
@@ -46,7 +46,7 @@ class Bench:
         self.personalising = Personalising(self._driven, control)
         self._text = ""
         self._number = 0
-        self._tell(shelf.runs())
+        self._tell(run_list.runs())
 
     @property
     def number(self) -> int:
@@ -65,7 +65,7 @@ class Bench:
             if self._job is not None:
                 self._training = self._job.look()
             self._states.standstill = self.personalising.standstill
-            self._tell(await asyncio.to_thread(self._shelf.runs))
+            self._tell(await asyncio.to_thread(self._run_list.runs))
             await asyncio.sleep(LOOK_S)
 
     def train(self, wish: Train) -> None:
@@ -100,7 +100,7 @@ class Bench:
 
     def choose_run(self, name: str) -> None:
         """Try another run, then drive it. Names that are not in the list are ignored."""
-        run = self._shelf.runs().get(name)
+        run = self._run_list.runs().get(name)
         report = self._states.report
         if run is None:
             return
@@ -121,7 +121,7 @@ class Bench:
 
     async def _try_run(self, name: str, run: Path) -> None:
         """Have a run driven once a child process has loaded it; until then driving goes on as it was."""
-        trial = Trial(self._states.stage.spec, run, name)
+        trial = Trial(self._states.loaded.spec, run, name)
         try:
             self._states.say(Notice(code="checking_run", parameters={"name": name}), WITHIN_S)
             failure = await trial.failure()
@@ -138,8 +138,8 @@ class Bench:
         self._cancelling = None
 
     def _driven(self) -> Driven:
-        stage = self._states.stage
-        return Driven(stage.spec.run, stage.latent_dim, self._states.report)
+        loaded = self._states.loaded
+        return Driven(loaded.spec.run, loaded.latent_dim, self._states.report)
 
     def _end_effector(self) -> str | None:
         """That of the arm, where a run says it.
@@ -147,7 +147,7 @@ class Bench:
         Raises:
             UserError: the run has gone.
         """
-        run = self._states.stage.spec.run
+        run = self._states.loaded.spec.run
         return None if run is None else read_run(run).end_effector
 
     async def _list_recordings(self) -> None:
@@ -170,13 +170,13 @@ class Bench:
         )
 
     def _tell(self, runs: dict[str, Path]) -> None:
-        text = Workshop(
+        text = LearningState(
             training=self._training,
             personalise=self.personalising.look(),
             recordings=self._recordings,
             runs=tuple(runs),
-            run=self._states.stage.name,
-            profiles=self._states.stage.profiles,
+            run=self._states.loaded.name,
+            profiles=self._states.loaded.profiles,
         ).model_dump_json()
         if text != self._text:
             self._text = text

@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 
 from latentarm.alignment.profile import profile_names
-from latentarm.web.arm_process.drive_setup import Setting, Spec, load_setting
+from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.channel import Report
 from latentarm.web.protocol.messages import Limits, NamedGoal, Welcome
@@ -15,26 +15,26 @@ from latentarm.web.protocol.scene import scene_of
 
 
 @final
-class Stage:
-    """A loaded setting, its scene, and what follows from both.
+class LoadedRun:
+    """A loaded setup, its scene, and what follows from both.
 
     Args:
-        setting: what is driven.
+        setup: what is driven.
         name: what pages call its run; None without one.
     """
 
-    def __init__(self, setting: Setting, name: str | None) -> None:
+    def __init__(self, setup: DriveSetup, name: str | None) -> None:
         self.name = name
-        self.spec = setting.spec
-        self.scene = scene_of(setting.task)
-        self.chain = setting.task.robot.chain
-        self.input_dim = setting.controller.input_dim
-        self.latent_dim = setting.latent_dim
+        self.spec = setup.spec
+        self.scene = scene_of(setup.task)
+        self.chain = setup.task.robot.chain
+        self.input_dim = setup.controller.input_dim
+        self.latent_dim = setup.latent_dim
         self.goals_m_per_rad = [
             float(np.linalg.norm(self.chain.jacobian(goal.configuration)[:3], ord=2))
-            for goal in setting.task.goals
+            for goal in setup.task.goals
         ]
-        self._setting = setting
+        self._setup = setup
 
     @property
     def profiles(self) -> tuple[str, ...]:
@@ -51,26 +51,26 @@ class Stage:
         Args:
             page: its id.
         """
-        setting = self._setting
+        setup = self._setup
         return Welcome(
             id=page,
-            dof=setting.task.robot.dof,
+            dof=setup.task.robot.dof,
             latent_dim=self.latent_dim,
-            robot=setting.task.robot.name,
+            robot=setup.task.robot.name,
             run=self.name,
             profiles=self.profiles,
-            modes=setting.modes,
+            modes=setup.modes,
             goals=tuple(
                 NamedGoal(name=goal.name, position=tuple(goal.pose.position.tolist()))
-                for goal in setting.task.goals
+                for goal in setup.task.goals
             ),
-            end_effector_modes=setting.axes,
+            end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),
         )
 
 
-def load_stage(spec: Spec, report: Report, name: str | None) -> Stage:
-    """The stage of another run.
+def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun:
+    """Load the run that a report names.
 
     Args:
         spec: what was driven before.
@@ -78,7 +78,7 @@ def load_stage(spec: Spec, report: Report, name: str | None) -> Stage:
         name: what pages call the run.
 
     Raises:
-        UserError: see `load_setting`.
+        UserError: see `load_setup`.
     """
     run = None if report.run is None else Path(report.run)
-    return Stage(load_setting(replace(spec, run=run, profile=None)), name)
+    return LoadedRun(load_setup(replace(spec, run=run, profile=None)), name)

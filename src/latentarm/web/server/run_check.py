@@ -14,10 +14,10 @@ from pydantic import TypeAdapter
 
 from latentarm.errors import UserError
 from latentarm.untrusted.memory import bounded_memory
-from latentarm.web.arm_process.drive_setup import Spec, load_setting
+from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.protocol.notice import Message, Notice
-from latentarm.web.server.loaded_run import Stage
+from latentarm.web.server.loaded_run import LoadedRun
 
 WITHIN_S: Final = 30.0
 """A run that takes longer to load is refused, s."""
@@ -62,13 +62,13 @@ def try_to_load(wire: Wire, spec: Spec, name: str) -> None:
     """What the child does: load all that the control process and the server will load.
 
     Raises:
-        UserError: see `load_setting`.
+        UserError: see `load_setup`.
     """
     try:
         with bounded_memory(f"The run {name}", _SIZE):
-            setting = load_setting(spec)
-            setting.step()
-            Stage(setting, name)
+            setup = load_setup(spec)
+            setup.step()
+            LoadedRun(setup, name)
     except UserError:
         raise
     except Exception as error:

@@ -5,7 +5,7 @@ from typing import final
 
 
 @final
-class Shelf:
+class RunList:
     """Runs that were trained on the page, and the one that the server was started with.
 
     Pages name a run by its name here, never by a path.

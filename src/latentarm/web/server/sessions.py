@@ -26,8 +26,8 @@ class Page:
 class Sessions:
     """At most one page drives; handing over is explicit on both sides.
 
-    The page that comes first drives. Later ones ask: they get the wheel where nobody has it, or else
-    when the driver gives it to them or gives it up. `turn` counts the changes: whoever holds an older turn
+    The page that comes first drives. Later ones ask: they drive where nobody does, or else
+    when the driver hands over or lets others drive. `turn` counts the changes: whoever holds an older turn
     is not listened to any more.
     """
 
@@ -49,7 +49,7 @@ class Sessions:
 
     @property
     def asking(self) -> Page | None:
-        """Who asks for the wheel."""
+        """Who asks to drive."""
         return None if self._asking is None else self._pages[self._asking]
 
     @property
@@ -95,7 +95,7 @@ class Sessions:
             self._asking = page.id
 
     def hand_over(self, page: Page, to: str) -> bool:
-        """The driver gives the wheel to the page that has asked for it.
+        """The driver hands over to the page that has asked to drive.
 
         Returns:
             Whether the driver changed.
@@ -106,7 +106,7 @@ class Sessions:
         return True
 
     def release(self, page: Page) -> bool:
-        """The driver gives the wheel up, to the page that has asked for it or to nobody.
+        """The driver stops driving: the page that has asked to drives, or nobody.
 
         Returns:
             Whether the driver changed.

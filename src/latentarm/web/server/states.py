@@ -17,8 +17,8 @@ from latentarm.web.protocol.messages import RecordingState, State
 from latentarm.web.protocol.notice import Notice, notice_of, sentence
 from latentarm.web.protocol.scene import pose_of
 from latentarm.web.server.control_process import ControlProcess
-from latentarm.web.server.loaded_run import Stage, load_stage
-from latentarm.web.server.run_list import Shelf
+from latentarm.web.server.loaded_run import LoadedRun, load_reported_run
+from latentarm.web.server.run_list import RunList
 from latentarm.web.server.sessions import Page, Sessions
 
 POLL_S: Final = 0.0025
@@ -57,21 +57,23 @@ class States:
     """The newest state of the arm, for pages to wait for and to be sent.
 
     Args:
-        stage: what is driven at first.
+        loaded: what is driven at first.
         control: the control process.
         sessions: who is there.
-        shelf: knows what runs are called.
+        run_list: knows what runs are called.
 
     Attributes:
         standstill: why the arm may not be enabled; None where it may.
     """
 
-    def __init__(self, stage: Stage, control: ControlProcess, sessions: Sessions, shelf: Shelf) -> None:
-        self._stage = stage
+    def __init__(
+        self, loaded: LoadedRun, control: ControlProcess, sessions: Sessions, run_list: RunList
+    ) -> None:
+        self._loaded = loaded
         self._control = control
         self._sessions = sessions
         self.standstill: Notice | None = None
-        self._shelf = shelf
+        self._run_list = run_list
         self._loading = False
         self._failed: tuple[str | None, Notice] | None = None
         self._changing: asyncio.Task[None] | None = None
@@ -135,13 +137,13 @@ class States:
 
     @property
     def report(self) -> Report | None:
-        """The newest report of what `stage` shows."""
+        """The newest report of what `loaded` shows."""
         return self._report
 
     @property
-    def stage(self) -> Stage:
+    def loaded(self) -> LoadedRun:
         """What is driven."""
-        return self._stage
+        return self._loaded
 
     @property
     def loading(self) -> bool:
@@ -165,7 +167,7 @@ class States:
 
     def _take(self, report: Report) -> None:
         """Keep a report, or where it is of another run, first load that one here too."""
-        if self._stage.shows(report):
+        if self._loaded.shows(report):
             moved = self._report is not None and _rounded(report.tool) != _rounded(self._report.tool)
             if moved and not self._moves:
                 self._set_off.set()
@@ -180,9 +182,9 @@ class States:
             self._changing = asyncio.create_task(self._change(report))
 
     async def _change(self, report: Report) -> None:
-        name = self._shelf.name_of(None if report.run is None else Path(report.run))
+        name = self._run_list.name_of(None if report.run is None else Path(report.run))
         try:
-            self._stage = await asyncio.to_thread(load_stage, self._stage.spec, report, name)
+            self._loaded = await asyncio.to_thread(load_reported_run, self._loaded.spec, report, name)
             self._report = report
         except UserError as error:
             self._failed = report.run, notice_of(error)
@@ -251,7 +253,7 @@ class States:
         return Notice(code="loading_run") if self._failed is None else self._failed[1]
 
     def _bodies(self, report: Report) -> tuple[tuple[float, ...], ...]:
-        links = self._stage.chain.link_transforms(np.array(report.q))
+        links = self._loaded.chain.link_transforms(np.array(report.q))
         frames = np.concatenate([np.eye(4)[None], links])
         return tuple(tuple(round(value, 4) for value in pose) for pose in pose_of(frames).tolist())
 
@@ -260,7 +262,7 @@ class States:
         if report.bound_rad is None or not report.belief:
             return None
         likeliest = int(np.argmax(report.belief))
-        return round(report.bound_rad * self._stage.goals_m_per_rad[likeliest], 4)
+        return round(report.bound_rad * self._loaded.goals_m_per_rad[likeliest], 4)
 
 
 def _rounded(point: tuple[float, float, float]) -> tuple[float, float, float]:

@@ -1,11 +1,11 @@
 /**
  * The page's connection to the server: one WebSocket, JSON both ways, opened again when it breaks.
  *
- * Events: "open" when it has opened or closed; "welcome", "state", "workshop" and "refused" when such a message has
+ * Events: "open" when it has opened or closed; "welcome", "state", "learning" and "refused" when such a message has
  * come; "run_changed" when another run is driven from now on. What they carry is in `detail`.
  */
 
-/** @import {ClientMessage, Refused, ServerMessage, State, Welcome, Workshop} from "./messages.js" */
+/** @import {ClientMessage, Refused, ServerMessage, State, Welcome, LearningState} from "./messages.js" */
 
 /** How old the newest state may be before inputs are held back, ms: the server would not take them anyway. */
 const STALE_MS = 200;
@@ -21,8 +21,8 @@ export class Connection extends EventTarget {
     this.welcome = null;
     /** @type {State | null} The newest. */
     this.state = null;
-    /** @type {Workshop | null} What is learned, tried and kept. */
-    this.workshop = null;
+    /** @type {LearningState | null} What is learned, tried and kept. */
+    this.learning = null;
     this.open = false;
     this._sequence = 0;
     this._heardAt = -Infinity;
@@ -102,8 +102,8 @@ export class Connection extends EventTarget {
         if (before !== null && before.run !== message.run) this._tell("run_changed", message.run);
         break;
       }
-      case "workshop":
-        this.workshop = message;
+      case "learning":
+        this.learning = message;
         break;
       case "state":
         // Ghosts are left out while they have not changed.

@@ -59,6 +59,16 @@ export interface KeepAlignment {
   type: "keep_alignment";
 }
 
+export interface LearningState {
+  type: "learning";
+  training: Training | null;
+  personalise: Personalise | null;
+  recordings: Recorded[];
+  runs: string[];
+  run: string | null;
+  profiles: string[];
+}
+
 export interface Limits {
   latch_max_s: number;
 }
@@ -229,16 +239,6 @@ export interface Welcome {
   limits: Limits;
 }
 
-export interface Workshop {
-  type: "workshop";
-  training: Training | null;
-  personalise: Personalise | null;
-  recordings: Recorded[];
-  runs: string[];
-  run: string | null;
-  profiles: string[];
-}
-
 export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ResetArm | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment;
 
-export type ServerMessage = Welcome | State | Workshop | Refused;
+export type ServerMessage = Welcome | State | LearningState | Refused;

@@ -45,11 +45,11 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
     dialog.offer(profiles);
   });
   connection.addEventListener("run_changed", runChanged);
-  connection.addEventListener("workshop", () => {
-    const { welcome, workshop } = connection;
-    if (!welcome || !workshop || workshop.profiles.join() === welcome.profiles.join()) return;
-    welcome.profiles = workshop.profiles;
-    dialog.offer(workshop.profiles);
+  connection.addEventListener("learning", () => {
+    const { welcome, learning } = connection;
+    if (!welcome || !learning || learning.profiles.join() === welcome.profiles.join()) return;
+    welcome.profiles = learning.profiles;
+    dialog.offer(learning.profiles);
   });
   return { settings, connection, status, lease, stop };
 }

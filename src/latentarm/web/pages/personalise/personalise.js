@@ -189,8 +189,8 @@ function showArm() {
   drawing?.show(connection.state, nothing, [], { ...settings.values, showGhosts: false, showTrail: false, showBound: false });
 }
 
-connection.addEventListener("workshop", () => {
-  state = connection.workshop?.personalise ?? null;
+connection.addEventListener("learning", () => {
+  state = connection.learning?.personalise ?? null;
   show();
   showQuestion();
 });

@@ -17,8 +17,8 @@ export const TRIAL = ".trial";
  */
 export function attachTrial(connection, settings, lease) {
   let keeping = false;
-  connection.addEventListener("workshop", () => {
-    const personalise = connection.workshop?.personalise;
+  connection.addEventListener("learning", () => {
+    const personalise = connection.learning?.personalise;
     if (!keeping || personalise?.phase !== "kept") return;
     keeping = false;
     // In this browser the person drives with it from now on.
@@ -47,7 +47,7 @@ export function attachTrialBanner(connection, settings, lease) {
   byId("trial-keep").addEventListener("click", trial.keep);
   byId("trial-discard").addEventListener("click", trial.discard);
   const show = () => {
-    const personalise = connection.workshop?.personalise;
+    const personalise = connection.learning?.personalise;
     const tried = personalise?.phase === "learned" && connection.state?.profile === TRIAL ? personalise : null;
     byId("trial").hidden = tried === null;
     if (tried === null) return;
@@ -55,6 +55,6 @@ export function attachTrialBanner(connection, settings, lease) {
     byId("trial-why").hidden = !tried.why;
     setText(byId("trial-why"), tried.why ? sayNotice(tried.why) : "");
   };
-  connection.addEventListener("workshop", show);
+  connection.addEventListener("learning", show);
   connection.addEventListener("state", show);
 }

@@ -5,7 +5,7 @@ import { attachPage } from "../layout/page.js";
 import { say, sayNotice, sayNumber } from "../layout/words.js";
 import { freeName, isBusy, progressShare, progressWords } from "./training.js";
 
-/** @import {ClientMessage, Recorded, Workshop} from "../connection/messages.js" */
+/** @import {ClientMessage, Recorded, LearningState} from "../connection/messages.js" */
 
 /** How long a run that was asked for may take to be there, ms. */
 const LOADING_MS = 20_000;
@@ -36,7 +36,7 @@ function tell(message) {
 /** @param {string} run */
 function drive(run) {
   going = { run, until: performance.now() + LOADING_MS };
-  if (connection.workshop?.run === run) location.assign("/");
+  if (connection.learning?.run === run) location.assign("/");
   else tell({ type: "run", run });
 }
 
@@ -53,12 +53,12 @@ form.addEventListener("submit", (event) => {
 fields.model.addEventListener("change", showHelp);
 byId("training-cancel").addEventListener("click", () => tell({ type: "cancel_training" }));
 byId("training-drive").addEventListener("click", () => {
-  const training = connection.workshop?.training;
+  const training = connection.learning?.training;
   if (training) drive(training.run);
 });
 
 function chosen() {
-  return (connection.workshop?.recordings ?? []).filter((one) => !leftOut.has(one.number));
+  return (connection.learning?.recordings ?? []).filter((one) => !leftOut.has(one.number));
 }
 
 function showHelp() {
@@ -67,7 +67,7 @@ function showHelp() {
 
 let listed = "";
 
-/** @param {Workshop} workshop */
+/** @param {LearningState} learning */
 function showEpisodes({ recordings }) {
   byId("recorded-none").hidden = recordings.length > 0;
   byId("episodes").hidden = recordings.length === 0;
@@ -107,7 +107,7 @@ function episode({ number, task, seconds }) {
 /** Of the training, as it was shown last. */
 let shownPhase = "";
 
-/** @param {Workshop} workshop */
+/** @param {LearningState} learning */
 function showTraining({ training }) {
   const busy = isBusy(training);
   byId("training").hidden = training === null;
@@ -132,7 +132,7 @@ function showTraining({ training }) {
 
 let listedRuns = "";
 
-/** @param {Workshop} workshop */
+/** @param {LearningState} learning */
 function showRuns({ runs, run }) {
   byId("runs-none").hidden = runs.length > 0;
   const now = JSON.stringify([runs, run, watching]);
@@ -151,19 +151,19 @@ function showRuns({ runs, run }) {
 }
 
 function show() {
-  const { workshop } = connection;
-  if (!workshop) return;
-  showEpisodes(workshop);
-  showTraining(workshop);
-  showRuns(workshop);
+  const { learning } = connection;
+  if (!learning) return;
+  showEpisodes(learning);
+  showTraining(learning);
+  showRuns(learning);
 }
 
-connection.addEventListener("workshop", () => {
-  const { workshop } = connection;
-  if (!workshop) return;
-  fields.name.value = freeName(fields.name.value, workshop);
+connection.addEventListener("learning", () => {
+  const { learning } = connection;
+  if (!learning) return;
+  fields.name.value = freeName(fields.name.value, learning);
   show();
-  if (workshop.run === going.run && performance.now() < going.until) location.assign("/");
+  if (learning.run === going.run && performance.now() < going.until) location.assign("/");
 });
 connection.addEventListener("state", () => {
   if (!connection.state) return;

@@ -2,7 +2,7 @@
 
 import { say, sayNumber } from "../layout/words.js";
 
-/** @import {Training, Workshop} from "../connection/messages.js" */
+/** @import {Training, LearningState} from "../connection/messages.js" */
 
 /** Whether a training is under way. @param {Training | null} training */
 export function isBusy(training) {
@@ -30,7 +30,7 @@ export function progressWords({ phase, epoch, epochs, loss, seconds_left }) {
  * A name that no run has: what is written, or the next number once a run has been trained under it.
  *
  * @param {string} written
- * @param {Pick<Workshop, "runs" | "training">} workshop
+ * @param {Pick<LearningState, "runs" | "training">} learning
  */
 export function freeName(written, { runs, training }) {
   const used = training?.phase === "done" && training.run === written;
