@@ -18,7 +18,7 @@ from latentarm.runs.tasks import task_of_run
 from latentarm.runs.training import TrainConfig, train_run
 from latentarm.tasks.reach import Reach
 from latentarm.tasks.table_top import TableTop
-from latentarm.web.arm_process.drive_setup import Spec, load_setting
+from latentarm.web.arm_process.drive_setup import Spec, load_setup
 
 KEPT = ("robot_model", "task", "goals", "routes", "samples")
 """Keys that runs of version 0.1.0 and before lack."""
@@ -81,7 +81,7 @@ def test_all_four_commands_work_without_the_dataset(
     drive = ["drive", str(alone), "--profile", "ada", "--drives", "1", "--time-limit-s", "2", "--jobs", "1"]
     assert main([*drive, "--out", str(tmp_path / "driven")]) in (0, 1)  # 1: 2 s are too short to reach a goal
     assert (tmp_path / "driven" / "drives.json").exists()
-    setting = load_setting(Spec(alone, "ada"))  # what `latentarm teleop` loads
+    setting = load_setup(Spec(alone, "ada"))  # what `latentarm teleop` loads
     assert setting.latent_dim == 2
     assert setting.task.goals
     capsys.readouterr()
@@ -113,7 +113,7 @@ def test_an_older_run_says_what_is_missing(
 ) -> None:
     forget(alone)
     with pytest.raises(UserError, match=r"does not keep its task, and its dataset is not at .*: put it back"):
-        load_setting(Spec(alone))
+        load_setup(Spec(alone))
     for command in (
         ["drive", str(alone), "--out", str(tmp_path / "driven")],
         ["align", str(alone), "--name", "ada", "--simulated"],
@@ -136,7 +136,7 @@ def test_loading_a_run_opens_nothing_outside_its_folder(alone: Path) -> None:
             opened.append(str(arguments[0]))
 
     sys.addaudithook(heard)
-    load_setting(Spec(alone)).step()
+    load_setup(Spec(alone)).step()
     hearing = False
     assert any(name.startswith(str(alone)) for name in opened)
     assert not [name for name in opened if name.startswith(str(gone))]
