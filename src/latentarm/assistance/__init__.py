@@ -1,1 +1,1 @@
-"""Shared autonomy: what the person may want (belief), how to help, and how much."""
+"""Shared autonomy: the belief over the person's goal, the assistive action, and arbitration."""

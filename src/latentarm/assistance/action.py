@@ -1,4 +1,4 @@
-"""What the robot would do by itself (equation 3)."""
+"""The robot's own action (equation 3)."""
 
 from latentarm.types import FloatArray
 

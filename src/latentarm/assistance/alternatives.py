@@ -1,4 +1,4 @@
-"""What the person could have done instead: the set ``U`` that a likelihood is normalised over."""
+"""Alternative inputs: the set ``U`` over which a likelihood is normalised."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ def alternatives(u: FloatArray) -> FloatArray:
 
     - Two axes: ``u`` turned through eight equal angles.
     - One axis: ``u`` and six levels from -1 to 1. A nonlinear decoder need not do the opposite at
-      ``-u``, so ``{u, -u}`` would say too little about what the person passed over. Pressing gently is no
+      ``-u``, so ``{u, -u}`` would represent the rejected alternatives poorly. Pressing gently is no
       evidence against a goal: such alternatives are compared `at_one_speed`.
     - More axes: ``u`` and ``±‖u‖`` along every axis.
 
@@ -39,7 +39,7 @@ def alternatives(u: FloatArray) -> FloatArray:
 
 
 def at_one_speed(actions: FloatArray) -> FloatArray:
-    """What was passed over, as fast as what was chosen: then only where it leads is compared.
+    """The alternatives, scaled to the speed of the chosen action, so that only directions are compared.
 
     Args:
         actions: (..., K, n), rad/s, the chosen one first.

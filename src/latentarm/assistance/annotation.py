@@ -11,16 +11,16 @@ from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
 
 _STANDSTILL = 0.02
-"""Joint speed ‖a‖, rad/s, below which a demonstration stands still and says nothing."""
+"""Joint speed ‖a‖, rad/s, below which a demonstration counts as still and is no evidence."""
 
 
 def annotate(demonstrations: Demonstrations, rule: Rule = BoltzmannBelief) -> Demonstrations:
     """Add the belief over the demonstrations' own goals to every episode as ``extras["belief"]``.
 
     The update is equation 9 as the rule has it when a person drives; only the choice ``U`` differs,
-    because a demonstration has no inputs: beside the demonstrated action it holds moves at the same
-    speed straight towards each goal, which stop at the goal. The belief at a sample rests on the samples
-    before it.
+    because a demonstration has no inputs: besides the demonstrated action it contains motions at the same
+    speed straight towards each goal, which stop at the goal. The belief at a sample depends only on earlier
+    samples.
 
     Args:
         demonstrations: with at least one goal; no episode is changed in place.

@@ -1,4 +1,4 @@
-"""Belief over goals (equation 9): the contract of every rule, and what all rules share."""
+"""Belief over goals (equation 9): the base class of all rules."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
@@ -33,7 +33,7 @@ class Belief(ABC):
     Probabilities are kept at ``floor`` or above, so that a person can always change their mind.
 
     Beliefs, inputs, states and actions may have leading axes, which broadcast: many drives are updated
-    in one call. A belief holds no memory: the probabilities are handed in and given back.
+    in one call. A belief is stateless: probabilities are passed in and returned.
 
     Args:
         goals: (G, n), the goals' configurations, rad.
@@ -65,7 +65,7 @@ class Belief(ABC):
             raise UserError("A belief needs at least one goal, each a finite configuration in rad.")
         self.period_s = positive("period_s", period_s)
         self.horizon_s = positive("horizon_s", horizon_s)
-        # A floor within rounding of 1/G would leave nothing to share out.
+        # A floor within rounding of 1/G would leave no probability to distribute.
         if not 0 <= floor < (1 - 1e-9) / len(self.goals):
             raise UserError(f"The belief's floor must be in [0, 1/{len(self.goals)}), not {floor}.")
         self.floor = floor

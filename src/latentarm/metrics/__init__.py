@@ -1,1 +1,1 @@
-"""What a user feels of a latent action model, measured: on held-out episodes, per seed, with units."""
+"""Measures of latent action models that a user would notice, on held-out episodes, per seed, with units."""

@@ -1,4 +1,4 @@
-"""Accuracy: how well actions survive encode and decode (section 8.1), beside PCA with equal d."""
+"""Accuracy: how well encoding and decoding preserves actions (section 8.1), compared with PCA of equal d."""
 
 from collections.abc import Sequence
 
@@ -42,7 +42,7 @@ def pca_error(train_action: FloatArray, action: FloatArray, latent_dim: int) -> 
     scatter = (train_action - mean).T @ (train_action - mean)
     directions = np.linalg.eigh(scatter)[1]
     lost = directions[:, : train_action.shape[1] - latent_dim]
-    # What the plane cannot hold is the part along the directions of least variance.
+    # The error is the part along the directions of least variance.
     return float(np.sum(((action - mean) @ lost) ** 2) / action.size)
 
 

@@ -1,12 +1,12 @@
-"""A greedy operator: how near it brings the tools to places by latent actions alone.
+"""A greedy operator: how close it brings the tools to target positions by latent actions alone.
 
-Again and again it chooses the z in [-1, 1]^d whose next state s' = s + phi(z, s) dt is nearest to the target:
+At every step it chooses the z in [-1, 1]^d whose next state s' = s + phi(z, s) dt is nearest to the target:
 
     distance^2 = (mean over tools of ‖Psi(s') - x‖^2) + (w ‖s' - s_j‖)^2,
 
-with w in metres per radian. The tool's place decides; the joints, where the target names them, say which of
-the arm's many ways to get there leads on. Each choice is the best of a small fixed set of latent actions (an
-even grid over the box and the choice before), bettered by Gauss-Newton steps inside the box. All drives go
+with w in metres per radian. The tool's position dominates; joints, if the target gives them, choose among
+the arm's many ways to get there. Each choice is the best of a small fixed set of latent actions (an even
+grid over the box and the previous choice), refined by Gauss-Newton steps inside the box. All drives go
 through the solver at once. A greedy choice can lead into a dead end, so the distance is an upper bound on
 what the latent space allows.
 """
@@ -29,15 +29,15 @@ PROGRESS_M = 1e-4  # a drive that comes nearer by less than this has stalled
 
 @dataclass(frozen=True)
 class SolverConfig:
-    """What the greedy operator may do.
+    """Settings of the greedy operator.
 
     Attributes:
-        time_s: time in which to get there; the nearest moment counts, s.
+        time_s: time limit; the closest moment counts, s.
         joint_weight_m: w, what one radian of joint error weighs beside tool error, m/rad.
         refinements: Gauss-Newton steps at every choice.
-        hold: steps for which a choice is held; it is made as if one step were so long.
+        hold: steps for which a choice is held; it is chosen as if one step were this long.
         per_axis: values of each latent axis in the fixed set of choices, up to d = 2.
-        stall_s: a drive that has come no nearer (by `PROGRESS_M`) for so long is over, s.
+        stall_s: a drive ends after this long without progress of `PROGRESS_M`, s.
     """
 
     time_s: float = 6.0
@@ -50,7 +50,7 @@ class SolverConfig:
 
 @dataclass(frozen=True)
 class Target:
-    """Where P drives are to lead.
+    """The targets of P drives.
 
     Attributes:
         places: (P, T, 3), of the T tools, m.
@@ -63,13 +63,13 @@ class Target:
 
 @dataclass(frozen=True)
 class Approach:
-    """P drives up to the moment at which each was nearest to its target, for each of S seeds.
+    """P drives up to the moment of closest approach to the target, for each of S seeds.
 
     Attributes:
         distance_m: (S, P), of the tools from their places at that moment, mean over tools, m.
         context: (S, P, c), at that moment.
-        path_m: (S, P), way of the tools until then, mean over tools, m.
-        straight_m: (S, P), the same way as the crow flies, m.
+        path_m: (S, P), path length of the tools until then, mean over tools, m.
+        straight_m: (S, P), the straight-line distance, m.
         latent: (S, P, T, d), what was chosen at each of the T steps; 0 after a drive has stalled.
     """
 
@@ -156,7 +156,7 @@ def _drive(problem: _Problem, start: FloatArray) -> tuple[FloatArray, ...]:
     steps = max(1, round(config.time_s / problem.step_s))
     latent = np.zeros((len(start), steps, problem.decoder.latent_dim))
 
-    # Of the drives that are still running: their indices, and what has become of them.
+    # The drives still running: their indices and their progress.
     running, waited, way = np.arange(len(start)), np.zeros(len(start)), np.zeros(len(start))
     mark, context, places = distance.copy(), start, first
     z = zero_latent(problem.decoder, start)
@@ -213,7 +213,7 @@ def _best(problem: _Problem, context: FloatArray, z: FloatArray) -> tuple[FloatA
     """Of latent actions (P, K, d) the best for each drive, and its residual."""
     residual = problem.residual(context, z)
     cost = np.sum(residual**2, axis=-1)
-    # A decoder that overflows far from its data must lose, not win, the comparison.
+    # A decoder that overflows far from its data must lose the comparison.
     row, best = np.arange(len(context)), np.argmin(np.where(np.isfinite(cost), cost, np.inf), axis=1)
     return z[row, best], residual[row, best]
 

@@ -50,7 +50,7 @@ def comparison_figure(rows: Sequence[Row]) -> "Figure":
 
 
 def _wrapped(text: str, width: int) -> str:
-    """The text on lines of at most ``width`` characters, broken between words."""
+    """The text wrapped to lines of at most ``width`` characters."""
     return textwrap.fill(text, width, break_on_hyphens=False)
 
 
@@ -60,7 +60,7 @@ def _series(row: Row) -> str:
 
 
 def _draw_measure(axes: "Axes", rows: Sequence[Row], series: Sequence[str]) -> None:
-    """One measure's panel; a figure that is absent leaves its place empty."""
+    """One measure's panel; a missing value leaves a gap."""
     for row in rows:
         if row.mean is None:
             continue

@@ -1,18 +1,18 @@
-"""Consistency with scalability: does the same z have the same effect everywhere, more z more effect?
+"""Consistency and scalability: does the same z have the same effect everywhere, and more z more effect?
 
 Section 8.1: at 25 states, for a fixed grid of z in [-1, 1], take the distance that the end-effector
 travels and its direction (+1 right), and report R^2 of the best-fit line of distance times direction on z.
 
-Where the paper is silent: each latent axis is varied alone, and one line, with an intercept, is fitted to
-all states together. "Right" is asked for in two ways:
+Not specified in the paper: each latent axis is varied alone, and one line, with an intercept, is fitted to
+all states together. "Right" is defined in two ways:
 
 - As the paper has it, one direction in space for the whole axis: the principal direction of all its
-  displacements (largest singular vector, uncentred). An axis that goes right in one state and left in
-  another is marked down.
-- In demonstrations that turn corners no single direction is right everywhere, and a conditioned axis that
-  turns with the task would be marked down for it. So the second figure takes "right" at each state to be
-  where the axis itself leads there (from z = -1 to z = +1). What it marks down is motion that does not
-  grow in proportion to z, drift, and speed that differs between states.
+  displacements (largest singular vector, uncentred). This penalises an axis that goes right in one state
+  and left in another.
+- In demonstrations that turn corners, no single direction is right everywhere, and the first measure
+  penalises a conditioned axis that turns with the task. So the second figure takes "right" at each state to
+  be where the axis itself leads there (from z = -1 to z = +1). It penalises motion that is not proportional to
+  z, drift, and speed that differs between states.
 """
 
 import numpy as np

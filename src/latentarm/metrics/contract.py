@@ -1,7 +1,7 @@
-"""What the measures need of a model and of a robot, and nothing more.
+"""The minimal interfaces that the measures need from a model and a robot.
 
-Anything with these methods can be measured: a trained model, a loaded decoder, or a formula whose
-true figures are known in closed form.
+Anything with these methods can be measured: a trained model, a loaded decoder, or a formula whose measures
+are known in closed form.
 """
 
 from collections.abc import Sequence
@@ -53,8 +53,8 @@ def zero_latent(decoder: DecodesActions, context: FloatArray) -> FloatArray:
 def next_context(context: FloatArray, action: FloatArray, step_s: float) -> FloatArray:
     """The transition ``T(s, a) = s + a dt`` of section 8.1 on contexts ``(s, ...)``.
 
-    What follows the state in the context (a belief) stays as it is: these measures ask about the
-    decoder, not about the inference around it.
+    The rest of the context (a belief) stays unchanged: these measures are about the decoder, not about the
+    inference around it.
 
     Args:
         context: (..., c), its first m entries are the state, rad.

@@ -1,4 +1,4 @@
-"""Controllability: how near latent actions alone can bring the arm to another demonstrated state.
+"""Controllability: how close latent actions alone can bring the arm to another demonstrated state.
 
 Section 8.1: take pairs of start and goal states of the test set, solve for the latent actions that
 minimise the error to the goal, and report the least error. The solver is the greedy operator of
@@ -18,7 +18,7 @@ from latentarm.types import FloatArray
 
 @dataclass(frozen=True)
 class ReachConfig:
-    """What is asked of the greedy operator.
+    """The controllability test for the greedy operator.
 
     Attributes:
         pairs: number of start-goal pairs.
@@ -33,7 +33,7 @@ class ReachConfig:
 
 @dataclass(frozen=True)
 class Reach:
-    """How near the arm came to each of P goals, for each of S seeds.
+    """How close the arm came to each of P goals, for each of S seeds.
 
     Attributes:
         tool_error_m: (S, P), least distance of the tools from their places at the goal, mean over tools, m.

@@ -5,8 +5,8 @@ import numpy as np
 from latentarm.types import FloatArray
 
 DEAD_SHARE = 0.01
-"""An axis that changes the end-effector's motion by less than this share of that motion, over all states, is
-dead: the direction of what is left of it is chance, and chance alone looks half disentangled (57°)."""
+"""An axis that changes the end-effector's motion by less than this share is dead: its remaining direction is
+random, and random directions look half disentangled (57°)."""
 
 
 def disentanglement_deg(effects: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What the studies measure of a drive: success, time, input, mode switches, path and final distance."""
+"""Measures of a drive: success, time, input, mode switches, path and final distance."""
 
 import itertools
 from collections.abc import Sequence
@@ -85,7 +85,7 @@ def drive_rows(subject: Subject, drives: Sequence[Drive]) -> list[Row]:
     """Mean and SD over the drives of one condition.
 
     ``success_rate`` is the share of drives that succeeded. All other figures are over all drives,
-    failed ones too: a controller cannot look quick by giving up.
+    failed ones too, so that a controller cannot look fast by giving up.
     """
     return [
         summarise(subject, "success_rate", [drive.success for drive in drives]),

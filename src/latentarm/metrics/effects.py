@@ -1,4 +1,4 @@
-"""What each latent axis does to the end-effector: the ground of consistency, scalability and angles."""
+"""What each latent axis does to the end-effector: the basis of consistency, scalability and angles."""
 
 from collections.abc import Sequence
 

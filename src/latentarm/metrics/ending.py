@@ -1,4 +1,4 @@
-"""Why a simulated drive ended, from what was recorded of it."""
+"""Why a simulated drive ended, from its record."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from latentarm.types import Pose, StepRecord
 Reason = Literal["reached", "time_limit", "operator_stuck", "held_back", "safety_stop"]
 
 STUCK_S: Final = 20.0
-"""No progress for this long is what counts as stuck, s; a shorter drive is never called stuck."""
+"""No progress for this long counts as stuck, s; a shorter drive never counts as stuck."""
 
 PROGRESS_M: Final = 0.005
 """Coming this much nearer to the next waypoint than ever before is progress, m."""
@@ -59,7 +59,7 @@ def why_it_ended(
     if now_s - since_s < STUCK_S or _progressed(records, chain, waypoint, since_s):
         return Ending("time_limit", f"still on its way at the time limit of {now_s - records[0].time_s:g} s")
     lately = [record for record in records if record.time_s >= now_s - STUCK_S]
-    # Help moves the arm too, so what was wanted is the blend of both.
+    # Help moves the arm too, so the requested motion is the blend of both.
     wanted = sum(
         float(np.linalg.norm((1 - one.alpha) * one.action_human + one.alpha * one.action_assist))
         for one in lately

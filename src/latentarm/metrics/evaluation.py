@@ -61,7 +61,7 @@ class TrainedModel(EncodesActions, Protocol):
 
 @dataclass(frozen=True)
 class EvaluationConfig:
-    """How the measures are taken; the same for all models that are compared.
+    """Settings of the measures; the same for all models that are compared.
 
     Attributes:
         state_noise_rad: SD of the noise on held-out states for the noisy error, rad;
@@ -86,7 +86,7 @@ class EvaluationConfig:
 
 @dataclass(frozen=True)
 class Figures:
-    """What was measured of a model, before any mean is taken.
+    """The measures of a model for each seed, before averaging.
 
     Attributes:
         per_seed: measure -> (S,).

@@ -1,4 +1,4 @@
-"""How models, conditions and tasks are drawn and called in figures and tables."""
+"""Colours, markers and labels of models, conditions and tasks in figures and tables."""
 
 from typing import Final
 

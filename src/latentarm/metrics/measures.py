@@ -1,4 +1,4 @@
-"""Every measure of this package in one table: unit, label, which way is better, and what it says."""
+"""Every measure in one table: unit, label, which direction is better, and its definition."""
 
 from dataclasses import dataclass
 from typing import Final, Literal

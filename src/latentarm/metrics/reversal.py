@@ -1,4 +1,4 @@
-"""Reversal: what is left of a motion after the input is pressed back the other way."""
+"""Reversal: how much of a motion remains after the opposite input."""
 
 from collections.abc import Sequence
 
@@ -13,9 +13,9 @@ def reversal(
 ) -> FloatArray:
     """Mean ‖s2 - s0‖ over mean ‖s1 - s0‖, with s1 = T(s0, phi(z, s0)) and s2 = T(s1, phi(-z, s1)).
 
-    The two means are taken before the ratio, so that states in which z hardly moves the arm do not
-    decide the figure. 0 is a motion undone; 1 leaves as far to go back as the motion was long; 2 is a
-    decoder that does not heed the sign of z.
+    The two means are taken before the ratio, so that states in which z hardly moves the arm do not dominate.
+    0 is a motion fully undone; 1 leaves as far to go back as the motion was long; 2 is a decoder that
+    ignores the sign of z.
 
     Args:
         decoders: S decoders.

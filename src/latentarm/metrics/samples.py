@@ -1,4 +1,4 @@
-"""Which held-out states and start-goal pairs the measures look at.
+"""Which held-out states and start-goal pairs the measures use.
 
 All choices are even spreads over the held-out samples, so that the same data always give the same
 states and no seed is needed.
@@ -112,7 +112,7 @@ def start_goal_pairs(
     for episode in episodes:
         contexts = episode_contexts(episode, kind)
         time = episode.timestamp
-        # Timestamps such as 0.1 k carry rounding: a goal that is a hair early still counts.
+        # Timestamps such as 0.1 k are rounded: a goal that is slightly early still counts.
         goal_index = np.searchsorted(time, time + separation_s - 1e-6)
         start_index = np.flatnonzero(goal_index < len(time))
         if len(start_index) == 0:

@@ -1,16 +1,15 @@
-"""An operator who plans: how near latent actions can bring the tool, all of them chosen together.
+"""A planning operator: how close latent actions can bring the tool if all are chosen together.
 
-The greedy operator of `latentarm.metrics.approach` looks one step ahead and can lead itself into a dead
-end, for which the decoder is not to blame. Here z is constant over pieces of half a second, the state is
-integrated at the data's own step, and the pieces of a whole drive are bettered together (direct shooting):
+The greedy operator of `latentarm.metrics.approach` looks one step ahead and can run into a dead end that is
+not the decoder's fault. Here z is constant over pieces of half a second, the state is
+integrated at the data's own step, and the pieces of a whole drive are optimised together (direct shooting):
 the Jacobian of where the tool ends with respect to all pieces comes out of one pass through the decoder in
-torch, and a damped Gauss-Newton step towards the goal follows, with z held inside [-1, 1]. What counts is
-the nearest moment of any drive that was tried.
+torch, and a damped Gauss-Newton step towards the goal follows, with z held inside [-1, 1]. The result is the
+closest moment of any drive that was tried.
 
 Each drive begins from what the greedy operator did and from near rest, and the greedy operator's own
 distance counts too, so that what is reported is never worse than greedy. It is still an upper bound on what
-the latent space allows, but a tighter one. Adam on the same pieces needs some hundred passes for what takes
-ten here.
+the latent space allows, but a tighter one. Adam needs about a hundred passes for what takes ten here.
 """
 
 from collections.abc import Sequence
@@ -63,9 +62,9 @@ class ShootingConfig:
     """How much is planned.
 
     Attributes:
-        time_s: time in which to get there; the nearest moment counts, s.
+        time_s: time limit; the closest moment counts, s.
         piece_s: how long each latent action is held, s.
-        iterations: Gauss-Newton steps, at most; a decoder whose passes are dear takes 4 s for so many.
+        iterations: maximum number of Gauss-Newton steps; an expensive decoder takes 4 s for these.
     """
 
     time_s: float = 6.0
@@ -149,7 +148,7 @@ class _Drives:
         (slope,) = torch.autograd.grad(offset[-1].diagonal(dim1=0, dim2=2).sum(), pieces)
         distance = torch.linalg.vector_norm(offset.detach()[:, 0], dim=-1)
         return _Outcome(
-            # Far from its data a decoder may overflow: such a moment is no arrival.
+            # Far from its data a decoder may overflow: such a moment does not count.
             least=distance.nan_to_num(torch.inf).amin(dim=0),
             offset=offset.detach()[-1, 0],
             jacobian=slope.unflatten(0, (3, drives)).flatten(2).transpose(0, 1),

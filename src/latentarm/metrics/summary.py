@@ -1,4 +1,4 @@
-"""From figures per seed or per drive to the rows that every command prints."""
+"""Summarises values per seed or per drive as the rows that every command prints."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

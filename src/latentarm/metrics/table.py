@@ -74,8 +74,7 @@ def rich_figures(
 ) -> RenderableType:
     """A terminal's table of figures by measure, down, and series, across.
 
-    Where they are too many for the width, the spread goes under the mean; where that would not be
-    enough, the table is split.
+    If the columns are too wide, the SD goes below the mean; if that is not enough, the table is split.
 
     Args:
         measures: names of the lines.
@@ -106,7 +105,7 @@ def rich_figures(
 def _column_widths(
     measures: Sequence[str], series: Sequence[str], figures: Mapping[tuple[str, str], str]
 ) -> list[int]:
-    """What each series needs at least: a head may break between words, a line of a figure may not."""
+    """The minimum width of each series: a heading may wrap, a number may not."""
     widths: list[int] = []
     for name in series:
         lines = [line for measure in measures for line in figures.get((measure, name), ABSENT).split("\n")]

@@ -1,6 +1,6 @@
-"""Turning: how far the motion turns while the stick turns; 1 follows the stick, more is jumpy.
+"""Turning: how far the motion turns while the stick turns; 1 follows the stick, more is erratic.
 
-The stick is pushed all the way and led once around, in K equal turns: z(θ) = (cos θ, sin θ). Between two
+The stick is fully deflected and moved once around in K equal turns: z(θ) = (cos θ, sin θ). Between two
 neighbours the arm's motion turns by some angle, and the figure is that angle over the stick's. A linear
 isometry gives 1 everywhere. A decoder that knows one direction only turns about by 180° within two of the K
 turns, and by nothing between them.

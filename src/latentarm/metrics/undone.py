@@ -1,4 +1,4 @@
-"""Undone motion: the share of the tool's path that is later gone back over."""
+"""Undone motion: the share of the tool's path that is later retraced in reverse."""
 
 from typing import Final
 

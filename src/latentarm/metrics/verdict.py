@@ -1,4 +1,4 @@
-"""What the figures of a model come to: which of a few thresholds it misses, in words."""
+"""The verdict on a model: which of a few thresholds it misses, in words."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from latentarm.types import Row
 
 @dataclass(frozen=True)
 class Threshold:
-    """A figure that no useful model is beyond.
+    """A limit on a measure that every useful model should meet.
 
     Attributes:
         measure: a name in `latentarm.metrics.measures.MEASURES`, or of one of its axes.
@@ -42,8 +42,8 @@ THRESHOLDS: Final = (
     Threshold("r2_local_axis_1", 0.5, True, "axis 2 does not move the tool in proportion", unit=" R²"),
     Threshold("disentanglement_deg", 20.0, True, "both axes move the tool alike", unit="°"),
 )
-"""What the verdict looks at. They are choices, not results: drift of a tenth of the speed of motion is seen,
-and where a third of a motion is left a person cannot undo it by pressing back."""
+"""The thresholds of the verdict. They are choices, not results: drift of a tenth of the speed of motion is
+visible, and if a third of a motion remains, a person cannot undo it with the opposite push."""
 
 REACH_SHARE: Final = 0.5
 """Goals count as out of reach where more than this share of the distance at the start is left."""

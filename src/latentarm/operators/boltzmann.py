@@ -18,7 +18,7 @@ from latentarm.types import Context, FloatArray, Input, Pose
 @final
 @dataclass(frozen=True)
 class BoltzmannConfig:
-    """How the simulated person thinks.
+    """Parameters of the simulated person.
 
     Attributes:
         beta: rationality of equation 24, 1/m², at the start of a drive; 0 acts at random, infinity always
@@ -90,22 +90,22 @@ class Options:
 
 @final
 class BoltzmannOperator(Operator):
-    """A simulated person who looks one step ahead and mostly picks what helps.
+    """A simulated person who looks one step ahead and usually picks a helpful input.
 
     Equation 24::
 
         p(u) ∝ exp(-beta(t) ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
 
     over a grid of inputs: none, at which the arm stands still whatever the decoder makes of zero, and
-    every direction at every magnitude. Who does not know Psi and phi has a foresight of their own in
-    their place. Distance between poses is
+    every direction at every magnitude. A person who does not know Psi and phi uses a
+    `Foresight` instead. Distance between poses is
     ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks one step ahead only, as in the paper:
     they can get stuck where no single input brings the tool closer. ``beta(t)`` counts from `reset`, by
     calls of `act`.
 
     Where the controller has several modes, asking for the next mode is one more option. It counts as
     the best input of the best other mode, with ``switch_cost`` added to the distance that it leaves,
-    so that a switch is made for a gain of more than ``switch_cost`` and not for less.
+    so that a switch happens only for a gain of more than ``switch_cost``.
 
     Args:
         robot: the arm, for its forward kinematics.
@@ -143,7 +143,7 @@ class BoltzmannOperator(Operator):
     def act(
         self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
     ) -> Input:
-        """Hold the input of the last decision, or decide anew."""
+        """Hold the input of the last decision, or decide again."""
         time_s = self._calls * self._period_s
         self._calls += 1
         if self._held_calls > 0:

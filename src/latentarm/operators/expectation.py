@@ -1,4 +1,4 @@
-"""A simulated person with an expectation of their own: each axis of the stick moves the tool one way."""
+"""A simulated person who expects each axis of the stick to move the tool in one fixed direction."""
 
 import math
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ class Expectation:
 
     They answer questions by it (`inputs`), and they steer by it (a
     `latentarm.operators.foresight.Foresight`): they see where the tool is, and know nothing of decoder,
-    alignment and arm. How the tool turns, and where it goes off their directions, they leave to the arm.
+    alignment and arm. They ignore how the tool turns and any motion outside their directions.
 
     Attributes:
         chain: the arm; its first tool is looked at.

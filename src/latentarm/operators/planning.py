@@ -1,4 +1,4 @@
-"""A simulated person who plans a few seconds ahead where one step leads no nearer."""
+"""A simulated person who plans a few seconds ahead when one step brings the tool no closer."""
 
 from dataclasses import dataclass
 from typing import Final, final
@@ -14,7 +14,7 @@ from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray, Input, IntArray, Pose
 
 NEAR_REST: Final = 0.03
-"""Every input of the plan to begin with: exactly at rest, decoders of the input's length have no slope."""
+"""Initial inputs of a plan: exactly at rest, decoders that use the input's length have no gradient."""
 
 SOMEWHERE: Final = 0.7
 """Inputs of another plan to begin with are drawn from ± this."""
@@ -37,8 +37,8 @@ class PlanningConfig:
         pieces: a plan has so many at most; in each the input is held.
         piece_s: length of a piece, s.
         steps: of the imagined motion in a piece.
-        iterations: how often a plan is bettered.
-        stuck_m: one step that brings the tool nearer by less than this is no progress, m.
+        iterations: iterations of plan optimisation.
+        stuck_m: a step that brings the tool closer by less than this is no progress, m.
         arrived_m: a plan that ends this near the target will do, m; a radian counts as `rotation_weight`.
 
     Raises:
@@ -59,14 +59,14 @@ class PlanningConfig:
 
 @final
 class PlanningOperator(Operator):
-    """Steers as `BoltzmannOperator` does, and plans where that gets stuck.
+    """Steers like `BoltzmannOperator`, and plans when that gets stuck.
 
     Stuck is where neither an input nor another mode brings the tool nearer by ``stuck_m``. Then the person
     imagines plans of 1, 2, ... pieces in the present mode, all bettered together by damped Gauss-Newton steps
     on where they end, and takes the shortest that arrives, or the one that ends nearest. Its first piece is
-    given, and planned anew after it, until the plan is through. Where no plan leads nearer either, they take
-    one step as it comes. They imagine by the controller itself: no person is as good at that, but all
-    controllers get the same one.
+    given, and planned anew after it, until the plan is through. If no plan leads closer either, they take an
+    ordinary step. They predict with the controller itself; no person is that good, but it is the same for
+    all controllers.
 
     Args:
         robot: the arm, for its forward kinematics.

@@ -17,7 +17,7 @@ AXES: Final = "xyz"
 
 
 class Preference(Protocol):
-    """What a simulated person would do to have motions made."""
+    """The inputs with which a simulated person would ask for motions."""
 
     def inputs(self, motions: Motions) -> FloatArray:
         """The inputs (N, d) by which they would ask for N motions."""
@@ -29,7 +29,7 @@ class Preference(Protocol):
 class ToolAxes:
     """A simulated person for whom each axis of the stick is one of the base frame: x, then y, then z.
 
-    They answer by where the tool goes and pay no heed to how it turns.
+    They consider where the tool goes and ignore how it turns.
 
     Attributes:
         chain: the arm; its first tool is looked at.
@@ -63,7 +63,7 @@ class ToolAxes:
 class HeightAndTilt:
     """A simulated person for whom one axis of the stick is up, and the other tilts about the base's x axis.
 
-    They pay no heed to where else the tool goes or turns.
+    They ignore all other motion of the tool.
 
     Attributes:
         chain: the arm; its first tool is looked at.
@@ -92,7 +92,7 @@ class HeightAndTilt:
 @final
 @dataclass(frozen=True, eq=False)
 class ByPlace:
-    """A simulated person who means one thing in one place and another elsewhere.
+    """A simulated person whose preference depends on the place.
 
     Attributes:
         chain: the arm; its first tool is looked at.
@@ -115,7 +115,7 @@ class ByPlace:
 @final
 @dataclass(frozen=True, eq=False)
 class Imprecise:
-    """A simulated person who pushes more or less far than they mean, along each axis by chance.
+    """A simulated person whose deflection of each axis varies randomly.
 
     Attributes:
         preference: what they mean.
@@ -144,7 +144,7 @@ class Imprecise:
 
 
 def _check_speed(speed: float, unit: str) -> None:
-    """Refuse what is no speed.
+    """Check a speed.
 
     Raises:
         UserError: it is not positive or not finite.

@@ -33,7 +33,7 @@ def boltzmann(cost: FloatArray, beta: FloatArray | float) -> FloatArray:
     possible[..., 0] |= ~possible.any(axis=-1)
     known = np.where(possible, cost, np.inf)
     least = known.min(axis=-1, keepdims=True)
-    # Where the first is taken for want of a finite cost, or costs lie further apart than floats reach.
+    # No option has a finite cost, or the costs differ by more than floats can represent.
     with np.errstate(over="ignore", invalid="ignore"):
         above = np.minimum(known - least, np.finfo(np.float64).max)
         loss = np.where(known > least, rationality * above, 0.0)
