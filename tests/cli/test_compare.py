@@ -56,7 +56,7 @@ REFUSED = {
     "another robot": (("--demonstrations", "eat", "circles"), "one robot"),
     "no robot": (("--demonstrations", "nameless"), "name its robot"),
     "an unknown robot": (("--demonstrations", "foreign"), "asimo"),
-    "over something else": (("--demonstrations", "eat", "--out", "eat"), "no earlier run"),
+    "over something else": (("--demonstrations", "eat", "--out", "eat"), "not an earlier run"),
 }
 
 

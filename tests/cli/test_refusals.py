@@ -43,10 +43,10 @@ REFUSED = {
     "held-out episodes of nothing": (("drive", "--task", "held_out"), "run"),
     "a study over something else": (
         ("reproduce", "properties", "--preset", "smoke", "--out", "."),
-        "no earlier run",
+        "not an earlier run",
     ),
     "a study on no process": (("reproduce", "properties", "--jobs", "0"), "jobs is 0"),
-    "demo over something else": (("demo", "--out", "."), "no earlier run"),
+    "demo over something else": (("demo", "--out", "."), "not an earlier run"),
 }
 
 

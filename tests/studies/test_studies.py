@@ -29,7 +29,7 @@ def test_an_earlier_run_makes_room_and_another_study_stays(tmp_path):
     (tmp_path / "mine.txt").touch()
     STUDY.claim(tmp_path, {"study": "tides"})
     assert {path.name for path in tmp_path.iterdir()} == {CONFIG, "mine.txt"}
-    with pytest.raises(UserError, match="no earlier run of this command"):
+    with pytest.raises(UserError, match="not an earlier run of this command"):
         ResultsFolder("winds", ("tides.png",)).claim(tmp_path, {"study": "winds"})
 
 

@@ -93,14 +93,14 @@ def test_an_earlier_run_makes_room_and_another_study_stays(tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {CONFIG, "notes.txt"}
     with pytest.raises(UserError, match=r"height 1: There is no tide\."):
         run_study(study_of(refused), request(tmp_path))
-    with pytest.raises(UserError, match="no earlier run of this command"):
+    with pytest.raises(UserError, match="not an earlier run of this command"):
         run_study(replace(STUDY, name="winds"), request(tmp_path))
 
 
 @pytest.mark.parametrize("content", ["{}", "[]", "no JSON", '{"study": "another"}'])
 def test_a_folder_of_something_else_is_left_alone(tmp_path, content):
     (tmp_path / CONFIG).write_text(content)
-    with pytest.raises(UserError, match="no earlier run of this command"):
+    with pytest.raises(UserError, match="not an earlier run of this command"):
         run_study(STUDY, request(tmp_path))
     assert [path.name for path in tmp_path.iterdir()] == [CONFIG]
     assert (tmp_path / CONFIG).read_text() == content

@@ -1,1 +1,1 @@
-"""What a person means by their input: the alignment z = f(u, c), its priors, and whom to ask what."""
+"""What a person means by their input: the alignment z = f(u, c), its priors, and the choice of questions."""

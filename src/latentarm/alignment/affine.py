@@ -29,9 +29,9 @@ class AffineAlignment:
 
 
 def fit_affine(model: LatentActionModel, answers: Answers, seed_index: int = 0) -> AffineAlignment:
-    """The affine map that takes the answers nearest to what the encoder makes of the motions.
+    """The affine map that best fits the answers to the encoded motions.
 
-    Of several that are equally near, as with fewer answers than d + 1, the smallest.
+    If several fit equally well, as with fewer answers than d + 1, the smallest.
 
     Args:
         model: a fitted model.

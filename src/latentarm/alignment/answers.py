@@ -1,4 +1,4 @@
-"""Motions that a person is shown, and the inputs by which they would ask for them."""
+"""Motions shown to a person, and the inputs with which they would ask for them."""
 
 from dataclasses import dataclass, field
 from typing import Self, final
@@ -66,7 +66,7 @@ class Motions:
 @final
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """What a person said: the input ``u`` by which they would ask for each of N motions.
+    """A person's answers: the input ``u`` with which they would ask for each of N motions.
 
     Attributes:
         motions: N motions.

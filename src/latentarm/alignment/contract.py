@@ -1,4 +1,4 @@
-"""What an alignment is."""
+"""The interface of an alignment."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Motions to ask about, out of the demonstrations."""
+"""Motions to ask about, taken from the demonstrations."""
 
 from typing import Final, Literal
 

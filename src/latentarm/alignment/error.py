@@ -1,4 +1,4 @@
-"""How far an alignment misses what a person meant."""
+"""The error of an alignment relative to what a person meant."""
 
 import numpy as np
 

@@ -20,7 +20,7 @@ from latentarm.models.torch_decoder import TorchDecoder
 from latentarm.types import FloatArray
 
 ANSWERS_AT_ONCE: Final = 128
-"""Answers that a step sees, at most; of more, each step draws so many."""
+"""Maximum number of answers in one step; from more, each step draws this many."""
 
 DRAWS: Final = 1
 """The stream of a run's random numbers that its draws come from; its weights come from stream 0."""
@@ -55,7 +55,7 @@ class AlignmentLoss:
         decoder: phi, frozen.
         chain: the arm.
         answers: those of each of S runs, equally many of motions that take equally long.
-        unlabelled: (M, c), contexts in which the priors shall hold.
+        unlabelled: (M, c), contexts in which the priors apply.
         priors: their weights.
 
     Raises:
@@ -109,7 +109,7 @@ class AlignmentLoss:
         if self._priors == NO_PRIORS:
             return supervised(self._push(networks, labelled, given), wanted) / self._scale
         here, there = _at(self._unlabelled, draw.here), _at(self._unlabelled, draw.there)
-        # One push for all that begin in known places: many small ones cost more than one large one.
+        # One batched push for all known places: many small ones cost more than one large one.
         places, inputs = [labelled, here, here, there], [given, u, alpha * u, u]
         together = self._push(networks, joined(places), torch.cat(inputs, dim=1))
         answered, push, part, elsewhere = parted(together, [given.shape[1], *[u.shape[1]] * 3])

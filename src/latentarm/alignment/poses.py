@@ -1,4 +1,4 @@
-"""Poses as vectors, so that how far apart two poses are is how far apart two points are."""
+"""Poses as vectors, so that the distance between poses is the distance between points."""
 
 import math
 from typing import Final

@@ -1,4 +1,4 @@
-"""What people expect of any control before they are asked: equations 20 to 22, and what they were asked, 19.
+"""Priors on any control (equations 20 to 22), and the supervised loss (equation 19).
 
 Each is a mean over the second axis, (S,), of squared lengths of poses, m^2 (see `pose_vectors`), so that they
 can be summed (equation 23).
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @final
 @dataclass(frozen=True)
 class Priors:
-    """How much each prior counts beside the answers (equation 23); without units.
+    """Weight of each prior relative to the answers (equation 23); without units.
 
     Attributes:
         proportional: lambda_1.

@@ -1,4 +1,4 @@
-"""A person's profile: their alignment on disk, beside the model that it was learned for. Loads no torch."""
+"""A person's profile: their alignment on disk, next to the model that it was learned for. Loads no torch."""
 
 import hashlib
 import json
@@ -34,7 +34,7 @@ SCHEMA: Final = 1
 NAMED: Final = re.compile(r"\w[\w-]{0,63}")
 
 TRIAL: Final = ".trial"
-"""Where what was learned waits until it is kept under a person's name; itself the name of nobody."""
+"""Folder of a profile on trial, before it is kept under a person's name; no person can have this name."""
 
 
 @final
@@ -97,12 +97,12 @@ def profile_names(run: Path) -> tuple[str, ...]:
 
 
 def trial_folder(run: Path) -> Path:
-    """Where a run holds a profile that is tried and may not be kept."""
+    """Where a run holds a profile on trial."""
     return run / FOLDER / TRIAL
 
 
 def keep_trial(run: Path, name: str) -> None:
-    """Give the profile that is tried a person's name.
+    """Keep the profile on trial under a person's name.
 
     Raises:
         UserError: the name is not one for a folder or has been given already, or there is nothing to keep.
@@ -116,7 +116,7 @@ def keep_trial(run: Path, name: str) -> None:
 
 
 def discard_trial(run: Path) -> None:
-    """Forget the profile that is tried, if there is one.
+    """Delete the profile on trial, if there is one.
 
     Raises:
         UserError: it cannot be deleted.

@@ -1,6 +1,6 @@
 """Which motion to ask about next, and when to stop.
 
-Next comes what is least like all that was asked about; asking stops when an ensemble of alignments agrees. In
+The next motion is the one least like all before it; asking stops when an ensemble of alignments agrees. In
 the study of section 8.3 this teaches more than to ask where the ensemble disagrees most (docs/alignment.md).
 """
 
@@ -20,17 +20,17 @@ from latentarm.models.decoder import Decoder
 from latentarm.types import FloatArray
 
 PLACE_WEIGHT: Final = 0.5
-"""What the place of a motion counts beside its direction, where motions are compared."""
+"""Weight of a motion's place relative to its direction when motions are compared."""
 
 INPUTS_TRIED: Final = 200
 """Inputs, at most, that are tried to find the one that an alignment would want for a motion."""
 
 
 def bootstrap(answers: Answers, count: int, rng: np.random.Generator) -> list[Answers]:
-    """As many answers drawn from those with replacement, for each alignment of an ensemble.
+    """Bootstrap samples of the answers, one for each alignment of an ensemble.
 
-    Alignments that differ in their first weights alone agree long before they are right; each of these has
-    heard something else as well.
+    Alignments that differ only in their initial weights agree long before they are right, so each of these
+    is also trained on different answers.
 
     Args:
         answers: N.
@@ -43,7 +43,7 @@ def bootstrap(answers: Answers, count: int, rng: np.random.Generator) -> list[An
 def disagreement(
     alignments: Sequence[Alignment], decoder: Decoder, chain: Chain, motions: Motions
 ) -> FloatArray:
-    """How far apart the motions are that an ensemble would make of the answer.
+    """How much an ensemble disagrees about the motion that the answer would cause.
 
     Each alignment i has an input u_i that comes nearest to the motion. Were the answer u_j, as another one
     expects, alignment i would lead to Psi(T_i(s, u_j)) where it wants Psi(T_i(s, u_i)): the root mean square
@@ -71,7 +71,7 @@ def disagreement(
 
 
 def novelty(chain: Chain, motions: Motions, asked: Sequence[int]) -> FloatArray:
-    """How unlike all that was asked about each motion is.
+    """How different each motion is from all that were asked about.
 
     Motions are alike where they begin in like poses and lead the same way, or the opposite way: what pushes
     back is known from what pushes. To ask about the least alike, again and again, is the greedy k-centre
@@ -113,7 +113,7 @@ def next_motion(worth: FloatArray, asked: Sequence[int]) -> int:
 @final
 @dataclass(frozen=True)
 class StoppingRule:
-    """When further questions would teach little.
+    """When to stop asking.
 
     Attributes:
         share: enough is known where the ensemble disagrees by less than this share of a motion's length,

@@ -40,7 +40,7 @@ def tensor_shapes(latent: int, context: int, hidden: tuple[int, ...]) -> dict[st
 class LearnedAlignment:
     """``z = f(u, c)`` of one person (equation 4).
 
-    Nothing is checked in the call: the control loop has checked its input, and a wrong shape raises in NumPy.
+    The call does not validate: the control loop has checked its input, and NumPy raises on a wrong shape.
 
     Attributes:
         tensors: float64 arrays by name, as `tensor_shapes` lists them.

@@ -1,4 +1,4 @@
-"""Learning alignments: S runs in one batched loop, each as it would be alone."""
+"""Learning alignments: S runs in one batched loop, each independent of the others."""
 
 import math
 from collections.abc import Callable, Generator, Sequence
@@ -23,7 +23,7 @@ from latentarm.models.training import progress_bar, threads_for
 from latentarm.types import FloatArray
 
 Report = Callable[[int, int], None]
-"""Is told after each step of a fit: how many are done, of how many."""
+"""Called after each step of a fit with the number of steps done and the total."""
 
 JUDGED: Final = 512
 """Contexts in which all runs are judged at the end."""
@@ -77,7 +77,7 @@ class FittedAlignments:
 
     @property
     def best(self) -> LearnedAlignment:
-        """The one with the least loss."""
+        """The alignment with the lowest loss."""
         return self.alignments[int(self.loss.argmin())]
 
 
@@ -98,7 +98,7 @@ def fit_alignments(
         model: a fitted model, whose decoder stays as it is.
         chain: the arm.
         answers: those of each of S runs, equally many of motions that take equally long.
-        unlabelled: (M, c), contexts in which the priors shall hold.
+        unlabelled: (M, c), contexts in which the priors apply.
         config: how; the defaults where None.
         seed_index: which of the model's seeds decodes.
         seeds: S, of the weights and draws of each run; 0..S-1 where None.
@@ -144,7 +144,7 @@ def fit_alignments(
 
 
 def unheard(step: int, steps: int) -> None:
-    """A `Report` to nobody."""
+    """A `Report` that does nothing."""
 
 
 @contextmanager

@@ -135,8 +135,8 @@ class Belief(ABC):
             return self._posterior(belief, state, actions)
 
     def _posterior(self, belief: FloatArray, state: FloatArray, actions: FloatArray) -> FloatArray:
-        """Bayes' rule in log space; what overflows is not finite, and no evidence."""
-        # A goal without any probability would give log(0); with this stand-in it keeps none.
+        """Bayes' rule in log space; an overflow counts as no evidence."""
+        # log(0) for a goal without probability; this substitute leaves it without.
         score = np.log(np.maximum(belief, _LEAST)) + self._share * self.log_likelihood(state, actions)
         weight = np.exp(score - np.maximum.reduce(score, axis=-1, keepdims=True))
         after = self._kept_above_floor(weight / np.add.reduce(weight, axis=-1, keepdims=True))
@@ -147,7 +147,7 @@ class Belief(ABC):
         return np.where(sound[..., None], after, belief)
 
     def _kept_above_floor(self, belief: FloatArray) -> FloatArray:
-        """The belief with every goal at ``floor`` or above; unchanged where that is so already."""
+        """The belief with every goal at ``floor`` or above; unchanged if it already is."""
         above = np.maximum(belief - self.floor, 0.0)
         return self.floor + self._above_floors / np.add.reduce(above, axis=-1, keepdims=True) * above
 

@@ -1,4 +1,4 @@
-"""How the person's action and the robot's are put together (equations 2 and 10)."""
+"""Blending of the person's action and the robot's (equations 2 and 10)."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -79,7 +79,7 @@ class FixedAlpha(Arbitration):
 @final
 @dataclass(frozen=True)
 class ConfidenceAlpha(Arbitration):
-    """More help the surer the robot is, faded out as the person lets go of the input.
+    """More help with more confidence, faded out as the person lets go of the input.
 
     After Dragan and Srinivasa (2013). Confidence is ``(max b - 1/G) / (1 - 1/G)``: 0 where all goals are
     as likely, 1 where one is certain; 1 where there is one goal only. A belief's floor f keeps it at
@@ -123,7 +123,7 @@ class ConfidenceAlpha(Arbitration):
 @final
 @dataclass(frozen=True)
 class Unprompted(Arbitration):
-    """Help whether or not the person gives an input, for people who ask for it: the arm then moves by itself.
+    """Help even without an input, for people who ask for it: the arm then moves by itself.
 
     Attributes:
         inner: says how much, as at full input.

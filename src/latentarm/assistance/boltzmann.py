@@ -1,4 +1,4 @@
-"""The belief that a person is Boltzmann-rational in joint space: the likelihood of section 8.2."""
+"""Belief for a Boltzmann-rational person in joint space: the likelihood of section 8.2."""
 
 from collections.abc import Sequence
 from typing import final
@@ -9,7 +9,7 @@ from latentarm.types import FloatArray
 
 @final
 class BoltzmannBelief(Belief):
-    """A person who chooses what brings the arm closest to the goal after the look-ahead tau, or nearly.
+    """A person who approximately chooses what brings the arm closest to the goal after the look-ahead tau.
 
     ::
 

@@ -1,4 +1,4 @@
-"""How near to the goal shared autonomy brings the arm, whatever the person does (equations 11 to 14).
+"""How close to the goal shared autonomy brings the arm, whatever the person does (equations 11 to 14).
 
 The arm moves at ``a = (1 - alpha) phi + alpha k Σ_g b(g) (g - s)`` (equation 10) with ``‖phi‖ <= sigma_h``,
 and ``V = ‖e‖² / 2`` with ``e = g* - s`` (equation 11). The sum holds ``b(g*) e``, so V falls wherever

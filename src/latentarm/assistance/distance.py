@@ -1,4 +1,4 @@
-"""The belief by distance gone.
+"""Belief from progress towards each goal.
 
 Dragan and Srinivasa, "A policy-blending formalism for shared control", 2013.
 """
@@ -26,8 +26,8 @@ class DistanceBelief(Belief):
         log P(u | s, g) = -beta (‖g - (s + a_h(u) period)‖ - ‖g - s‖)
 
     These steps add up to the formula above where the arm does what the person commands, at any rate of
-    the loop; where the robot helps, its own motion is not taken for evidence. What else could have been
-    chosen plays no part. Someone who has arrived and moves away from every goal alike loses belief in the
+    the loop; when the robot helps, its own motion is not evidence. Alternatives are not
+    considered. Someone who has arrived and moves away from every goal alike loses belief in the
     goal that they are at: they leave it by more than they leave the others.
 
     Args:

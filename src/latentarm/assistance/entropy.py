@@ -1,4 +1,4 @@
-"""Latent actions that leave every goal open: the entropy over goals of equations 15 and 16, for training."""
+"""Training latent actions to keep every goal reachable: the entropy over goals of equations 15 and 16."""
 
 import math
 from collections.abc import Mapping

@@ -27,8 +27,8 @@ class MaximumEntropyBelief(Belief):
     itself costs depends on the state alone and cancels. ``V_g(s) = -log Σ_{u' in U} exp(-Q_g(s, u'))``
     makes it a distribution over `alternatives`.
 
-    Far from a goal the evidence does not grow with the distance, as it does in `BoltzmannBelief`. Where
-    all goals are within delta the two rules are one, with beta = c / (2 delta): delta should therefore be
+    Unlike in `BoltzmannBelief`, evidence does not grow with the distance to a goal. If all goals are within
+    delta, the two rules are identical with beta = c / (2 delta): delta should therefore be
     wide enough to hold what is done at a goal, or stabbing and scooping there speak against it.
 
     Args:

@@ -10,9 +10,9 @@ all states together. "Right" is defined in two ways:
   displacements (largest singular vector, uncentred). This penalises an axis that goes right in one state
   and left in another.
 - In demonstrations that turn corners, no single direction is right everywhere, and the first measure
-  penalises a conditioned axis that turns with the task. So the second figure takes "right" at each state to
-  be where the axis itself leads there (from z = -1 to z = +1). It penalises motion that is not proportional to
-  z, drift, and speed that differs between states.
+  penalises a conditioned axis that turns with the task. So the second figure takes "right" at each state
+  to be where the axis itself leads there (from z = -1 to z = +1). It penalises motion that is not
+  proportional to z, drift, and speed that differs between states.
 """
 
 import numpy as np

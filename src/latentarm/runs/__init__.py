@@ -1,1 +1,1 @@
-"""A trained run: training it, what its folder says, what steers by it, what people mean by their input."""
+"""A trained run: training, its folder, its task, its evaluation, and people's alignments with it."""

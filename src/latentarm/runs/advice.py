@@ -5,7 +5,7 @@ from typing import Final
 from latentarm.models.catalogue import KINDS
 
 FEW_EPISODES: Final = 20
-"""With so many episodes or fewer, which of them are held out moves the figures more than the seed does."""
+"""With this many episodes or fewer, the choice of held-out episodes matters more than the seed."""
 
 
 def model_advice(model: str, episodes: int) -> str:

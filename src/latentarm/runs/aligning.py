@@ -1,4 +1,4 @@
-"""A person's alignment with a run: what there is to ask about, and what is made of the answers."""
+"""A person's alignment with a run: the questions, and learning from the answers."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Checks of what a person asks for, before any work is done for it."""
+"""Validation of options before any work starts."""
 
 import math
 

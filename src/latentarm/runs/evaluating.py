@@ -1,4 +1,4 @@
-"""`latentarm evaluate`: a run measured on the episodes that it never saw."""
+"""`latentarm evaluate`: a run measured on its held-out episodes."""
 
 import math
 import warnings
@@ -68,7 +68,7 @@ class Evaluation:
             the condition `OVER_FOLDS`: mean over folds of the mean over seeds, and SD over folds.
         found: thresholds that it misses, judged over folds where there are some.
         advice: what to do next.
-        missing: one sentence on what could not be measured; "" where all was.
+        missing: one sentence on what could not be measured; "" if nothing is missing.
     """
 
     rows: list[Row]
@@ -98,8 +98,8 @@ def evaluate_run(
 ) -> Evaluation:
     """Measure a run and write ``metrics.json`` and two figures.
 
-    With few episodes the split moves the figures more than the seed does, so the model is also refitted with
-    other episodes held out, such that each is held out once; the run's own split is one of the folds.
+    With few episodes the split matters more than the seed, so the model is also refitted on folds that hold
+    each episode out once; the run's own split is one of the folds.
 
     Without the dataset all is measured but the errors of reconstruction, on the samples that the run keeps.
 

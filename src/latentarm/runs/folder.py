@@ -1,4 +1,4 @@
-"""What a run folder says of itself: its task, its robot, and the dataset that it was trained on.
+"""The description in a run's folder: its task, its robot, and the dataset that it was trained on.
 
 A run from elsewhere is read with bounded readers. Of what it keeps, nothing outside its folder is opened;
 the dataset that it names is opened for what it does not keep.

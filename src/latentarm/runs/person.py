@@ -1,4 +1,4 @@
-"""Who is asked what they mean by their input, and one question as they get it."""
+"""The person who answers alignment questions, and one question."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable

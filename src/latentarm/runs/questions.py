@@ -36,14 +36,14 @@ Watch = Callable[[], AbstractContextManager[Report]]
 
 
 def unwatched() -> AbstractContextManager[Report]:
-    """A `Watch` without anybody."""
+    """A `Watch` that does nothing."""
     return nullcontext(unheard)
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What does not change while a person is asked.
+    """What stays the same while a person is asked.
 
     Attributes:
         model: the trained model.

@@ -15,7 +15,7 @@ from latentarm.runs.folder import git_commit
 from latentarm.untrusted.documents import read_object
 
 CONFIG: Final = "config.json"
-"""What was asked for; it is written first and tells a study's folders from others."""
+"""The options; written first, and used to recognise a study's folders."""
 
 PACKAGES: Final = ("latentarm", "numpy", "scikit-learn", "scipy", "statsmodels", "torch")
 """Those whose versions the figures may hang on."""
@@ -50,7 +50,7 @@ class ResultsFolder:
         earlier = self._earlier(out)
         if out.exists() and earlier is None and not (out.is_dir() and not any(out.iterdir())):
             raise UserError(
-                f"{out} is there already and is no earlier run of this command: choose another folder with"
+                f"{out} already exists and is not an earlier run of this command: choose another folder with"
                 f" --out, such as {vacant_name(out)}."
             )
         if earlier is not None and any((out / name).exists() for name in self.made):
@@ -101,7 +101,7 @@ def refuse_other_results(
 
 
 def vacant_name(out: Path) -> Path:
-    """A folder of the same name with a number that is not there yet."""
+    """The folder's name with the first number that does not exist yet."""
     named = out if out.name else out.resolve()
     return next(
         place for number in count(2) if not (place := named.with_name(f"{named.name}-{number}")).exists()

@@ -82,7 +82,7 @@ def task_without_run(
         limits: what is stated of the robot's limits.
 
     Raises:
-        UserError: the robot is not to be had, or the task does not suit it, or belongs to a run.
+        UserError: the robot is not available, or the task does not suit it, or belongs to a run.
     """
     chosen = name or ("table_top" if robot in (None, "panda") else "reach")
     if chosen == HELD_OUT:

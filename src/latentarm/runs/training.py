@@ -42,7 +42,7 @@ HOLD_OUT_STREAM = 1
 
 @dataclass(frozen=True)
 class TrainConfig:
-    """What `latentarm train` was asked for; its ``--help`` says the same of each field.
+    """Options of `latentarm train`; its ``--help`` describes each field.
 
     Attributes:
         demonstrations: folder of a native dataset.
@@ -63,7 +63,7 @@ class TrainConfig:
         device: where to train.
         end_effector: site, body or link of the robot's model file; the dataset's where None.
         task: what the run is driven at, a task of the catalogue; by the dataset's goals where None.
-        resume: go on with a training that was cut off.
+        resume: continue an interrupted training.
     """
 
     demonstrations: Path
@@ -92,7 +92,7 @@ class TrainConfig:
 
 @dataclass(frozen=True)
 class Training:
-    """What came of a training.
+    """The result of a training.
 
     Attributes:
         rows: the normalised loss on the validation episodes: mean and SD over seeds.
@@ -108,7 +108,7 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
 
     Args:
         config: what was asked for.
-        report: is told after each epoch.
+        report: called after each epoch.
 
     Raises:
         UserError: the dataset cannot be read or lacks what is asked for, the folder holds a run
@@ -120,7 +120,7 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
     if config.end_effector is not None:
         demonstrations = replace(demonstrations, end_effector=config.end_effector)
     if demonstrations.robot in ROBOTS or Path(demonstrations.robot).is_file():
-        # Says now what evaluating would say later.
+        # Fails now rather than in `evaluate`.
         robot = load_recorded_robot(demonstrations, str(config.demonstrations))
     chain = None if robot is None else robot.chain
     training, held_out = split_episodes(
@@ -245,7 +245,7 @@ def _check_folder(config: TrainConfig) -> None:
     unfinished = (config.out / CHECKPOINT).exists()
     if unfinished and not config.resume:
         raise UserError(
-            f"{config.out} holds an unfinished training: go on with --resume, or choose another --out."
+            f"{config.out} holds an unfinished training: continue it with --resume, or choose another --out."
         )
     if config.resume and not unfinished:
         raise UserError(f"{config.out} holds no unfinished training to resume.")

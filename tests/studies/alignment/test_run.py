@@ -121,7 +121,7 @@ def test_drives_alone_are_a_page_of_their_own(tmp_path):
 
 def test_a_folder_of_something_else_is_left_alone(tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
-    with pytest.raises(UserError, match="no earlier run of this command"):
+    with pytest.raises(UserError, match="not an earlier run of this command"):
         run_alignment(tiny(tmp_path))
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
