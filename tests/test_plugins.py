@@ -104,6 +104,6 @@ def test_what_a_file_names_is_looked_up_and_never_imported(install, catalogue):
     with pytest.raises(UserError, match="none of ours"):
         catalogue.find("theirs", "config.json", origin="--index-url=elsewhere")
     install("theirs-dist", {"theirs": "theirs_dist:VALUE"}, "VALUE = 2.5")
-    catalogue.refresh()
     sys.modules.pop("theirs_dist", None)
+    catalogue = Catalogue(GROUP, "number", OWN, number)
     assert catalogue.find("theirs", "config.json", origin="theirs-dist") == 2.5

@@ -155,11 +155,6 @@ class Catalogue(Mapping[str, T], Generic[T]):
                 " update or uninstall that distribution."
             ) from error
 
-    def refresh(self) -> None:
-        """Forget what was found, so that distributions installed since are seen."""
-        self.__dict__.pop("_plugins", None)
-        self._loaded.clear()
-
     @cached_property
     def _plugins(self) -> dict[str, list[EntryPoint]]:
         """Registered entry points by name; more than one where distributions clash."""

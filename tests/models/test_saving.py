@@ -199,6 +199,20 @@ def test_a_model_of_schema_2_loads(folder, fitted, samples):
     np.testing.assert_array_equal(loaded.validation_loss_, fitted.validation_loss_)
 
 
+def test_a_model_whose_plug_in_is_missing_says_what_to_install(folder):
+    change_config(folder, lambda model: model.update(kind="theirs", distribution="their-models"))
+    for load_it in (load_model, load_decoder):
+        with pytest.raises(UserError, match=r"'theirs' of the distribution their-models.*pip install their"):
+            load_it(folder)
+
+
+@pytest.mark.parametrize("kind", ["os:system", "latentarm.models.pca.runtime:PCA", "../pca", ""])
+def test_a_config_cannot_name_what_is_imported(folder, kind):
+    change_config(folder, lambda model: model.update(kind=kind, distribution="--index-url=x"))
+    with pytest.raises(UserError, match="which is none of pca, ae, vae"):
+        load_model(folder)
+
+
 def test_the_config_says_what_was_done(folder, fitted):
     config = json.loads((folder / CONFIG).read_text())
     assert config["dataset"] == "ring"
