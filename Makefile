@@ -33,8 +33,9 @@ $(VENV)/installed-dev: $(VENV)/installed
 	@touch $@
 
 # Node comes with the dev extra, TypeScript from npm: both check the page's JavaScript, and neither reaches the browser.
+# The certificates that npm trusts are the system's, as pip's are.
 node_modules/installed: package-lock.json $(VENV)/installed-dev
-	$(BIN)/npm ci --silent
+	NODE_USE_SYSTEM_CA=1 $(BIN)/npm ci --no-audit --no-fund --loglevel=error
 	@touch $@
 
 demo: $(VENV)/installed ## Learn latent actions and drive a 7-DoF arm to three goals (minutes).
