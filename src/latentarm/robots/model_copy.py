@@ -12,6 +12,7 @@ from latentarm.robots.model_xml import (
     FOLDERS,
     MOST_FILE_BYTES,
     NESTED,
+    parse_xml,
     read_model_xml,
     read_xml,
 )
@@ -49,7 +50,7 @@ def copy_model(robot: Robot, folder: Path) -> str:
                 root.remove(element)
         name, places = COPIES[1], [source.parent]
     else:
-        root = Xml.fromstring(robot.mjcf)  # noqa: S314 - MuJoCo wrote it, of a model that was checked
+        root = parse_xml(source, robot.mjcf.encode())
         compilers = list(root.iter("compiler"))
         places = [Path(one.attrib.pop(key)) for one in compilers for key in FOLDERS if key in one.attrib]
         name = COPIES[0]

@@ -81,13 +81,21 @@ def read_xml(path: Path) -> tuple[Xml.Element, int]:
         UserError: see `read_model_xml`.
     """
     text = read_bytes(path, MOST_XML_BYTES)
-    root = _tree(path, text)
+    root = parse_xml(path, text)
     _check_copies(path, root)
     return root, len(text)
 
 
-def _tree(path: Path, text: bytes) -> Xml.Element:
-    """The file's elements; as MuJoCo does, it lets pass prefixes that are not declared."""
+def parse_xml(path: Path, text: bytes) -> Xml.Element:
+    """The outermost element of an XML document; like MuJoCo, it accepts prefixes that are not declared.
+
+    Args:
+        path: the file, for messages.
+        text: its content.
+
+    Raises:
+        UserError: it is not XML, declares a document type, or has too many elements or levels.
+    """
 
     def refuse(*_: object) -> None:
         # Without declarations nothing can expand or be fetched from elsewhere.
