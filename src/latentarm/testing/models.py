@@ -4,7 +4,7 @@ import warnings
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal, cast
 
 import numpy as np
 import pytest
@@ -22,7 +22,9 @@ from latentarm.models.model import LatentActionModel
 from latentarm.models.saving import load_model
 from latentarm.models.scaling import CollapseWarning
 from latentarm.robots.planar import planar
-from latentarm.types import Demonstrations, Episode
+from latentarm.types import Demonstrations, Episode, FloatArray
+
+ContextKind = Literal["state", "state_belief"]
 
 JOINTS: Final = 4
 SMALL: Final[dict[str, Any]] = {"seeds": 2, "epochs": 2, "hidden": (8, 8), "window": 2}
@@ -61,7 +63,7 @@ def fit(model: LatentActionModel, episodes: int = 12) -> LatentActionModel:
 
 
 @cache
-def fitted(estimator: type[LatentActionModel], context: str) -> LatentActionModel:
+def fitted(estimator: type[LatentActionModel], context: ContextKind) -> LatentActionModel:
     """A model that all tests of a session look at, and none changes."""
     return fit(estimator(**SMALL, context=context))
 
@@ -90,12 +92,12 @@ class ModelContract:
         return fitted(estimator, "state")
 
     @pytest.fixture
-    def context(self) -> np.ndarray:
+    def context(self) -> FloatArray:
         """Contexts (30, 4) that no model was trained on."""
         return np.random.default_rng(4).uniform(-1, 1, size=(30, JOINTS))
 
     @pytest.fixture
-    def z(self) -> np.ndarray:
+    def z(self) -> FloatArray:
         """Inputs (30, 2)."""
         return np.random.default_rng(5).uniform(-1, 1, size=(30, 2))
 
@@ -136,9 +138,9 @@ class ModelContract:
         assert repr(estimator()) == f"{estimator.__name__}()"
 
     def test_a_clone_is_unfitted_and_the_same_seed_fits_the_same_model(
-        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+        self, model: LatentActionModel, z: FloatArray, context: FloatArray
     ) -> None:
-        again = clone(model)
+        again = cast(LatentActionModel, clone(model))
         assert type(again) is type(model)
         assert again.get_params() == model.get_params()
         with pytest.raises(NotFittedError):
@@ -146,7 +148,7 @@ class ModelContract:
         np.testing.assert_array_equal(fit(again).decode(z, context), model.decode(z, context))
         check_is_fitted(again)
 
-    def test_shapes(self, model: LatentActionModel, z: np.ndarray, context: np.ndarray) -> None:
+    def test_shapes(self, model: LatentActionModel, z: FloatArray, context: FloatArray) -> None:
         assert model.encode(context, np.ones((30, JOINTS))).shape == (2, 30, 2)
         assert model.decode(z, context).shape == (2, 30, JOINTS)
         assert model.decode(np.stack([z, -z]), context).shape == (2, 30, JOINTS)
@@ -155,29 +157,30 @@ class ModelContract:
         assert model.history_.shape[1] == 2
 
     def test_a_stack_of_latents_decodes_seed_by_seed(
-        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+        self, model: LatentActionModel, z: FloatArray, context: FloatArray
     ) -> None:
         both = model.decode(np.stack([z, -z]), context)
         np.testing.assert_array_equal(both[0], model.decode(z, context)[0])
         np.testing.assert_array_equal(both[1], model.decode(-z, context)[1])
 
     def test_different_seeds_give_different_models(
-        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+        self, model: LatentActionModel, z: FloatArray, context: FloatArray
     ) -> None:
         first, second = model.decode(z, context)
         trained_in_epochs = len(model.history_) > 0
         assert np.array_equal(first, second) != trained_in_epochs
 
     def test_validation_episodes_leave_the_weights_alone(
-        self, estimator: type[LatentActionModel], z: np.ndarray, context: np.ndarray
+        self, estimator: type[LatentActionModel], z: FloatArray, context: FloatArray
     ) -> None:
         """What they hold decides when to stop; weights, normalisers and scaling never see it."""
         data = demonstrations(6)
         altered = list(data.episodes)
         for index in (0, 5):
             altered[index] = replace(altered[index], state=3.0 - 7.0 * altered[index].state[::-1])
+        briefly: dict[str, Any] = {**SMALL, "epochs": 1}
         plain, changed = (
-            estimator(**{**SMALL, "epochs": 1}).fit(
+            estimator(**briefly).fit(
                 replace(data, episodes=tuple(episodes)), validation=[0, 5], chain=planar(JOINTS).chain
             )
             for episodes in (data.episodes, altered)
@@ -188,7 +191,7 @@ class ModelContract:
         assert (changed.validation_loss_ != plain.validation_loss_).all()
 
     def test_saved_and_loaded_is_the_same(
-        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray, tmp_path: Path
+        self, model: LatentActionModel, z: FloatArray, context: FloatArray, tmp_path: Path
     ) -> None:
         model.save(tmp_path, run={"dataset": "ring"})
         loaded = load_model(tmp_path)
@@ -202,7 +205,7 @@ class ModelContract:
 
     @pytest.mark.parametrize(("kind", "width"), [("state", JOINTS), ("state_belief", JOINTS + 2)])
     def test_the_runtime_in_numpy_equals_the_model(
-        self, estimator: type[LatentActionModel], z: np.ndarray, tmp_path: Path, kind: str, width: int
+        self, estimator: type[LatentActionModel], z: FloatArray, tmp_path: Path, kind: ContextKind, width: int
     ) -> None:
         model = fitted(estimator, kind)
         context = np.random.default_rng(6).uniform(-1, 1, (30, width))
@@ -218,7 +221,7 @@ class ModelContract:
     def test_the_runtime_in_numpy_equals_the_model_at_any_size(
         self, estimator: type[LatentActionModel], latent_dim: int, hidden: tuple[int, ...]
     ) -> None:
-        sizes = {**SMALL, "latent_dim": latent_dim, "hidden": hidden, "epochs": 1}
+        sizes: dict[str, Any] = {**SMALL, "latent_dim": latent_dim, "hidden": hidden, "epochs": 1}
         model = fit(estimator(**sizes), episodes=4)
         rng = np.random.default_rng(1)
         z, context = rng.uniform(-1, 1, (20, latent_dim)), rng.uniform(-1, 1, (20, JOINTS))
@@ -228,7 +231,7 @@ class ModelContract:
 
     @pytest.mark.parametrize(("kind", "width"), [("state", JOINTS), ("state_belief", JOINTS + 2)])
     def test_the_torch_decoder_equals_the_model_and_its_gradient_is_the_slope(
-        self, estimator: type[LatentActionModel], kind: str, width: int
+        self, estimator: type[LatentActionModel], kind: ContextKind, width: int
     ) -> None:
         model = fitted(estimator, kind)
         rng = np.random.default_rng(2)
@@ -247,7 +250,7 @@ class ModelContract:
             assert torch.autograd.gradcheck(action, inputs, atol=1e-5)
 
     def test_what_the_torch_decoder_sees_begins_with_the_normalised_context(
-        self, model: LatentActionModel, context: np.ndarray
+        self, model: LatentActionModel, context: FloatArray
     ) -> None:
         seen = model.torch_decoder(0, torch.float64).observe(torch.from_numpy(context))[..., :JOINTS].numpy()
         tensors = model.trained_.tensors
@@ -255,7 +258,7 @@ class ModelContract:
         np.testing.assert_allclose(seen, expected, rtol=0, atol=1e-12)
 
     def test_one_pair_alone_equals_the_same_pair_in_a_batch(
-        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+        self, model: LatentActionModel, z: FloatArray, context: FloatArray
     ) -> None:
         action = z @ np.ones((2, JOINTS))
         batch, encoded, decoder = model.decode(z, context), model.encode(context, action), model.decoder(1)
@@ -268,7 +271,7 @@ class ModelContract:
             np.testing.assert_allclose(decoder.decode(z[i], context[i]), batch[1, i], rtol=0, atol=1e-12)
 
     def test_leading_axes_of_the_decoder_broadcast(
-        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+        self, model: LatentActionModel, z: FloatArray, context: FloatArray
     ) -> None:
         decoder = model.decoder()
         grid = decoder.decode(z[:9, None], context[:5])
@@ -289,7 +292,7 @@ class ModelContract:
             assert ((longest > 0.6) & (longest < 1.2)).all()
 
     def test_at_rest_it_rests_and_reverses_where_its_kind_says_so(
-        self, model: LatentActionModel, z: np.ndarray, context: np.ndarray
+        self, model: LatentActionModel, z: FloatArray, context: FloatArray
     ) -> None:
         if model.kind.reverses:
             np.testing.assert_allclose(model.decode(0 * z, context), 0.0, atol=1e-9)
@@ -299,7 +302,7 @@ class ModelContract:
             np.testing.assert_array_equal(there, model.decode(z, context))
 
     def test_unfitted_it_says_so(
-        self, estimator: type[LatentActionModel], z: np.ndarray, context: np.ndarray, tmp_path: Path
+        self, estimator: type[LatentActionModel], z: FloatArray, context: FloatArray, tmp_path: Path
     ) -> None:
         fresh = estimator()
         for use in (
