@@ -21,7 +21,7 @@ from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 
 KEPT = ("robot_model", "task", "goals", "routes", "samples")
-"""Keys that runs of version 0.1.0 and before lack."""
+"""Keys that older runs lack."""
 
 ARM = """<mujoco><compiler angle="radian" meshdir="meshes"/>
 <asset><mesh name="wedge" file="wedge.obj"/></asset>

@@ -51,7 +51,7 @@ class Run:
         limits: what was stated of the robot's limits, or None.
         robot_model: name of the copy of the robot's model file in the folder `ROBOT`; None for a robot of the
             catalogue, and where no copy was kept.
-        task: the task that it was trained for; None in runs of version 0.1.0 and before, which kept none.
+        task: the task that it was trained for; None in older runs, which kept none.
         goals: of the dataset.
         routes: the ways of the held-out episodes, see `latentarm.tasks.replay.routes_of`; None where the run
             does not keep them.

@@ -123,7 +123,7 @@ def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
 
 
 def load_samples(folder: Path) -> Samples | None:
-    """Read and check what a run keeps; None for a run of version 0.1.0 or before, which kept nothing.
+    """Read and check what a run keeps; None for an older run, which kept nothing.
 
     Raises:
         UserError: a file is missing or damaged.
