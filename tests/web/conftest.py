@@ -31,8 +31,8 @@ from latentarm.web.server.control_process import ControlProcess
 
 HERE = Path(__file__).parent
 
-DRIVE_IN_REAL_TIME = {"site", "serve", "recorded", "secured"}
-"""Fixtures with a control process, which stops the arm where the computer keeps it waiting."""
+DRIVE_IN_REAL_TIME = {"site", "serve", "recorded"}
+"""Fixtures whose arm tests drive: its control process stops it where the computer keeps it waiting."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
