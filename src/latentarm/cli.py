@@ -68,7 +68,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "Let simulated people reach and change goals with help and without (section 8.2).",
     ),
     "reproduce alignment": (
-        "reproduce_alignment:alignment",
+        "reproduce:alignment",
         "Learn from few answers what simulated people mean by their stick (section 8.3).",
     ),
     "bench": (

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
-from latentarm.studies.compare import run as comparison
+from latentarm.studies.study import Report
 from latentarm.tasks.planar.circle import Circle
 from result_rows import rows_in
 
@@ -30,7 +30,8 @@ def test_the_smallest_comparison_for_people_and_for_machines(
     assert "compared/results.md" in out
     assert "cells" in err
     written = rows_in(Path("compared/results.json"))
-    monkeypatch.setattr(comparison, "run_compare", lambda config: written)  # not measured twice
+    report = Report(written, "", {})
+    monkeypatch.setattr("latentarm.studies.study.run_study", lambda *asked: report)  # not measured twice
     code, out, err = run(*command, "--json")
     assert code == 0
     assert json.loads(out) == [row.as_json() for row in written]

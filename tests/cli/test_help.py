@@ -13,7 +13,7 @@ from latentarm.cli import COMMANDS as PLACES
 from latentarm.cli import main
 from latentarm.parallel.backends import BACKENDS
 from latentarm.studies.alignment import preset as alignment_preset
-from latentarm.studies.alignment import run as alignment
+from latentarm.studies.alignment import study as alignment
 from latentarm.studies.properties.preset import PRESETS
 from latentarm.studies.shared_autonomy import preset as shared_autonomy
 from latentarm.studies.shared_autonomy.cell import TASKS

@@ -54,8 +54,17 @@ def test_the_smallest_study_of_shared_autonomy_runs_from_end_to_end(run: Run, wo
     assert {path.stem for path in folder.glob("*.png")} == {*SHARED_AUTONOMY.figures} - {"entropy_weight"}
 
 
-def asked_for_one_task(run: Run, asked: list, rows: list[Row], name: str, task: str) -> None:
+@pytest.mark.parametrize(("name", "task"), [("shared-autonomy", "planar_two_cups"), ("alignment", "plane")])
+def test_one_task_for_machines(
+    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch, name: str, task: str
+) -> None:
     """What is asked for reaches the study, and its rows are printed; tests/studies runs the studies."""
+    asked = []
+    rows = [Row(name, "drift", "1", 0.5, 0.1, 3, task=task, model="cae")]
+    report = Report(rows, "", {})
+    monkeypatch.setattr(
+        "latentarm.studies.study.run_study", lambda study, request: asked.append(request) or report
+    )
     folder = Path("reproduced") / name
     folder.mkdir(parents=True)
     options = ("--preset", "smoke", "--task", task, "--seed", 5, "--jobs", 1, "--json")
@@ -66,27 +75,6 @@ def asked_for_one_task(run: Run, asked: list, rows: list[Row], name: str, task: 
     (request,) = asked
     assert (request.out, request.preset.name, request.tasks) == (folder, "smoke", (task,))
     assert (request.seed, request.jobs, request.backend, request.quiet) == (5, 1, "joblib", True)
-
-
-def test_one_task_for_machines(run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = []
-    rows = [Row("shared_autonomy", "drift", "1", 0.5, 0.1, 3, task="planar_two_cups", model="cae")]
-    report = Report(rows, "", {})
-    monkeypatch.setattr(
-        "latentarm.studies.study.run_study", lambda study, request: asked.append(request) or report
-    )
-    asked_for_one_task(run, asked, rows, "shared-autonomy", "planar_two_cups")
-
-
-def test_one_task_of_alignment_for_machines(
-    run: Run, workplace: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked = []
-    rows = [Row("alignment", "drift", "1", 0.5, 0.1, 3, task="plane", model="cae")]
-    study = "latentarm.studies.alignment"
-    monkeypatch.setattr(f"{study}.run.run_alignment", lambda config: asked.append(config) or rows)
-    monkeypatch.setattr(f"{study}.summary.summary_tables", lambda *figures: [])
-    asked_for_one_task(run, asked, rows, "alignment", "plane")
 
 
 @pytest.mark.slow

@@ -48,9 +48,8 @@ def compare(
     from dataclasses import replace
 
     from latentarm.studies.compare.preset import OURS, PRESETS
-    from latentarm.studies.compare.run import CompareConfig, run_compare
-    from latentarm.studies.compare.tables import terminal_tables
-    from latentarm.untrusted.console import VisibleConsole
+    from latentarm.studies.compare.study import compare_study
+    from latentarm.studies.study import Request, run_study
 
     usual = PRESETS[preset]
     sizes = replace(
@@ -62,12 +61,9 @@ def compare(
         reach_pairs=usual.reach_pairs if reach_pairs is None else reach_pairs,
     )
     bars = not json and sys.stderr.isatty()
-    config = CompareConfig(
-        demonstrations, out, sizes, ours or OURS, seed, jobs, backend, quiet=json, bars=bars
-    )
-    rows = run_compare(config)
+    request = Request(out, sizes, seed=seed, jobs=jobs, backend=backend, quiet=json, bars=bars)
+    report = run_study(compare_study(demonstrations, sizes, ours or OURS, seed), request)
     write_options(out, "compare")
-    names = [path.resolve().name for path in demonstrations]
-    show(rows, json, *terminal_tables(rows, names, sizes.noises_rad, VisibleConsole().width))
+    show(report.rows, json, *report.tables)
     say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", json)
     return 0

@@ -49,6 +49,23 @@ def shared_autonomy(
     return _reproduce(STUDY, task, out, options)
 
 
+def alignment(
+    options: StudyOptions,
+    task: Annotated[
+        Literal["all", "plane", "pour", "reach_and_pour", "table_top"],
+        arg(help="One of the paper's tasks, drives at the demo's table, or all of it."),
+    ] = "all",
+    out: Out = Path("reproduced/alignment"),
+) -> int:
+    """Learn from few answers what simulated people mean by their stick (section 8.3).
+
+    For example: latentarm reproduce alignment --preset smoke --task plane
+    """
+    from latentarm.studies.alignment.study import STUDY
+
+    return _reproduce(STUDY, task, out, options)
+
+
 def _reproduce(study: "Study[Any, Any]", task: str, out: Path, options: StudyOptions) -> int:
     """Run a study and print it at a glance."""
     from latentarm.studies.study import Request, run_study

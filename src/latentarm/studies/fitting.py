@@ -34,7 +34,8 @@ def fit_model(
     Args:
         kind: a name of `MODELS`.
         demonstrations: to learn from.
-        validation: episodes that say which epoch was best; `validation_episodes` where None.
+        validation: episodes that say which epoch was best, such as `validation_episodes`; the model draws its
+            own where None.
         kl_weight: for models that have one.
         fit: further arguments of ``fit``, such as the chain.
         parameters: of the model.
@@ -45,8 +46,7 @@ def fit_model(
     model_class = MODELS[kind]
     if kl_weight is not None and "kl_weight" in {entry.name for entry in fields(model_class)}:
         parameters["kl_weight"] = kl_weight
-    chosen = validation_episodes(demonstrations) if validation is None else validation
     with warnings.catch_warnings():
         # Studies show what models fail at: a dead axis shows in every figure.
         warnings.simplefilter("ignore", CollapseWarning)
-        return model_class(**parameters).fit(demonstrations, validation=chosen, **(fit or {}))
+        return model_class(**parameters).fit(demonstrations, validation=validation, **(fit or {}))

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -28,9 +29,12 @@ from latentarm.studies.alignment.drives import (
 )
 from latentarm.studies.alignment.drives_comparison import compare_drives, drives_rows, misses
 from latentarm.studies.alignment.drives_learning import TURN_RAD, Learned, learn, turned_person
-from latentarm.studies.alignment.drives_page import drives_section
-from latentarm.studies.alignment.figures.drives import draw_drive_paths
+from latentarm.studies.alignment.figures import drives_figure
+from latentarm.studies.alignment.measured import Measured
 from latentarm.studies.alignment.preset import PRESETS, Drives
+from latentarm.studies.alignment.study import STUDY
+from latentarm.studies.study import Request
+from latentarm.style import save_figure
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
@@ -238,7 +242,7 @@ def test_misses_are_parted_into_what_the_person_steers_and_what_nobody_does():
 
 def test_the_page_says_what_holds_and_what_does_not():
     found = [result({ALL_PRIORS: 6, WITHOUT_PRIORS: 6, KNOWS: 6})]
-    page = drives_section(found, compare_drives(found))
+    page = STUDY.report(Request(Path("out"), TINY, ("table_top",)), Measured([], [], [], found)).page
     assert "**simulated**" in page
     assert "turned by 60 degrees and mirrored" in page
     assert f"| {ALL_PRIORS} | 0.60 ± 0.14 | 6 of 6 (100%) |" in page
@@ -248,7 +252,7 @@ def test_the_page_says_what_holds_and_what_does_not():
 
 
 def test_the_paths_are_drawn(tmp_path):
-    draw_drive_paths([result({ALL_PRIORS: 3})] * 2, tmp_path / "paths.png")
+    save_figure(drives_figure([result({ALL_PRIORS: 3})] * 2), tmp_path / "paths.png")
     pixels = imread(tmp_path / "paths.png")[..., :3]
     blank = (pixels > 0.99).all(axis=(1, 2))
     assert blank.mean() < 0.25, "panels leave much of the figure blank"

@@ -2,13 +2,10 @@ import numpy as np
 import pytest
 
 from figure_faults import faults
-from latentarm.errors import UserError
 from latentarm.metrics.looks import look_of
 from latentarm.studies.alignment.conditions import CONDITIONS
 from latentarm.studies.alignment.curves import CHOICES
-from latentarm.studies.alignment.figures.conditions import conditions_figure
-from latentarm.studies.alignment.figures.curves import curves_figure
-from latentarm.studies.alignment.figures.draw import FIGURES, draw_figures
+from latentarm.studies.alignment.figures import conditions_figure, curves_figure
 from latentarm.style import MM_PER_INCH, TWO_COLUMNS_MM
 from latentarm.tasks.pouring.tasks import POURING_TASKS
 
@@ -67,16 +64,6 @@ def test_short_curves_have_no_mark_of_ten(curve):
     figure = curves_figure([curve(counts=(1, 3), runs=1)], ["plane"])
     assert_well_drawn(figure)
     assert "10 answers at random" not in words_of(figure)
-
-
-def test_only_what_was_measured_is_drawn(result, curve, tmp_path):
-    draw_figures([result(), result(model="scl")], [curve()], [], tmp_path)
-    assert {path.stem for path in tmp_path.iterdir()} == {*FIGURES} - {"drives"}
-    draw_figures([], [], [], tmp_path / "none")
-    assert not (tmp_path / "none").exists()
-    (tmp_path / "in the way").write_text("a file")
-    with pytest.raises(UserError, match="cannot be written"):
-        draw_figures([result()], [], [], tmp_path / "in the way")
 
 
 def test_conditions_are_told_apart_without_colour():

@@ -6,14 +6,13 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from latentarm.errors import UserError
 from latentarm.metrics.measures import MEASURES
 from latentarm.runs.results_folder import CONFIG
 from latentarm.studies.alignment.conditions import CONDITIONS
-from latentarm.studies.alignment.figures.draw import FIGURES
 from latentarm.studies.alignment.preset import PRESETS, Curves, Drives, Preset
-from latentarm.studies.alignment.run import MADE, MODELS, TASKS, AlignmentConfig, run_alignment
-from latentarm.studies.alignment.summary import summary_tables
+from latentarm.studies.alignment.study import MODELS, STUDY, TASKS
+from latentarm.studies.alignment.tables import summary_tables
+from latentarm.studies.study import ALWAYS_MADE, Request, run_study
 
 TINY = Preset(
     "tiny",
@@ -34,18 +33,17 @@ TINY = Preset(
     ),
     drives=Drives(models=("cvae",), seeds=1, episodes=6, epochs=1, answers=2, to_each_goal=1, limit_s=0.3),
 )
-SAME_EVERYWHERE = ("results.json", "results.md", "runs.json", "hypotheses.json", "targets.json")
 
 
-def tiny(out: Path, **changes) -> AlignmentConfig:
-    return replace(AlignmentConfig(out, TINY, ("plane",), jobs=1, quiet=True), **changes)
+def tiny(out: Path, **changes) -> Request:
+    return replace(Request(out, TINY, ("plane",), jobs=1, quiet=True), **changes)
 
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
     """A run on this process alone: its rows and its folder."""
     out = tmp_path_factory.mktemp("alone") / "run"
-    return run_alignment(tiny(out)), out
+    return run_study(STUDY, tiny(out)).rows, out
 
 
 def test_every_model_condition_and_noise_has_its_row(done):
@@ -86,13 +84,18 @@ def test_noise_changes_nothing_for_who_asks_nothing(done):
 
 def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
     _, out = done
-    assert {path.name for path in out.iterdir()} == {CONFIG, *MADE} - {"drives.png"}
+    assert {path.name for path in out.iterdir()} == {
+        CONFIG,
+        *ALWAYS_MADE,
+        *STUDY.documents,
+        *(f"{name}.png" for name in STUDY.figures if name != "drives"),
+    }
     page = (out / "results.md").read_text()
     assert "**simulated**" in page
     assert "--preset tiny --task plane --seed 0" in page
     for words in ("H1", "H2", "H3", *CONDITIONS, "beyond the paper", "Where asking stops", "missed"):
         assert words in page
-    for name in FIGURES[:3]:
+    for name in STUDY.figures[:3]:
         assert f"]({name}.png)" in page
     assert "Drives to the goals" not in page
     timings = json.loads((out / "timings.json").read_text())
@@ -101,46 +104,14 @@ def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
     assert all(len(one["values"]) in (1, TINY.runs) for one in runs)
 
 
-@pytest.mark.slow
-def test_two_processes_give_the_same_bytes(done, tmp_path):
-    _, out = done
-    run_alignment(tiny(tmp_path / "two", jobs=2))
-    for name in SAME_EVERYWHERE:
-        assert (tmp_path / "two" / name).read_bytes() == (out / name).read_bytes(), name
-
-
 def test_drives_alone_are_a_page_of_their_own(tmp_path):
-    rows = run_alignment(tiny(tmp_path / "run", tasks=("table_top",)))
+    rows = run_study(STUDY, tiny(tmp_path / "run", tasks=("table_top",))).rows
     assert "cVAE" in summary_tables(rows, TINY)[0].title
     assert {row.task for row in rows} == {"table_top"}
     page = (tmp_path / "run" / "results.md").read_text()
     assert "## Drives to the goals of the demo" in page
     assert "Tests of the hypotheses" not in page
     assert {path.name for path in (tmp_path / "run").glob("*.png")} == {"drives.png"}
-
-
-def test_a_folder_of_something_else_is_left_alone(tmp_path):
-    (tmp_path / "mine.txt").write_text("mine")
-    with pytest.raises(UserError, match="not an earlier run of this command"):
-        run_alignment(tiny(tmp_path))
-    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
-
-
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"tasks": ()}, "at least one task"),
-        ({"tasks": ("plane", "plane")}, "none twice"),
-        ({"tasks": ("stir",)}, "no task 'stir'"),
-        ({"jobs": 0}, "number of jobs"),
-        ({"backend": "abacus"}, "no backend"),
-        ({"seed": -1}, "seed"),
-    ],
-)
-def test_what_makes_no_sense_is_refused_before_any_work(tmp_path, changes, said):
-    with pytest.raises(UserError, match=said):
-        tiny(tmp_path / "run", **changes)
-    assert not (tmp_path / "run").exists()
 
 
 def test_the_paper_preset_has_the_papers_numbers():

@@ -9,26 +9,33 @@ from latentarm.demonstrations.importing import import_to
 from latentarm.robots.catalogue import load_robot
 from latentarm.runs.results_folder import CONFIG
 from latentarm.studies.compare.preset import Preset
-from latentarm.studies.compare.run import MADE, CompareConfig, run_compare
+from latentarm.studies.compare.study import compare_study
+from latentarm.studies.study import ALWAYS_MADE, Report, Request, run_study
 from latentarm.types import Row
 
 POUR = Path(__file__).parents[4] / "shared" / "demonstrations" / "panda_pour_coffee.npz"
-SAME_EVERYWHERE = ("results.json", "results.md", "seeds.json")
 
 
-def config(table: Path, tiny: Preset, out: Path) -> CompareConfig:
-    return CompareConfig((table,), out, tiny, ours="cae", jobs=1, quiet=True)
+def compared(table: Path, sizes: Preset, out: Path, ours: str = "cae") -> Report:
+    study = compare_study((table,), sizes, ours)
+    report = run_study(study, Request(out, sizes, jobs=1, quiet=True))
+    made = {"results.json", "results.md", *ALWAYS_MADE, *study.documents}
+    assert {path.name for path in out.iterdir()} == {
+        CONFIG,
+        *made,
+        *(f"{name}.png" for name in report.figures),
+    }
+    return report
 
 
 @pytest.fixture(scope="module")
 def done(table: Path, tiny: Preset, tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Row], Path]:
     out = tmp_path_factory.mktemp("compared") / "run"
-    return run_compare(config(table, tiny, out)), out
+    return compared(table, tiny, out).rows, out
 
 
 def test_the_folder_holds_what_is_promised(done: tuple[list[Row], Path]) -> None:
     rows, out = done
-    assert {path.name for path in out.iterdir()} == {CONFIG, *MADE}
     assert json.loads((out / "results.json").read_text())["rows"] == [row.as_json() for row in rows]
     held_out = json.loads((out / CONFIG).read_text())["held_out"]["table"]
     assert sorted(index for fold in held_out for index in fold) == list(range(5))
@@ -84,22 +91,11 @@ def test_drives_are_told_from_measurements_and_called_simulated(done: tuple[list
     assert "![Error against reversal and reach](pareto.png)" in page
 
 
-@pytest.mark.slow
-def test_the_same_seed_gives_the_same_bytes_in_two_processes(
-    done: tuple[list[Row], Path], table: Path, tiny: Preset, tmp_path: Path
-) -> None:
-    _, out = done
-    again = tmp_path / "again"
-    run_compare(replace(config(table, tiny, again), jobs=2))
-    for name in SAME_EVERYWHERE:
-        assert (again / name).read_bytes() == (out / name).read_bytes(), name
-
-
 @pytest.mark.skipif(not POUR.exists(), reason="the recorded demonstrations are not beside this clone")
 def test_recorded_demonstrations_are_compared_on(tmp_path: Path, tiny: Preset) -> None:
     import_to(POUR, tmp_path / "pour", load_robot("panda"))
     small = replace(tiny, models=("pca", "scl"), noises_rad=(0.01,), seeds=1, demonstrations=(), drives=0)
-    rows = run_compare(CompareConfig((tmp_path / "pour",), tmp_path / "out", small, jobs=1, quiet=True))
+    rows = compared(tmp_path / "pour", small, tmp_path / "out", "homogeneous").rows
     at = {(row.model, row.measure): row.mean for row in rows if row.condition == "noise 0.01 rad"}
     assert at["pca", "error_percent_of_pca"] == pytest.approx(100.0, abs=5.0)
     assert at["scl", "drift"] == pytest.approx(0.0, abs=1e-9)

@@ -22,7 +22,8 @@ from latentarm.runs.questions import TOO_FEW
 from latentarm.studies.alignment.decoder import LearnedDecoder
 from latentarm.studies.alignment.preset import Preset
 from latentarm.studies.alignment.scene import Scene, scene_of
-from latentarm.studies.alignment.streams import Stream, generator
+from latentarm.studies.alignment.streams import Stream
+from latentarm.studies.streams import generator
 from latentarm.types import FloatArray
 
 AT_RANDOM: Final = "at random"

@@ -1,23 +1,18 @@
 """The decoders that alignments stand on: each is learned once, from the demonstrations of one task."""
 
-import warnings
 from dataclasses import dataclass
 from time import perf_counter
-from typing import Any, Final
+from typing import Final
 
 from threadpoolctl import threadpool_limits
 
-from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
-from latentarm.models.scaling import CollapseWarning
 from latentarm.studies.alignment.preset import Preset
-from latentarm.studies.alignment.streams import Stream, generator
-from latentarm.studies.streams import integer, sequence
+from latentarm.studies.alignment.streams import Stream
+from latentarm.studies.fitting import fit_model, validation_episodes
+from latentarm.studies.streams import generator, integer, sequence
 from latentarm.tasks.pouring.tasks import POURING_TASKS
 from latentarm.types import Demonstrations
-
-VALIDATION_SHARE: Final = 0.2
-"""Of the training episodes: these say which epoch was best."""
 
 WINDOW: Final = 10
 """Samples that an action may reach ahead and back: half a second, as long as a motion that is asked about."""
@@ -83,24 +78,19 @@ def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:
 
 
 def _fit(cell: DecoderCell, demonstrations: Demonstrations) -> LatentActionModel:
-    """The model fitted to all but the last episodes, which say when it was best."""
-    preset, model_class = cell.preset, MODELS[cell.model]
-    parameters: dict[str, Any] = {
-        "latent_dim": 2,
-        "window": WINDOW,
-        "state_noise_rad": preset.state_noise_rad,
-        "data_seed": integer(sequence(cell.seed, cell.task, Stream.STATE_NOISE)),
-        "seed": integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
-        "hidden": preset.hidden,
-        "epochs": preset.epochs,
-        "batch_size": preset.batch_size,
-        "patience": preset.epochs,
-    }
-    episodes = len(demonstrations.episodes)
-    validation = range(episodes - max(1, round(VALIDATION_SHARE * episodes)), episodes)
-    with warnings.catch_warnings():
-        # A dead latent action shows in every figure.
-        warnings.simplefilter("ignore", CollapseWarning)
-        return model_class(**parameters).fit(
-            demonstrations, validation=validation, chain=POURING_TASKS[cell.task]().robot.chain
-        )
+    preset = cell.preset
+    return fit_model(
+        cell.model,
+        demonstrations,
+        validation=validation_episodes(demonstrations),
+        latent_dim=2,
+        window=WINDOW,
+        state_noise_rad=preset.state_noise_rad,
+        data_seed=integer(sequence(cell.seed, cell.task, Stream.STATE_NOISE)),
+        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        hidden=preset.hidden,
+        epochs=preset.epochs,
+        batch_size=preset.batch_size,
+        patience=preset.epochs,
+        fit={"chain": POURING_TASKS[cell.task]().robot.chain},
+    )

@@ -6,7 +6,6 @@ both are one-sided, and corrected by Holm's method over all tests with one kind 
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -15,7 +14,8 @@ from latentarm.metrics.summary import Subject, summarise
 from latentarm.studies.alignment.conditions import ALL_PRIORS, NO_ALIGN, WITHOUT_PRIORS
 from latentarm.studies.alignment.drives import DRIVEN, DrivesResult
 from latentarm.studies.alignment.drives_learning import TASK
-from latentarm.studies.statistics import LEVEL, holm, one_sample, spreads
+from latentarm.studies.hypotheses import Comparison, corrected
+from latentarm.studies.statistics import Statistic, paired
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import FloatArray, Row
 
@@ -23,42 +23,6 @@ REACHED: Final = "arrival_rate"
 TIME: Final = "time_s"
 DONE: Final = "success_rate"
 ERROR: Final = "relative_alignment_error"
-
-
-@dataclass(frozen=True)
-class DriveComparison:
-    """One test of All Priors against another condition.
-
-    Attributes:
-        model: kind of model.
-        measure: `REACHED` or `TIME`.
-        against: the other condition.
-        mean: of All Priors.
-        mean_against: of the other.
-        n: pairs of drives.
-        test: ``McNemar``, ``paired t``, or why there is none.
-        p: one-sided, before correction, or None.
-        p_holm: after Holm's correction over the tests with the model, or None.
-    """
-
-    model: str
-    measure: str
-    against: str
-    mean: float
-    mean_against: float
-    n: int
-    test: str
-    p: float | None = None
-    p_holm: float | None = None
-
-    @property
-    def holds(self) -> bool:
-        """Whether All Priors is better. What could not be tested is not."""
-        return self.p_holm is not None and self.p_holm < LEVEL
-
-    def as_json(self) -> dict[str, object]:
-        """Plain mapping, ready for ``json.dumps``."""
-        return {**asdict(self), "holds": self.holds}
 
 
 def drive_figures(result: DrivesResult, condition: str) -> dict[str, FloatArray]:
@@ -102,51 +66,45 @@ def drives_rows(results: Sequence[DrivesResult]) -> list[Row]:
     return rows
 
 
-def compare_drives(results: Sequence[DrivesResult]) -> list[DriveComparison]:
+def compare_drives(results: Sequence[DrivesResult]) -> list[Comparison]:
     """Every test, model by model."""
-    comparisons: list[DriveComparison] = []
+    comparisons: list[Comparison] = []
     for result in results:
         figures = {name: drive_figures(result, name) for name in (ALL_PRIORS, NO_ALIGN, WITHOUT_PRIORS)}
-        family = [
+        comparisons += [
             _test(
                 result.cell.model, measure, against, figures[ALL_PRIORS][measure], figures[against][measure]
             )
             for measure in (REACHED, TIME)
             for against in (NO_ALIGN, WITHOUT_PRIORS)
         ]
-        corrected = holm([one.p for one in family])
-        comparisons += [replace(one, p_holm=p) for one, p in zip(family, corrected, strict=True)]
-    return comparisons
+    return corrected(comparisons)
 
 
-def _test(model: str, measure: str, against: str, own: FloatArray, other: FloatArray) -> DriveComparison:
+def _test(model: str, measure: str, against: str, own: FloatArray, other: FloatArray) -> Comparison:
     """One test, without correction."""
-    test, p = _mcnemar(own, other) if measure == REACHED else _paired_t(own, other)
-    return DriveComparison(
+    more = measure == REACHED
+    return Comparison(
+        hypothesis="drives",
+        family=model,
+        task=TASK,
         model=model,
         measure=measure,
+        subject=ALL_PRIORS,
         against=against,
+        direction="greater" if more else "less",
         mean=float(own.mean()),
         mean_against=float(other.mean()),
         n=len(own),
-        test=test,
-        p=p,
-    )
+        n_against=len(other),
+    ).tested(_mcnemar(own, other) if more else paired(own, other, "less"))
 
 
-def _mcnemar(own: FloatArray, other: FloatArray) -> tuple[str, float | None]:
+def _mcnemar(own: FloatArray, other: FloatArray) -> Statistic:
     """Whether more drives reach the goal: p of those that differ, by the binomial distribution."""
     from scipy.stats import binomtest  # takes a second, and only a finished study needs it
 
     better, worse = int((own > other).sum()), int((own < other).sum())
     if better + worse == 0:
-        return "none: no drive differs", None
-    return "McNemar", float(binomtest(better, better + worse, alternative="greater").pvalue)
-
-
-def _paired_t(own: FloatArray, other: FloatArray) -> tuple[str, float | None]:
-    """Whether drives are shorter."""
-    more = own - other
-    if not spreads(more):
-        return "none: no spread", None
-    return "paired t", one_sample(more, 0.0, "less").p
+        return Statistic("none: no drive differs")
+    return Statistic("McNemar", p=float(binomtest(better, better + worse, alternative="greater").pvalue))

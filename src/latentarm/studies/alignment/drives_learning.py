@@ -5,7 +5,6 @@ are those along which the demonstrated tool moves most (sideways, and forward an
 turned by `TURN_RAD` and mirrored.
 """
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
@@ -23,17 +22,16 @@ from latentarm.alignment.queries import StoppingRule
 from latentarm.alignment.training import FitConfig
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.kinematics.chain import Chain
-from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
-from latentarm.models.scaling import CollapseWarning
 from latentarm.operators.expectation import Expectation, displacements, main_directions
 from latentarm.runs.questions import ENSEMBLE, Scene, ask, unwatched
 from latentarm.simulation.asking import FASTEST, SimulatedPerson
 from latentarm.simulation.drive import STATE_NOISE_RAD
 from latentarm.studies.alignment.conditions import ALL_PRIORS, IDEAL, LEARNED, NO_ALIGN, WITHOUT_PRIORS
 from latentarm.studies.alignment.preset import Preset
-from latentarm.studies.alignment.streams import Stream, generator
-from latentarm.studies.streams import integer, sequence
+from latentarm.studies.alignment.streams import Stream
+from latentarm.studies.fitting import fit_model
+from latentarm.studies.streams import generator, integer, sequence
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Demonstrations, FloatArray
 
@@ -126,17 +124,17 @@ def turned_person(motions: Motions, chain: Chain) -> Expectation:
 
 def _fit(cell: DriveCell, training: Demonstrations, chain: Chain) -> LatentActionModel:
     """The models, as the demo trains them."""
-    with warnings.catch_warnings():
-        # A dead latent action shows in every figure.
-        warnings.simplefilter("ignore", CollapseWarning)
-        return MODELS[cell.model](
-            latent_dim=2,
-            state_noise_rad=STATE_NOISE_RAD,
-            seeds=cell.preset.drives.seeds,
-            epochs=cell.preset.drives.epochs,
-            seed=integer(sequence(cell.seed, TASK, Stream.NETWORKS)),
-            data_seed=integer(sequence(cell.seed, TASK, Stream.STATE_NOISE)),
-        ).fit(training, chain=chain)
+    return fit_model(
+        cell.model,
+        training,
+        latent_dim=2,
+        state_noise_rad=STATE_NOISE_RAD,
+        seeds=cell.preset.drives.seeds,
+        epochs=cell.preset.drives.epochs,
+        seed=integer(sequence(cell.seed, TASK, Stream.NETWORKS)),
+        data_seed=integer(sequence(cell.seed, TASK, Stream.STATE_NOISE)),
+        fit={"chain": chain},
+    )
 
 
 def _alignments(

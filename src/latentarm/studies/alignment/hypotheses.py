@@ -15,7 +15,7 @@ tests of one hypothesis with one model.
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 from latentarm.studies.alignment.cell import CellResult
@@ -27,7 +27,8 @@ from latentarm.studies.alignment.conditions import (
     SINGLE_PRIORS,
     WITHOUT_PRIORS,
 )
-from latentarm.studies.statistics import LEVEL, compare_means, holm
+from latentarm.studies.hypotheses import Comparison, corrected
+from latentarm.studies.statistics import compare_means
 
 NEAR: Final = 1.25
 """How many times the error of Ideal Align counts as near to it."""
@@ -58,90 +59,25 @@ CLAIMS: Final = (
 )
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """One test.
-
-    Attributes:
-        hypothesis: ``H1``, ``H2`` or ``H3``.
-        task: name of the task.
-        model: name of the decoder's model.
-        noise: coefficient of variation of the answers.
-        condition: which should have less.
-        against: than which.
-        times: of the other's error.
-        mean: of the condition's runs.
-        mean_against: of the other's, times ``times``.
-        n: runs of the condition.
-        n_against: runs of the other.
-        test: ``Welch``, ``one-sample``, or why there is none.
-        t: its statistic, or None; below 0 where the condition has less.
-        dof: degrees of freedom, or None.
-        p: one-sided, before correction, or None.
-        p_holm: after Holm's correction over the family, or None.
-        hedges_g: effect size, above 0 where the condition has less, or None.
-    """
-
-    hypothesis: str
-    task: str
-    model: str
-    noise: float
-    condition: str
-    against: str
-    times: float
-    mean: float
-    mean_against: float
-    n: int
-    n_against: int
-    test: str
-    t: float | None = None
-    dof: float | None = None
-    p: float | None = None
-    p_holm: float | None = None
-    hedges_g: float | None = None
-
-    @property
-    def holds(self) -> bool:
-        """Whether this speaks for the hypothesis. What could not be tested does not."""
-        return self.p_holm is not None and self.p_holm < LEVEL
-
-    def as_json(self) -> dict[str, object]:
-        """Plain mapping, ready for ``json.dumps``."""
-        return {**asdict(self), "holds": self.holds}
-
-
 def compare_conditions(results: Sequence[CellResult]) -> list[Comparison]:
-    """Every test.
-
-    Returns:
-        By hypothesis, then by model, then in the order of the results.
-    """
-    comparisons: list[Comparison] = []
-    for hypothesis in dict.fromkeys(claim.hypothesis for claim in CLAIMS):
-        claims = [claim for claim in CLAIMS if claim.hypothesis == hypothesis]
-        for model in dict.fromkeys(result.cell.model for result in results):
-            here = [result for result in results if result.cell.model == model]
-            family = [_test(claim, result) for result in here for claim in claims]
-            corrected = holm([one.p for one in family])
-            comparisons += [replace(one, p_holm=p) for one, p in zip(family, corrected, strict=True)]
-    return comparisons
+    """Every test, by hypothesis, then by model, then in the order of the results."""
+    return corrected([_test(claim, result) for result in results for claim in CLAIMS])
 
 
 def _test(claim: Claim, result: CellResult) -> Comparison:
     """One test, without correction."""
     values, reference = result.errors[claim.condition], claim.times * result.errors[claim.against]
-    found = compare_means(values, reference, "less")
     return Comparison(
         hypothesis=claim.hypothesis,
+        family=result.cell.model,
         task=result.cell.task,
         model=result.cell.model,
-        noise=result.cell.noise,
-        condition=claim.condition,
-        against=claim.against,
-        times=claim.times,
+        measure="relative_alignment_error",
+        where=f"noise {result.cell.noise:g}",
+        subject=claim.condition,
+        against=claim.against if claim.times == 1 else f"{claim.times:g} times {claim.against}",
         mean=float(values.mean()),
         mean_against=float(reference.mean()),
         n=len(values),
         n_against=len(reference),
-        **asdict(found),
-    )
+    ).tested(compare_means(values, reference, "less"))

@@ -19,7 +19,8 @@ from latentarm.models.model import LatentActionModel
 from latentarm.operators.preference import Imprecise, Preference
 from latentarm.studies.alignment.decoder import LearnedDecoder, demonstrate
 from latentarm.studies.alignment.people import preference_of
-from latentarm.studies.alignment.streams import Stream, generator
+from latentarm.studies.alignment.streams import Stream
+from latentarm.studies.streams import generator
 from latentarm.tasks.pouring.tasks import POURING_TASKS
 from latentarm.types import FloatArray
 

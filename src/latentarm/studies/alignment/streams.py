@@ -2,10 +2,6 @@
 
 from enum import IntEnum
 
-import numpy as np
-
-from latentarm.studies.streams import sequence
-
 
 class Stream(IntEnum):
     """The uses of randomness."""
@@ -22,14 +18,3 @@ class Stream(IntEnum):
     CANDIDATES = 9
     CANDIDATE_ANSWERS = 10
     ENSEMBLES = 11
-
-
-def generator(seed: int, task: str, *use: int) -> np.random.Generator:
-    """The same for every model, and for every noise.
-
-    Args:
-        seed: of the study.
-        task: name of the task.
-        use: a `Stream`, and the run where each has its own.
-    """
-    return np.random.default_rng(sequence(seed, task, *use))

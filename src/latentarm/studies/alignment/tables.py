@@ -1,18 +1,23 @@
-"""The study's tables in Markdown."""
+"""The study's tables: in Markdown for the page, and at a glance for a terminal."""
 
 from collections.abc import Sequence
 
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+
 from latentarm.metrics.looks import look_of
-from latentarm.metrics.table import ABSENT, format_figure
+from latentarm.metrics.table import ABSENT, format_figure, measure_name
 from latentarm.studies.alignment.cell import CellResult
-from latentarm.studies.alignment.conditions import CONDITIONS
+from latentarm.studies.alignment.conditions import CONDITIONS, under
 from latentarm.studies.alignment.curves import CHOICES, CurveResult
-from latentarm.studies.alignment.hypotheses import Comparison
-from latentarm.studies.alignment.rows import ENCODED
-from latentarm.studies.alignment.targets import Target
+from latentarm.studies.alignment.drives import DRIVEN
+from latentarm.studies.alignment.drives_comparison import REACHED, TIME
+from latentarm.studies.alignment.drives_learning import TASK
+from latentarm.studies.alignment.preset import Preset
+from latentarm.studies.alignment.rows import ENCODED, ERROR
+from latentarm.studies.alignment.targets import PAPER_MODEL, Target
 from latentarm.studies.page import markdown_table
-from latentarm.studies.statistics import format_p
-from latentarm.types import FloatArray
+from latentarm.types import FloatArray, Row
 
 
 def condition_table(results: Sequence[CellResult]) -> str:
@@ -61,28 +66,45 @@ def target_table(found: Sequence[Target]) -> str:
     return markdown_table(["target", "", "figures"], lines)
 
 
-def comparison_table(comparisons: Sequence[Comparison]) -> str:
-    """Every test of the hypotheses."""
-    head = ["", "task", "model", "noise", "condition", "below", "test", "t (dof)", "p, Holm", "Hedges' g"]
-    return markdown_table([*head, "holds"], [_test_line(one) for one in comparisons])
+def summary_tables(rows: Sequence[Row], preset: Preset) -> list[Table]:
+    """A table per task with the paper's model, conditions down and noises across, and one per driven model.
 
-
-def _test_line(one: Comparison) -> list[str]:
-    statistic = ABSENT if one.t is None or one.dof is None else f"{one.t:.3g} ({one.dof:.3g})"
-    against = one.against if one.times == 1 else f"{one.times:g} times {one.against}"
+    Args:
+        rows: of the study.
+        preset: for the noises.
+    """
+    tasks = dict.fromkeys(row.task for row in rows if row.task != TASK)
+    models = dict.fromkeys(row.model for row in rows if row.task == TASK)
     return [
-        one.hypothesis,
-        look_of(one.task).label,
-        look_of(one.model).label,
-        f"{one.noise:g}",
-        f"{one.condition} {one.mean:.3g}",
-        f"{against} {one.mean_against:.3g}",
-        one.test,
-        statistic,
-        format_p(one.p_holm),
-        ABSENT if one.hedges_g is None else f"{one.hedges_g:.3g}",
-        "yes" if one.holds else "no",
+        *(_conditions(rows, str(task), preset.noises) for task in tasks),
+        *(_drives(rows, str(model)) for model in models),
     ]
+
+
+def _conditions(rows: Sequence[Row], task: str, noises: Sequence[float]) -> Table:
+    found = {
+        row.condition: row for row in rows if (row.task, row.model, row.measure) == (task, PAPER_MODEL, ERROR)
+    }
+    title = f"{look_of(task).label}, {look_of(PAPER_MODEL).label}, simulated: relative alignment error"
+    table = Table("mean ± SD", title=title, title_justify="left", box=SIMPLE_HEAD)
+    for noise in noises:
+        table.add_column(f"noise {noise:g}", justify="right")
+    for name in CONDITIONS:
+        cells = [found[under(name, noise)] for noise in noises]
+        table.add_row(name, *(format_figure(row.mean, row.sd) for row in cells))
+    return table
+
+
+def _drives(rows: Sequence[Row], model: str) -> Table:
+    found = {(row.condition, row.measure): row for row in rows if (row.task, row.model) == (TASK, model)}
+    title = f"Drives at the table, {look_of(model).label}, simulated"
+    table = Table("mean ± SD", title=title, title_justify="left", box=SIMPLE_HEAD)
+    for measure in (REACHED, TIME):
+        table.add_column(measure_name(found[DRIVEN[0], measure]), justify="right")
+    for condition in DRIVEN:
+        cells = [found[condition, measure] for measure in (REACHED, TIME)]
+        table.add_row(condition, *(format_figure(row.mean, row.sd) for row in cells))
+    return table
 
 
 def _mean_and_sd(values: FloatArray) -> str:

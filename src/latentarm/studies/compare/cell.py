@@ -1,26 +1,24 @@
 """One cell of the comparison: one model on one fold of a dataset, under one noise, all its seeds."""
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from time import perf_counter
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.demonstrations.folds import Fold
 from latentarm.demonstrations.split import select_episodes
-from latentarm.models.catalogue import MODELS
 from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
-from latentarm.models.scaling import CollapseWarning
 from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.robots.robot import Robot
 from latentarm.studies.compare.datasets import Dataset
 from latentarm.studies.compare.measures import measure_model
 from latentarm.studies.compare.preset import Preset
 from latentarm.studies.compare.streams import Stream
+from latentarm.studies.fitting import fit_model
 from latentarm.studies.streams import integer, sequence
 from latentarm.types import FloatArray
 
@@ -134,22 +132,16 @@ def _stream(cell: Cell, use: Stream) -> np.random.SeedSequence:
 
 def _fit(cell: Cell, robot: Robot) -> LatentActionModel:
     fold, preset = cell.fold, cell.preset
-    parameters: dict[str, Any] = {
-        "state_noise_rad": cell.noise_rad,
-        "data_seed": integer(_stream(cell, Stream.TRAINING_NOISE)),
-        "seeds": 1 if cell.model == SEEDLESS else preset.seeds,
-        "seed": integer(_stream(cell, Stream.NETWORKS)),
-        "batch_size": preset.batch_size,
-        "hidden": preset.hidden,
-    }
-    if preset.epochs is not None:
-        parameters["epochs"] = preset.epochs
-    chosen = select_episodes(cell.dataset.demonstrations, (*fold.training, *fold.validation))
-    with warnings.catch_warnings():
-        # The comparison is to show what models fail at; a dead axis shows in every figure.
-        warnings.simplefilter("ignore", CollapseWarning)
-        return MODELS[cell.model](**parameters).fit(
-            chosen,
-            validation=range(len(fold.training), len(fold.training) + len(fold.validation)),
-            chain=robot.chain,
-        )
+    return fit_model(
+        cell.model,
+        select_episodes(cell.dataset.demonstrations, (*fold.training, *fold.validation)),
+        validation=range(len(fold.training), len(fold.training) + len(fold.validation)),
+        fit={"chain": robot.chain},
+        state_noise_rad=cell.noise_rad,
+        data_seed=integer(_stream(cell, Stream.TRAINING_NOISE)),
+        seeds=1 if cell.model == SEEDLESS else preset.seeds,
+        seed=integer(_stream(cell, Stream.NETWORKS)),
+        batch_size=preset.batch_size,
+        hidden=preset.hidden,
+        **({} if preset.epochs is None else {"epochs": preset.epochs}),
+    )

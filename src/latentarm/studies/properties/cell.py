@@ -127,6 +127,7 @@ def _fit(cell: Cell, kind: str, training: Demonstrations) -> LatentActionModel:
     return fit_model(
         kind,
         training,
+        validation=validation_episodes(training),
         latent_dim=MOTIONS[cell.task]().latent_dim,
         actions="recorded",
         state_noise_rad=cell.noise_rad,

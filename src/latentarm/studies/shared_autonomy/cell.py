@@ -189,6 +189,7 @@ def _fit(cell: Cell, task: TwoCups, training: Demonstrations) -> LatentActionMod
     return fit_model(
         cell.model,
         training,
+        validation=validation_episodes(training),
         latent_dim=1,
         context="state_belief",
         actions="recorded",

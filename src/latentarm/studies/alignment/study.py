@@ -1,0 +1,224 @@
+"""`latentarm reproduce alignment`: learning what simulated people mean by their stick (section 8.3)."""
+
+from collections.abc import Sequence
+from math import degrees
+from typing import TYPE_CHECKING, Final
+
+from latentarm.alignment.demonstrated import DURATION_S
+from latentarm.alignment.poses import ROTATION_WEIGHT_M
+from latentarm.alignment.priors import Priors
+from latentarm.metrics.looks import look_of
+from latentarm.runs.questions import TOO_FEW
+from latentarm.studies.alignment import conditions, curves, drives
+from latentarm.studies.alignment.cell import Cell, CellResult, measure_cell
+from latentarm.studies.alignment.curves import CurveCell, CurveResult, measure_curve
+from latentarm.studies.alignment.decoder import DecoderCell, LearnedDecoder, learn_decoder
+from latentarm.studies.alignment.documents import by_run, time_alignment, timings
+from latentarm.studies.alignment.drives import DrivesResult, drive_cells, measure_drives
+from latentarm.studies.alignment.drives_comparison import compare_drives, drives_rows
+from latentarm.studies.alignment.drives_learning import TASK, TURN_RAD, DriveCell
+from latentarm.studies.alignment.drives_tables import WORDS, drive_parts, ways
+from latentarm.studies.alignment.figures import conditions_figure, curves_figure, drives_figure
+from latentarm.studies.alignment.hypotheses import NEAR, compare_conditions
+from latentarm.studies.alignment.measured import Measured
+from latentarm.studies.alignment.preset import PRESETS, Preset
+from latentarm.studies.alignment.rows import STUDY as NAME
+from latentarm.studies.alignment.rows import rows_of
+from latentarm.studies.alignment.tables import (
+    condition_table,
+    curve_table,
+    stopping_table,
+    summary_tables,
+    target_table,
+)
+from latentarm.studies.alignment.targets import PAPER_MODEL, Target, targets
+from latentarm.studies.hypotheses import Comparison, comparison_table, verdicts
+from latentarm.studies.page import render_page
+from latentarm.studies.statistics import LEVEL
+from latentarm.studies.study import Grid, Report, Request, Study, again
+from latentarm.tasks.pouring.tasks import AT_BOWL_M, BOWL_M, POURING_TASKS
+from latentarm.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
+from latentarm.tasks.table_top import TableTop
+from latentarm.tasks.tolerance import REACHED_ANGLE, REACHED_DISTANCE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MODELS: Final = (PAPER_MODEL, "scl", "isometric")
+"""The paper's decoder, the state-conditioned linear one, and ours."""
+
+TASKS: Final = (*POURING_TASKS, TASK)
+"""The paper's tasks, and the demo's table, where goals are driven to."""
+
+AnyCell = Cell | CurveCell | DriveCell
+AnyResult = CellResult | CurveResult | DrivesResult
+
+
+def _measure(request: Request[Preset], grid: Grid) -> Measured:
+    wanted = [
+        DecoderCell(task, model, request.preset, request.seed)
+        for model in reversed(MODELS)  # the longest first
+        for task in request.tasks
+        if task in POURING_TASKS
+    ]
+    decoders = grid.run("Decoders", learn_decoder, wanted, _decoder_label)
+    cells = _cells(request, decoders)
+    found = grid.run("Alignments, learning curves and drives", measure, cells, _label)
+    return Measured(
+        decoders,
+        results=sorted((one for one in found if isinstance(one, CellResult)), key=_place),
+        curves=[one for one in found if isinstance(one, CurveResult)],
+        drives=[one for one in found if isinstance(one, DrivesResult)],
+    )
+
+
+def measure(cell: AnyCell) -> AnyResult:
+    """Measure one cell of the second grid.
+
+    Raises:
+        UserError: it cannot be measured as asked.
+    """
+    if isinstance(cell, Cell):
+        return measure_cell(cell)
+    return measure_curve(cell) if isinstance(cell, CurveCell) else measure_drives(cell)
+
+
+def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list[AnyCell]:
+    """The second grid, its longest cells first."""
+    preset = request.preset
+    curves = [
+        CurveCell(learned, noise)
+        for noise in preset.curves.noises
+        for learned in decoders
+        if learned.cell.model in preset.curves.models
+    ]
+    drives = drive_cells(preset, request.seed) if TASK in request.tasks else []
+    table = [Cell(learned, noise) for learned in decoders for noise in preset.noises]
+    return [*curves, *drives, *table]
+
+
+def _place(result: CellResult) -> tuple[int, int, float]:
+    """Where a cell stands in tables."""
+    return TASKS.index(result.cell.task), MODELS.index(result.cell.model), result.cell.noise
+
+
+def _decoder_label(cell: DecoderCell) -> str:
+    return f"{cell.task}, {cell.model}, decoder"
+
+
+def _label(cell: AnyCell) -> str:
+    if isinstance(cell, DriveCell):
+        return f"{TASK}, {cell.model}, drives"
+    what = ", curve" if isinstance(cell, CurveCell) else ""
+    return f"{cell.learned.cell.task}, {cell.learned.cell.model}, noise {cell.noise:g}{what}"
+
+
+def _report(request: Request[Preset], measured: Measured) -> Report:
+    rows = [*rows_of(measured.results, measured.curves), *drives_rows(measured.drives)]
+    tests, drive_tests = compare_conditions(measured.results), compare_drives(measured.drives)
+    reached = targets(measured.results, measured.curves)
+    figures = _figures(measured)
+    # While nothing else runs.
+    alone = [time_alignment(one) for one in measured.decoders if one.cell.model == PAPER_MODEL]
+    return Report(
+        rows=rows,
+        page=_page(request, measured, tests, drive_tests, reached, figures),
+        figures=figures,
+        tests=[*tests, *drive_tests],
+        documents={
+            "targets.json": [one.as_json() for one in reached],
+            "runs.json": by_run(measured),
+        },
+        timings={"one_alignment": alone, **timings(measured)},
+        tables=summary_tables(rows, request.preset),
+    )
+
+
+def _figures(measured: Measured) -> "dict[str, Figure]":
+    """Those of what was measured."""
+    results, figures = measured.results, dict[str, "Figure"]()
+    tasks = list(dict.fromkeys(result.cell.task for result in results))
+    noises = list(dict.fromkeys(result.cell.noise for result in results))
+    models = list(dict.fromkeys(result.cell.model for result in results))
+    for name, shown in (
+        ("conditions", [model for model in models if model == PAPER_MODEL]),
+        ("conditions_other_models", [model for model in models if model != PAPER_MODEL]),
+    ):
+        if shown:
+            figures[name] = conditions_figure(results, shown, tasks, noises)
+    if measured.curves:
+        figures["curves"] = curves_figure(measured.curves, tasks)
+    if measured.drives:
+        figures["drives"] = drives_figure(measured.drives)
+    return figures
+
+
+def _page(
+    request: Request[Preset],
+    measured: Measured,
+    tests: Sequence[Comparison],
+    drive_tests: Sequence[Comparison],
+    reached: Sequence[Target],
+    figures: "dict[str, Figure]",
+) -> str:
+    by_task: dict[str, dict[str, list[CellResult]]] = {}
+    for result in measured.results:
+        by_task.setdefault(result.cell.task, {}).setdefault(result.cell.model, []).append(result)
+    return render_page(
+        "alignment/page.md",
+        command=again(STUDY, request),
+        preset=request.preset,
+        tasks=list(by_task),
+        paper_model=PAPER_MODEL,
+        figures=figures,
+        speed_m_s=SPEED_M_S,
+        turn_rad_s=TURN_RAD_S,
+        rate_hz=RATE_HZ,
+        bowl_m=BOWL_M,
+        at_bowl_m=AT_BOWL_M,
+        duration_s=DURATION_S,
+        rotation_weight_m=ROTATION_WEIGHT_M,
+        priors=Priors(),
+        conditions=conditions,
+        choices=curves,
+        too_few=TOO_FEW,
+        verdicts=verdicts(tests),
+        target_table=target_table(reached),
+        condition_tables={
+            task: {model: condition_table(cells) for model, cells in of_task.items()}
+            for task, of_task in by_task.items()
+        },
+        stopping_table=stopping_table(measured.curves),
+        curve_tables={_curve_name(curve): curve_table(curve) for curve in measured.curves},
+        drives=measured.drives,
+        drive_conditions=drives,
+        drive_words=WORDS,
+        drive_parts=drive_parts(measured.drives, drive_tests),
+        ways=ways(measured.drives[0]) if measured.drives else [],
+        goals=[goal.name for goal in TableTop().goals] if measured.drives else [],
+        reached_m=REACHED_DISTANCE,
+        reached_deg=degrees(REACHED_ANGLE),
+        turn_deg=degrees(TURN_RAD),
+        near=NEAR,
+        level=LEVEL,
+        tests=tests,
+        test_table=comparison_table(tests),
+    )
+
+
+def _curve_name(curve: CurveResult) -> str:
+    cell = curve.cell.learned.cell
+    return f"{look_of(cell.task).label}, {look_of(cell.model).label}, noise {curve.cell.noise:g}"
+
+
+STUDY: Final = Study(
+    name=NAME,
+    command="reproduce alignment",
+    presets=PRESETS,
+    tasks=TASKS,
+    simulated=("arms", "people"),
+    measure=_measure,
+    report=_report,
+    figures=("conditions", "conditions_other_models", "curves", "drives"),
+    documents=("runs.json", "targets.json"),
+)
