@@ -1,10 +1,10 @@
-"""What studies share; how a study's folder is claimed is tested with each study."""
+"""The folder of results, statistics, streams of randomness and parts of pages, which all studies use."""
 
 import json
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from latentarm.errors import UserError
@@ -56,6 +56,7 @@ def test_a_figure_that_is_no_number_is_not_written(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@settings(max_examples=30)
 @given(st.lists(st.one_of(st.none(), st.floats(0.0, 1.0)), max_size=8))
 def test_holm_by_its_definition(p):
     tested = sorted(one for one in p if one is not None)
