@@ -1,4 +1,6 @@
+from .arms.catalogue import make_arm as make_arm
 from .arms.contract import Arm as Arm
+from .arms.contract import SimulatedArm as SimulatedArm
 from .arms.kinematic import KinematicArm as KinematicArm
 from .assistance.belief import Belief as Belief
 from .assistance.blending import ConfidenceAlpha as ConfidenceAlpha
@@ -28,6 +30,7 @@ from .models.saving import load_model as load_model
 from .models.scl.training import SCL as SCL
 from .robots.catalogue import load_robot as load_robot
 from .runs.folder import read_run as read_run
+from .tasks.catalogue import make_task as make_task
 from .tasks.table_top import TableTop as TableTop
 from .tasks.task import Task as Task
 from .types import Context as Context

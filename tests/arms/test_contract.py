@@ -7,6 +7,6 @@ from latentarm.testing.arms import ArmContract
 
 
 class TestEveryArm(ArmContract):
-    @pytest.fixture(params=["kinematic"])
+    @pytest.fixture(params=list(ARMS))
     def make(self, request):
         return ARMS[request.param]

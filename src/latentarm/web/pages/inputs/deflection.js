@@ -1,6 +1,6 @@
 /** What is pressed, by one source at a time: every way of pressing meets here. */
 
-/** @typedef {"pointer" | "dpad" | "keyboard" | "gamepad" | "switch"} Source */
+/** @typedef {import("../connection/messages.js").DriverInput["source"]} Source */
 /** @typedef {"up" | "down" | "left" | "right"} Direction */
 /** @typedef {"focus_lost" | "page_closed" | "page_hidden" | "pointer_lost" | "gamepad_lost" | "not_enabled"} HaltReason */
 /** @typedef {import("./drive_input.js").DriveInput | import("../personalise/answer_input.js").AnswerInput} PersonInput */
