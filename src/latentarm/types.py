@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from os import PathLike
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -215,10 +216,12 @@ class Stop:
     Attributes:
         reason: one short sentence for the person.
         untrusted: the readings of the joints cannot be true; a recording ends before them.
+        code: of the commonest reasons, for interfaces in other languages; None for the others.
     """
 
     reason: str
     untrusted: bool = False
+    code: Literal["not_enabled", "input_late"] | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True)

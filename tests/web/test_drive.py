@@ -22,7 +22,7 @@ def test_nothing_moves_before_enable(desk):
     desk.run(1.0)
     assert not desk.speeds().any()
     assert desk.reports[-1].phase == "neutral_needed"
-    assert desk.reports[-1].reason.code == "arm_stopped"
+    assert desk.reports[-1].reason.code == "not_enabled"
 
 
 def test_a_pressed_stick_cannot_be_enabled(desk):

@@ -10,7 +10,7 @@ class Engagement:
     """Motion needs a neutral input first and then an explicit action, at the start and after any stop."""
 
     def __init__(self) -> None:
-        self._stopped: Stop | None = Stop("The arm is not enabled yet.")
+        self._stopped: Stop | None = Stop("The arm is not enabled yet.", code="not_enabled")
         self._neutral = False
 
     @property

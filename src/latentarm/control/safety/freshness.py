@@ -29,5 +29,5 @@ class Freshness(SafetyFilter):
         if 0.0 <= age_s <= timeout_s:
             return None
         if age_s > timeout_s:
-            return Stop(f"No input came for more than {1000 * timeout_s:.0f} ms.")
+            return Stop(f"No input came for more than {1000 * timeout_s:.0f} ms.", code="input_late")
         return Stop("The input's age is not known.")

@@ -288,10 +288,10 @@ class Drive:
         return "neutral_needed" if self._inputs.fresh and self._inputs.deflected else "disengaged"
 
     def _reason(self, stop: Stop | None) -> Notice | None:
-        """Why the arm may not move; what the safety filters say has no code, but a sentence."""
+        """Why the arm may not move; most of what the safety filters say has a sentence only."""
         if stop is None or stop.reason == self._stopped_for.text:
             return None if stop is None else self._stopped_for
-        return Notice(code="arm_stopped", parameters={"text": stop.reason})
+        return Notice(code=stop.code or "arm_stopped", parameters={"text": stop.reason})
 
     def _report(self, record: StepRecord) -> Report:
         phase, spec = self._phase(), self._setup.spec
