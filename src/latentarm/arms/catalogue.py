@@ -48,7 +48,7 @@ def make_arm(name: str, robot: Robot, state: FloatArray) -> Arm:
     Raises:
         UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is no arm.
     """
-    arm: object = ARMS.find(name, "--arm")(robot, state)  # another distribution may break the contract
+    arm = cast(object, ARMS.find(name, "--arm")(robot, state))  # another distribution may break the contract
     if not isinstance(arm, Arm):
         raise UserError(f"--arm {name} made {type(arm).__name__}, which is no latentarm.arms.contract.Arm.")
     return arm
