@@ -16,6 +16,7 @@ from tyro.extras import SubcommandApp
 from latentarm import __version__
 from latentarm.commands.configuration import Command, configurable, file_named_in, read_options
 from latentarm.errors import UserError
+from latentarm.studies.catalogue import STUDIES
 from latentarm.untrusted.terminal import one_line
 
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -59,18 +60,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "export:export",
         "List what was recorded, and export it to a native dataset (LeRobotDataset v3.0).",
     ),
-    "reproduce properties": (
-        "reproduce:properties",
-        "Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.",
-    ),
-    "reproduce shared-autonomy": (
-        "reproduce:shared_autonomy",
-        "Let simulated people reach and change goals with help and without (section 8.2).",
-    ),
-    "reproduce alignment": (
-        "reproduce:alignment",
-        "Learn from few answers what simulated people mean by their stick (section 8.3).",
-    ),
+    **{f"reproduce {name}": (f"reproduce:{name}", entry.summary) for name, entry in STUDIES.items()},
     "bench": (
         "bench:bench",
         "Time the online step, and training ten seeds in one fit and one after the other.",
@@ -82,8 +72,8 @@ COMMANDS: dict[str, tuple[str, str]] = {
 }
 """Every command by the words that run it, in the order of the help.
 
-Its module and function in `latentarm.commands`, and the first line of its own help; only the module of the
-command that runs is imported.
+Its module and function in `latentarm.commands`, or its study, and the first line of its own help; only the
+module of the command that runs is imported.
 """
 
 GROUPS = {"reproduce": "Reproduce a study of the paper; `reproduce --help` lists them."}
@@ -120,7 +110,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except UserError as error:
         return _refuse(str(error))
     except BrokenPipeError:
-        # Whoever read our output has heard enough; there is nobody left to flush it to.
+        # The reader closed the pipe, as `head` does; there is nothing left to flush to.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
@@ -154,9 +144,10 @@ def _app(words: Sequence[str]) -> SubcommandApp:
 
 
 def _load(place: str) -> Command:
-    """The function of a command, from ``module:function``."""
-    module, _, function = place.partition(":")
-    return getattr(import_module(f"latentarm.commands.{module}"), function)
+    """The function of a command, from ``module:function``, or from ``reproduce:study``."""
+    module, _, name = place.partition(":")
+    commands = import_module(f"latentarm.commands.{module}")
+    return commands.command_of(name) if module == "reproduce" else getattr(commands, name)
 
 
 def _never_run() -> int:
@@ -165,7 +156,7 @@ def _never_run() -> int:
 
 
 def _refuse(sentence: str) -> int:
-    """Say what the user can mend; the exit code for that."""
+    """Say what the user can fix; the exit code for that."""
     print(f"latentarm: {one_line(sentence)}", file=sys.stderr)
     return 2
 

@@ -2,7 +2,6 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable, Iterable
-from importlib import import_module
 from importlib.metadata import entry_points, version
 
 import pytest
@@ -10,10 +9,11 @@ import pytest
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.cli import COMMANDS as PLACES
-from latentarm.cli import main
+from latentarm.cli import _load, main
 from latentarm.parallel.backends import BACKENDS
 from latentarm.studies.alignment import preset as alignment_preset
 from latentarm.studies.alignment import study as alignment
+from latentarm.studies.catalogue import load_study
 from latentarm.studies.properties.preset import PRESETS
 from latentarm.studies.shared_autonomy import preset as shared_autonomy
 from latentarm.studies.shared_autonomy.cell import TASKS
@@ -59,9 +59,7 @@ def test_the_list_of_commands(run: Run) -> None:
 @pytest.mark.parametrize("name", PLACES)
 def test_the_list_says_of_a_command_what_its_own_help_says(name: str) -> None:
     place, summary = PLACES[name]
-    module, _, function = place.partition(":")
-    command = getattr(import_module(f"latentarm.commands.{module}"), function)
-    assert command.__doc__.splitlines()[0] == summary
+    assert _load(place).__doc__.splitlines()[0] == summary
 
 
 def test_the_version(run: Run) -> None:
@@ -85,6 +83,7 @@ def test_the_list_of_studies(run: Run) -> None:
 def test_a_study_offers_what_there_is(
     run: Run, study: str, tasks: Iterable[str], presets: dict[str, object]
 ) -> None:
+    assert (list(tasks), presets) == (list(load_study(study).tasks), load_study(study).presets)
     _, out, _ = run("reproduce", study, "--help")
     for names in (["all", *tasks], presets, BACKENDS):
         assert "{" + ",".join(names) + "}" in out

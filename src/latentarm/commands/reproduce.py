@@ -1,79 +1,52 @@
-"""`latentarm reproduce`: the paper's three simulations."""
+"""`latentarm reproduce`: the paper's simulations, a command for each study of the catalogue."""
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated
 
 from tyro.conf import arg
 
-from latentarm.commands.configuration import write_options
+from latentarm.commands.configuration import Command, write_options
 from latentarm.commands.options import StudyOptions
 from latentarm.commands.output import say, show, tables_by_task
+from latentarm.studies.catalogue import STUDIES, load_study
 
-if TYPE_CHECKING:
-    from latentarm.studies.study import Study
-
-Out = Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")]
+ALL = "all"
 
 
-def properties(
-    options: StudyOptions,
-    task: Annotated[
-        Literal["all", "sine", "rotate", "circle", "reach"], arg(help="One of the tasks, or all four.")
-    ] = "all",
-    out: Out = Path("reproduced/properties"),
-) -> int:
-    """Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.
+def command_of(name: str) -> Command:
+    """The command that runs a study.
 
-    For example: latentarm reproduce properties --preset smoke --task sine
+    Args:
+        name: a name in `STUDIES`.
     """
-    from latentarm.studies.properties.study import STUDY
+    entry = STUDIES[name]
+    choices = "{" + ",".join((ALL, *entry.tasks)) + "}"
 
-    return _reproduce(STUDY, task, out, options)
+    def reproduce(
+        options: StudyOptions,
+        task: Annotated[str, arg(metavar=choices, help=entry.about_tasks)] = ALL,
+        out: Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")] = Path(
+            "reproduced", name
+        ),
+    ) -> int:
+        return _reproduce(name, task, out, options)
 
-
-def shared_autonomy(
-    options: StudyOptions,
-    task: Annotated[
-        Literal["all", "planar_two_cups", "panda_two_cups"],
-        arg(help="Two cups before one of the arms, or before both."),
-    ] = "all",
-    out: Out = Path("reproduced/shared-autonomy"),
-) -> int:
-    """Let simulated people reach and change goals with help and without (section 8.2).
-
-    For example: latentarm reproduce shared-autonomy --preset smoke
-    """
-    from latentarm.studies.shared_autonomy.study import STUDY
-
-    return _reproduce(STUDY, task, out, options)
+    reproduce.__doc__ = (
+        f"{entry.summary}\n\nFor example: latentarm reproduce {name} --preset smoke --task {entry.tasks[0]}"
+    )
+    return reproduce
 
 
-def alignment(
-    options: StudyOptions,
-    task: Annotated[
-        Literal["all", "plane", "pour", "reach_and_pour", "table_top"],
-        arg(help="One of the paper's tasks, drives at the demo's table, or all of it."),
-    ] = "all",
-    out: Out = Path("reproduced/alignment"),
-) -> int:
-    """Learn from few answers what simulated people mean by their stick (section 8.3).
-
-    For example: latentarm reproduce alignment --preset smoke --task plane
-    """
-    from latentarm.studies.alignment.study import STUDY
-
-    return _reproduce(STUDY, task, out, options)
-
-
-def _reproduce(study: "Study[Any, Any]", task: str, out: Path, options: StudyOptions) -> int:
+def _reproduce(name: str, task: str, out: Path, options: StudyOptions) -> int:
     """Run a study and print it at a glance."""
     from latentarm.studies.study import Request, run_study
 
+    study = load_study(name)
     request = Request(
         out=out,
         preset=study.presets[options.preset],
-        tasks=() if task == "all" else (task,),
+        tasks=() if task == ALL else (task,),
         seed=options.seed,
         jobs=options.jobs,
         backend=options.backend,

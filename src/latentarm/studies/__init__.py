@@ -11,5 +11,5 @@ A study is a package with these modules:
 
 `study.run_study` does the rest, the same for all of them: it claims the folder, runs the grids and writes
 ``results.json``, ``results.md``, ``hypotheses.json``, ``timings.json``, the study's own documents and its
-figures. A command (``commands/reproduce.py``) calls it.
+figures. ``latentarm reproduce`` offers every study of `catalogue.STUDIES`.
 """

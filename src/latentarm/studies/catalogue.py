@@ -1,0 +1,48 @@
+"""The paper's studies by name: what `latentarm reproduce` offers. Nothing is imported before a study runs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from latentarm.studies.study import Study
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A study as the command line lists it.
+
+    Attributes:
+        summary: the first line of its help.
+        tasks: names of all its tasks, as in its `Study`.
+        about_tasks: what they are, in a few words.
+    """
+
+    summary: str
+    tasks: tuple[str, ...]
+    about_tasks: str
+
+
+STUDIES: Final[Mapping[str, Entry]] = {
+    "properties": Entry(
+        "Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.",
+        ("sine", "rotate", "circle", "reach"),
+        "One of the tasks, or all four.",
+    ),
+    "shared-autonomy": Entry(
+        "Let simulated people reach and change goals with help and without (section 8.2).",
+        ("planar_two_cups", "panda_two_cups"),
+        "Two cups in front of one of the arms, or of both.",
+    ),
+    "alignment": Entry(
+        "Learn from few answers what simulated people mean by their stick (section 8.3).",
+        ("plane", "pour", "reach_and_pour", "table_top"),
+        "One of the paper's tasks, drives at the demo's table, or all of it.",
+    ),
+}
+
+
+def load_study(name: str) -> "Study[Any, Any]":
+    """The study of that name: ``STUDY`` in the package ``studies/<name>``, module ``study``."""
+    return import_module(f"latentarm.studies.{name.replace('-', '_')}.study").STUDY
