@@ -28,10 +28,10 @@ from websockets.sync.client import ClientConnection, connect
 
 from latentarm.control.clock import MonotonicClock
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
+from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.connections import ConnectionLimits
-from latentarm.web.server.control_process import ControlProcess
 from teleop_journal import Halt, halts, spread
 
 FAULTS = ("inputs cease", "socket closed", "event loop blocked", "server killed")

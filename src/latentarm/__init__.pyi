@@ -30,7 +30,7 @@ from .models.saving import load_model as load_model
 from .models.scl.training import SCL as SCL
 from .robots.catalogue import load_robot as load_robot
 from .runs.folder import read_run as read_run
-from .tasks.catalogue import make_task as make_task
+from .runs.tasks import make_task as make_task
 from .tasks.table_top import TableTop as TableTop
 from .tasks.task import Task as Task
 from .types import Context as Context

@@ -102,11 +102,12 @@ def test_the_same_seed_gives_the_same_figures(run: Run, eat: Path) -> None:
 
 def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from latentarm.commands import demo
-    from latentarm.commands.demo import DemoConfig, run_demo
+    from latentarm.commands.demo import DemoOptions, Sizes, run_demo
 
     monkeypatch.setattr(demo, "TIME_LIMIT_S", 3.0)  # models of one epoch drive until the time is over
-    config = DemoConfig(Path("demo"), drives=1, jobs=1, quiet=True, episodes=9, seeds=1, epochs=1)
-    rows = run_demo(config)
+    config = DemoOptions(Path("demo"), drives=1, jobs=1, json=True)
+    sizes = Sizes(episodes=9, seeds=1, epochs=1)
+    rows = run_demo(config, sizes)
     assert {(row.model, row.condition) for row in rows} == {
         ("cvae", "latent"),
         ("cvae", "latent_assist"),
@@ -122,7 +123,7 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
     # A second time: the earlier demo makes room.
     monkeypatch.setattr(demo, "TableTop", Mock(side_effect=InterruptedError))
     with pytest.raises(InterruptedError):
-        run_demo(config)
+        run_demo(config, sizes)
     assert {path.name for path in Path("demo").iterdir()} == {"config.json", "runs"}
     assert not list(Path("demo/runs").iterdir())
 

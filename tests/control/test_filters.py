@@ -8,18 +8,21 @@ from hypothesis.extra.numpy import arrays
 
 from latentarm.control.safety.body import Body, Placement
 from latentarm.control.safety.bounds import Bounds
-from latentarm.control.safety.clearance import Clearance
 from latentarm.control.safety.config import SafetyConfig, Workspace
-from latentarm.control.safety.filter import Situation, Surroundings
-from latentarm.control.safety.finite import Finite
-from latentarm.control.safety.freshness import Freshness
+from latentarm.control.safety.filter import (
+    Clearance,
+    Finite,
+    Freshness,
+    JointPosition,
+    JointVelocity,
+    LinkSpeed,
+    Situation,
+    Surroundings,
+    WorkspaceBox,
+)
 from latentarm.control.safety.halfspaces import slide
-from latentarm.control.safety.joint_position import JointPosition
-from latentarm.control.safety.joint_velocity import JointVelocity
-from latentarm.control.safety.link_speed import LinkSpeed
 from latentarm.control.safety.obstacles import table
 from latentarm.control.safety.ramp import Ramp
-from latentarm.control.safety.workspace import WorkspaceBox
 from latentarm.kinematics.obstacles import Sphere
 from latentarm.types import Stop
 

@@ -7,7 +7,8 @@ import pytest
 
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
-from latentarm.tasks.catalogue import TASKS, make_task
+from latentarm.runs.tasks import make_task
+from latentarm.tasks.catalogue import TASKS
 from latentarm.tasks.reach import Reach
 from latentarm.tasks.replay import Replay, routes_of
 from latentarm.testing.tasks import TaskContract

@@ -21,13 +21,13 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, load_setup
+from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.protocol.channel import Given, Order, Report, new_channel, parse_report
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.connections import ConnectionLimits
-from latentarm.web.server.control_process import ControlProcess
 
 HERE = Path(__file__).parent
 

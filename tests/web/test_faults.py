@@ -96,7 +96,7 @@ import sys, time
 from pathlib import Path
 from latentarm.web.protocol.channel import ChooseMode, Enable, Given, Record
 from latentarm.web.arm_process.drive_setup import Spec
-from latentarm.web.server.control_process import ControlProcess
+from latentarm.web.arm_process.process import ControlProcess
 
 if __name__ == "__main__":
     control = ControlProcess(Spec(Path(sys.argv[1]), out=Path(sys.argv[2])))

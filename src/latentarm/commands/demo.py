@@ -4,6 +4,7 @@ import shutil
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +18,6 @@ from latentarm.commands.choices import ArmName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import say, show
-from latentarm.commands.teleop import teleop
 from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
@@ -44,6 +44,9 @@ from latentarm.style import save_figure
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Row
 from latentarm.untrusted.console import VisibleConsole
+from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.server.addresses import TeleopConfig
+from latentarm.web.server.app import serve
 
 MODELS = ("cvae", "scl")
 TIME_LIMIT_S = 60.0
@@ -53,39 +56,51 @@ MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png
 
 
 @dataclass(frozen=True)
-class DemoConfig:
+class DemoOptions:
     """Options of `latentarm demo`.
 
-    Attributes:
-        out: a new folder for everything that the demo writes.
-        drives: simulated drives for each goal and condition.
-        seed: of everything random.
-        jobs: processes that drive side by side; -1 is one per core.
-        quiet: say nothing while working.
-        bars: show progress bars.
-        episodes: demonstrations.
-        seeds: models of each kind, trained together and driven in turn.
-        epochs: passes over the training pairs, at most.
-        arm: what moves, a simulated arm of `latentarm.arms.catalogue`.
+    Raises:
+        UserError: a figure is out of its range.
     """
 
-    out: Path
-    drives: int = 20
-    seed: int = 0
-    jobs: int = -1
-    quiet: bool = False
-    bars: bool = False
-    episodes: int = 60
-    seeds: int = 3
-    epochs: int = 16
-    arm: str = DEFAULT_ARM
+    out: Annotated[Path, arg(metavar="DIR", help="Folder for datasets, runs, table and figures.")] = Path(
+        "demo"
+    )
+    drives: Annotated[int, arg(help="Simulated drives for each goal and condition.")] = 20
+    arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM
+    seed: Seed = 0
+    jobs: Annotated[int, arg(help="Processes that drive side by side; -1 is one per core.")] = -1
+    json: Json = False
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
         check_count("drives for each goal", self.drives)
 
+    @property
+    def bars(self) -> bool:
+        """Whether to show progress bars."""
+        return not self.json and sys.stderr.isatty()
 
-def run_demo(config: DemoConfig) -> list[Row]:
+
+@dataclass(frozen=True)
+class Sizes:
+    """How much is learned from; only tests take other sizes.
+
+    Attributes:
+        episodes: demonstrations.
+        seeds: models of each kind, trained together and driven in turn.
+        epochs: passes over the training pairs, at most.
+    """
+
+    episodes: int = 60
+    seeds: int = 3
+    epochs: int = 16
+
+
+USUAL = Sizes()
+
+
+def run_demo(config: DemoOptions, sizes: Sizes = USUAL) -> list[Row]:
     """Run the whole demo and write its results to ``config.out``.
 
     Returns:
@@ -94,18 +109,18 @@ def run_demo(config: DemoConfig) -> list[Row]:
     Raises:
         UserError: the folder holds something else, or cannot be written.
     """
-    _claim(config)
-    console = VisibleConsole(stderr=True, quiet=config.quiet)
+    _claim(config, sizes)
+    console = VisibleConsole(stderr=True, quiet=config.json)
     task = TableTop()
-    console.print(f"1/3  A simulated person demonstrates eating {config.episodes} times.")
-    demonstrations = task.demonstrate(config.episodes, np.random.default_rng(config.seed))
+    console.print(f"1/3  A simulated person demonstrates eating {sizes.episodes} times.")
+    demonstrations = task.demonstrate(sizes.episodes, np.random.default_rng(config.seed))
     write_dataset(demonstrations, config.out / "demonstrations")
     draw_task(task, demonstrations, config.out / "task.png")
     properties: list[Row] = []
     for model in MODELS:
-        console.print(f"2/3  {model}: learning 2-D latent actions, {config.seeds} seeds at once.")
-        properties += _train(config, model)
-    conditions = _conditions(task, config)
+        console.print(f"2/3  {model}: learning 2-D latent actions, {sizes.seeds} seeds at once.")
+        properties += _train(config, sizes, model)
+    conditions = _conditions(task, config, sizes.seeds)
     traces: dict[str, list[Trace]] = {}
     rows: list[Row] = []
     for number, (subject, setups) in enumerate(conditions, start=1):
@@ -118,27 +133,27 @@ def run_demo(config: DemoConfig) -> list[Row]:
         rows += drive_rows(subject, [trace.figures for trace in driven])
         if subject.model in (MODELS[0], None):
             traces[str(subject.condition)] = driven
-    _write(config, task, rows, properties, traces)
+    _write(config, sizes, task, rows, properties, traces)
     return rows
 
 
-def _train(config: DemoConfig, model: str) -> list[Row]:
+def _train(config: DemoOptions, sizes: Sizes, model: str) -> list[Row]:
     run = config.out / "runs" / model
     chosen = TrainConfig(
         demonstrations=config.out / "demonstrations",
         model=model,
         out=run,
-        seeds=config.seeds,
+        seeds=sizes.seeds,
         seed=config.seed,
         state_noise_rad=STATE_NOISE_RAD,
-        epochs=config.epochs,
+        epochs=sizes.epochs,
     )
     with epoch_bar(config.bars) as report:
         train_run(chosen, report)
     return evaluate_run(run, run, config.seed, folds=0).rows
 
 
-def _conditions(task: TableTop, config: DemoConfig) -> list[tuple[Subject, list[Setup]]]:
+def _conditions(task: TableTop, config: DemoOptions, seeds: int) -> list[tuple[Subject, list[Setup]]]:
     """Latent actions of each model (all its seeds in turn), alone and assisted, and mode switching."""
     conditions: list[tuple[Subject, list[Setup]]] = []
 
@@ -153,7 +168,7 @@ def _conditions(task: TableTop, config: DemoConfig) -> list[tuple[Subject, list[
 
     for model in MODELS:
         run = config.out / "runs" / model
-        controllers = [LatentController(load_decoder(run, seed)) for seed in range(config.seeds)]
+        controllers = [LatentController(load_decoder(run, seed)) for seed in range(seeds)]
         add(model, "latent", controllers, None)
         add(model, "latent_assist", controllers, FixedAlpha())
     add(None, "end_effector", [EndEffectorController(task.robot)], None)
@@ -161,14 +176,15 @@ def _conditions(task: TableTop, config: DemoConfig) -> list[tuple[Subject, list[
 
 
 def _write(
-    config: DemoConfig,
+    config: DemoOptions,
+    sizes: Sizes,
     task: TableTop,
     rows: Sequence[Row],
     properties: Sequence[Row],
     traces: dict[str, list[Trace]],
 ) -> None:
     out = config.out
-    write_results(out / "results.json", [*rows, *properties], _about(config))
+    write_results(out / "results.json", [*rows, *properties], _about(config, sizes))
     draw_drives(traces, task, out / "paths.png")
     save_figure(comparison_figure(headline(properties)), out / "properties.png")
     draw_inputs(traces, out / "inputs.png")
@@ -177,34 +193,34 @@ def _write(
         out / "results.md",
         "# What the demo measured\n\n"
         f"A simulated operator drove a simulated Panda {count} times per column ({config.drives} to each of"
-        f" {len(task.goals)} goals; the {config.seeds} trained models of a kind take turns),"
+        f" {len(task.goals)} goals; the {sizes.seeds} trained models of a kind take turns),"
         f" seed {config.seed}; mean ± SD over the drives, failed ones included"
         f" (they end after {TIME_LIMIT_S:g} s). No person took part.\n\n"
         f"{markdown_table(rows)}\n"
         f"The figures show the {MODELS[0]}. ![Paths of the tool](paths.png)\n\n"
         "![Inputs over time](inputs.png)\n\n"
         "## The latent spaces, on held-out episodes\n\n"
-        f"Mean ± SD over {config.seeds} seeds.\n\n{markdown_table(properties)}\n"
+        f"Mean ± SD over {sizes.seeds} seeds.\n\n{markdown_table(properties)}\n"
         "![The properties of the latent spaces](properties.png)\n\n"
         "![The task](task.png)\n",
     )
 
 
-def _about(config: DemoConfig) -> dict[str, object]:
+def _about(config: DemoOptions, sizes: Sizes) -> dict[str, object]:
     """What the figures depend on."""
     return {
         "study": "demo",
         "seed": config.seed,
         "drives_per_goal": config.drives,
         "operator": "simulated",
-        "episodes": config.episodes,
-        "seeds": config.seeds,
-        "epochs": config.epochs,
+        "episodes": sizes.episodes,
+        "seeds": sizes.seeds,
+        "epochs": sizes.epochs,
         "arm": config.arm,
     }
 
 
-def _claim(config: DemoConfig) -> None:
+def _claim(config: DemoOptions, sizes: Sizes) -> None:
     """Prepare the folder: a demo with the same options is replaced, anything else is left alone.
 
     Raises:
@@ -217,27 +233,18 @@ def _claim(config: DemoConfig) -> None:
                 f"{run} holds the profiles of people ({', '.join(profile_names(run))}), and the demo would"
                 f" train it anew: choose another folder with --out, such as {vacant_name(config.out)}."
             )
-    ResultsFolder("demo", MADE).claim(config.out, _about(config))
+    ResultsFolder("demo", MADE).claim(config.out, _about(config, sizes))
     for made in (config.out / "demonstrations", *runs):
         shutil.rmtree(made, ignore_errors=True)
 
 
-def demo(
-    out: Annotated[Path, arg(metavar="DIR", help="Folder for datasets, runs, table and figures.")] = Path(
-        "demo"
-    ),
-    drives: Annotated[int, arg(help="Simulated drives for each goal and condition.")] = 20,
-    arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM,
-    seed: Seed = 0,
-    jobs: Annotated[int, arg(help="Processes that drive side by side; -1 is one per core.")] = -1,
-    json: Json = False,
-) -> int:
+def demo(options: DemoOptions) -> int:
     """Learn latent actions and drive a 7-DoF Panda to three goals, against mode switching.
 
     In a terminal it ends with the page of `latentarm teleop`. For example: latentarm demo --out demo
     """
-    bars = not json and sys.stderr.isatty()
-    rows = run_demo(DemoConfig(out, drives, seed, jobs, quiet=json, bars=bars, arm=arm))
+    out, json = options.out, options.json
+    rows = run_demo(options)
     write_options(out, "demo")
     show(rows, json)
     say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
@@ -245,4 +252,6 @@ def demo(
     if json or not (sys.stdin.isatty() and sys.stdout.isatty()):
         say(f"To drive the arm yourself: latentarm teleop {run}", json)
         return 0
-    return teleop(run, port=0, out=out / "teleop", arm=arm)
+    spec = Spec(run, out=out / "teleop", arm=options.arm)
+    serve(TeleopConfig(spec, port=0), partial(say, json=json))
+    return 0

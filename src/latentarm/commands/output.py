@@ -40,8 +40,8 @@ def tables_by_task(rows: "Sequence[Row]") -> "list[RenderableType]":
 
 
 def say(sentence: str, json: bool) -> None:
-    """Print a message; with ``--json`` on standard error, so that standard output stays one document."""
-    print(visible(sentence), file=sys.stderr if json else sys.stdout)
+    """Print a message at once; with ``--json`` on standard error, to keep standard output one document."""
+    print(visible(sentence), file=sys.stderr if json else sys.stdout, flush=True)
 
 
 def note(sentences: "Sequence[str]") -> None:

@@ -1,8 +1,7 @@
 """`latentarm teleop`: the web page."""
 
 import json as json_format
-import shlex
-import sys
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -45,14 +44,9 @@ def teleop(
     Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
     """
     from latentarm.control.journal_limits import JournalLimits
-    from latentarm.control.recordings import JOURNAL_SUFFIX
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.server.addresses import TeleopConfig
     from latentarm.web.server.app import serve
-
-    def announce(sentence: str) -> None:
-        say(sentence, json)
-        sys.stdout.flush()  # a program that reads a pipe waits for the address
 
     def ready(address: str) -> None:
         write_options(out, "teleop")
@@ -61,8 +55,5 @@ def teleop(
 
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
     config = TeleopConfig(Spec(run, profile, seed, out, room, arm), host, port, certfile, keyfile)
-    before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
-    serve(config, announce, ready)
-    for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):
-        announce(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
+    serve(config, partial(say, json=json), ready)
     return 0

@@ -11,7 +11,7 @@ from latentarm.assistance.blending import Arbitration, blend
 from latentarm.control.controller import Controller
 from latentarm.control.engagement import Engagement
 from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.freshness import Freshness
+from latentarm.control.safety.filter import Freshness
 from latentarm.control.safety.plausibility import Plausibility
 from latentarm.control.safety.stack import Passed, SafetyStack
 from latentarm.control.safety.timekeeping import Timekeeping

@@ -1,16 +1,18 @@
 """The task that a run is driven at: the one it was trained for, or another."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, robot_of
-from latentarm.tasks.catalogue import HELD_OUT, make_task
+from latentarm.tasks.catalogue import HELD_OUT, TASKS
 from latentarm.tasks.replay import Replay, routes_of
 from latentarm.tasks.table_top import ITEMS
 from latentarm.tasks.task import Task
@@ -88,6 +90,46 @@ def task_without_run(
     if chosen == HELD_OUT:
         raise UserError("Held-out episodes belong to a run: name one, as in `latentarm drive RUN`.")
     return make_task(chosen, robot, end_effector, limits)
+
+
+def make_task(
+    name: str,
+    robot: str | None = None,
+    end_effector: str | None = None,
+    limits: StatedLimits | None = None,
+    usual: Callable[[], Robot] | None = None,
+) -> Task:
+    """A task of the catalogue.
+
+    Args:
+        name: a name in `TASKS`.
+        robot: a robot's name or model file; the task's own where None, else ``usual``.
+        end_effector: site, body or link of a model file.
+        limits: what is stated of the robot's limits.
+        usual: the robot of a task for any robot where none is named; a Panda where None.
+
+    Raises:
+        UserError: there is no such task, it does not load, the robot cannot be loaded, or the task is for
+            another robot.
+    """
+    task_class = TASKS.find(name, "--task")
+    if task_class.any_robot:
+        if usual is not None and robot is None:
+            made_for = usual()
+        else:
+            made_for = load_robot(robot or "panda", end_effector, limits)
+        return cast(Callable[[Robot], Task], task_class)(made_for)
+    task = cast(Callable[[], Task], task_class)()
+    if robot not in (None, task.robot.name):
+        raise UserError(
+            f"The task {name} is for the robot {task.robot.name}, not for {robot}: use --task reach."
+        )
+    if end_effector is not None or limits is not None:
+        raise UserError(
+            f"The task {name} has a {task.robot.name} of its own: for another tool or other limits use"
+            " --task reach."
+        )
+    return task
 
 
 def usual_task(goals: Sequence[Goal]) -> str:

@@ -1,12 +1,14 @@
-"""What a safety filter is, and what it knows."""
+"""What a safety filter is, what it knows, and the filters of the stack."""
 
+import math
 from abc import ABC, abstractmethod
 from typing import final
 
 import numpy as np
 
 from latentarm.control.safety.body import Body, Placement
-from latentarm.control.safety.bounds import Bounds
+from latentarm.control.safety.bounds import BUFFER_M, BUFFER_RAD, Bounds
+from latentarm.control.safety.halfspaces import slide, unbent
 from latentarm.control.safety.proximity import Contacts, Proximity
 from latentarm.control.safety.small import largest, smallest, some
 from latentarm.types import FloatArray, Stop
@@ -139,3 +141,185 @@ class SafetyFilter(ABC):
         Returns:
             (n,), rad/s, ``velocity`` itself where nothing had to change; or why the arm must stop.
         """
+
+
+@final
+class Finite(SafetyFilter):
+    """Stops where a velocity is not a number, not finite, or not one for each joint."""
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "finite"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
+        """See the base class."""
+        if velocity.shape != situation.state.shape:
+            return Stop(f"The controller gave {velocity.shape} numbers for {len(situation.state)} joints.")
+        if not all(map(math.isfinite, velocity.tolist())):
+            return Stop("The controller gave a velocity that is not a finite number.")
+        return velocity
+
+
+@final
+class Freshness(SafetyFilter):
+    """Stops where the newest input is too old (or its age is not a number).
+
+    The stop is ramped. To continue, the person releases the stick and enables the arm again, so that the arm
+    never starts to move by surprise when a connection returns.
+    """
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "freshness"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
+        """See the base class."""
+        return self.refusal(situation.input_age_s, situation.bounds.config.input_timeout_s) or velocity
+
+    @staticmethod
+    def refusal(age_s: float, timeout_s: float) -> Stop | None:
+        """Why an input of this age may not move the arm, or None."""
+        if 0.0 <= age_s <= timeout_s:
+            return None
+        if age_s > timeout_s:
+            return Stop(f"No input came for more than {1000 * timeout_s:.0f} ms.", code="input_late")
+        return Stop("The input's age is not known.")
+
+
+@final
+class JointVelocity(SafetyFilter):
+    """Slows the whole arm down until its fastest joint is within the limit; the direction is kept."""
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "joint velocity"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
+        """See the base class."""
+        speed, limit = np.abs(velocity), situation.bounds.speed
+        if largest(speed) <= situation.bounds.slowest:
+            return velocity
+        # Written so that nothing overflows, neither at 1e308 nor at zero.
+        share = smallest(limit / np.maximum(speed, limit))
+        return velocity if share == 1.0 else velocity * share
+
+
+HEADROOM = 0.95
+"""Shaping aims for this share of the limit: the rest is for what turning links add before the next tick."""
+
+
+@final
+class LinkSpeed(SafetyFilter):
+    """Slows the whole arm down until no point on any link, nor the tool, is too fast."""
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "link speed"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
+        """See the base class."""
+        limit = HEADROOM * situation.bounds.config.link_speed
+        nearby, drift = situation.nearby()
+        bend = nearby.body.bent(drift) @ np.abs(velocity)
+        if largest(nearby.speeds(velocity) + bend) <= limit:
+            return velocity
+        fastest = largest(situation.placement.speeds(velocity))
+        return velocity if fastest <= limit else velocity * (limit / fastest)
+
+
+@final
+class JointPosition(SafetyFilter):
+    """Slows each joint down before its limit and stops it there; the other joints go on.
+
+    The speed towards a limit is at most the distance left times ``damping_per_s``, which ordinary motion
+    can follow. Past a limit (the arm was put there by hand) a joint may only move back.
+    """
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "joint position"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
+        """See the base class."""
+        bounds = situation.bounds
+        if (situation.nearest_limit - BUFFER_RAD) * bounds.damping_per_s >= largest(np.abs(velocity)):
+            return velocity
+        down = (situation.room[0] + BUFFER_RAD) * bounds.damping_per_s
+        up = (situation.room[1] - BUFFER_RAD) * bounds.damping_per_s
+        clipped = np.minimum(np.maximum(velocity, np.minimum(down, 0.0)), np.maximum(up, 0.0))
+        return clipped if some(clipped != velocity) else velocity
+
+
+@final
+class WorkspaceBox(SafetyFilter):
+    """Damps motion towards the faces of the workspace box; without a box it changes nothing."""
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "workspace"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
+        """See the base class."""
+        bounds = situation.bounds
+        workspace = bounds.config.workspace
+        if workspace is None:
+            return velocity
+        points = situation.placement.points
+        # Room to the lower faces, then to the upper ones: (2, P, 3).
+        room = np.stack([points - workspace.lower, workspace.upper - points])
+        near = np.nonzero(room < BUFFER_M + bounds.config.link_speed * bounds.horizon_s)
+        if not len(near[0]):
+            return velocity
+        face, point, axis = near
+        outward = 1.0 - 2.0 * face
+        rows = situation.placement.jacobian[:, axis, point].T * outward[:, None]
+        left = np.maximum(room[near], 0.0)
+        floor = -bounds.damping_per_s * np.maximum(left - BUFFER_M, 0.0)
+        velocity = slide(velocity, rows, floor, left == 0.0)
+        speed = np.abs(velocity)
+        bend = situation.surroundings.body.point_curvature[point] @ speed @ speed
+        share = unbent(velocity, rows, left, bend, bounds.reach_s)
+        return velocity if share == 1.0 else share * velocity
+
+
+@final
+class Clearance(SafetyFilter):
+    """Limits the speed towards obstacles, and of the arm towards itself, by the remaining distance.
+
+    Where a distance is already too small, only motion that does not reduce it is allowed.
+    """
+
+    @property
+    def name(self) -> str:
+        """See the base class."""
+        return "clearance"
+
+    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
+        """See the base class."""
+        contacts = situation.contacts(np.abs(velocity))
+        if not contacts.pair.size:
+            return velocity
+        bounds, proximity = situation.bounds, situation.surroundings.proximity
+        height = contacts.height
+        if not contacts.fresh:
+            height = proximity.heights(contacts, np.zeros(bounds.dof))
+            if smallest(height.ravel()) <= bounds.nearest_m:
+                # This close to the limit, a slightly conservative bound would block motion.
+                contacts = situation.contacts_now()
+                if not contacts.pair.size:
+                    return velocity
+                height = contacts.height
+        rows = contacts.row.reshape(-1, bounds.dof)
+        room = np.maximum(height.ravel() - bounds.config.clearance, 0.0)
+        floor = -bounds.damping_per_s * np.maximum(room - BUFFER_M, 0.0)
+        velocity = slide(velocity, rows, floor, room == 0.0)
+        speed = np.abs(velocity)
+        bend = proximity.curvature[contacts.pair] @ speed @ speed
+        share = unbent(velocity, rows, room, np.repeat(bend, 2), bounds.reach_s)
+        return velocity if share == 1.0 else share * velocity

@@ -8,18 +8,22 @@ import numpy as np
 from latentarm.control.safety.body import Body
 from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.brake import Brake
-from latentarm.control.safety.clearance import Clearance
 from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.filter import SafetyFilter, Situation, Surroundings
-from latentarm.control.safety.finite import Finite
-from latentarm.control.safety.freshness import Freshness
+from latentarm.control.safety.filter import (
+    Clearance,
+    Finite,
+    Freshness,
+    JointPosition,
+    JointVelocity,
+    LinkSpeed,
+    SafetyFilter,
+    Situation,
+    Surroundings,
+    WorkspaceBox,
+)
 from latentarm.control.safety.guard import Guard
-from latentarm.control.safety.joint_position import JointPosition
-from latentarm.control.safety.joint_velocity import JointVelocity
-from latentarm.control.safety.link_speed import LinkSpeed
 from latentarm.control.safety.ramp import Ramp
 from latentarm.control.safety.small import largest, some
-from latentarm.control.safety.workspace import WorkspaceBox
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, Stop
 

@@ -117,7 +117,7 @@ class Drive:
         self._writer = writer
         self._orphaned = orphaned
         self._steering = steering
-        self._ghosts = GhostPaths(setup)
+        self._ghosts = GhostPaths(setup.task, setup.controller, setup.help)
         self._step = setup.step()
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled

@@ -7,7 +7,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.catalogue import ARMS, DEFAULT_ARM
-from latentarm.assistance.blending import Arbitration, FixedAlpha
+from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.safety.config import SafetyConfig
@@ -20,6 +20,8 @@ from latentarm.runs.folder import read_run, weights_fingerprint
 from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray
+from latentarm.web.arm_process.ghosts import Help
+from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
 from latentarm.web.protocol.channel import ModeName
 
 PERIOD_S: Final = 0.01
@@ -27,10 +29,6 @@ PERIOD_S: Final = 0.01
 
 BELIEF_PERIOD_S: Final = 0.1
 """How often the belief is updated, s."""
-
-INPUT_TIMEOUT_S: Final = 0.05
-"""How long a fresh input counts: 2.5 inputs of a page that sends 50 a second. What is left of 0.15 s is the
-stop's."""
 
 INPUT_GRACE_S: Final = 0.07
 """A person whose connection falters for no longer than this and the above finds the arm slowed down, and need
@@ -78,28 +76,6 @@ class Spec:
             raise UserError(
                 "A profile belongs to a run: name one, as in `latentarm teleop RUN --profile NAME`."
             )
-
-
-@final
-class Help(Arbitration):
-    """Help that can be switched on and off while the arm is driven.
-
-    Args:
-        inner: says how much while it is on.
-    """
-
-    def __init__(self, inner: Arbitration) -> None:
-        self._inner = inner
-        self.on = False
-
-    @property
-    def acts_at_rest(self) -> bool:
-        """No: an arm whose person lets go stands still."""
-        return False
-
-    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
-        """What ``inner`` says, or zero; see `Arbitration.alpha`."""
-        return self._inner.alpha(u, belief) if self.on else np.zeros(u.shape[:-1])
 
 
 @final

@@ -5,11 +5,12 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.assistance.action import assistive_action
-from latentarm.assistance.blending import blend
+from latentarm.assistance.blending import Arbitration, blend
+from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.kinematics.obstacles import HalfSpace
+from latentarm.tasks.task import Task
 from latentarm.types import Context, FloatArray
-from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.protocol.channel import Ghosts, Point
 
 AHEAD_S: Final = 1.0
@@ -22,6 +23,28 @@ _SAME_M: Final = 1e-9
 
 
 @final
+class Help(Arbitration):
+    """Help that can be switched on and off while the arm is driven.
+
+    Args:
+        inner: says how much while it is on.
+    """
+
+    def __init__(self, inner: Arbitration) -> None:
+        self._inner = inner
+        self.on = False
+
+    @property
+    def acts_at_rest(self) -> bool:
+        """No: an arm whose person lets go stands still."""
+        return False
+
+    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
+        """What ``inner`` says, or zero; see `Arbitration.alpha`."""
+        return self._inner.alpha(u, belief) if self.on else np.zeros(u.shape[:-1])
+
+
+@final
 class GhostPaths:
     """Looks ahead along the four full deflections, one direction at a time.
 
@@ -31,12 +54,15 @@ class GhostPaths:
     shows; the safety filters decide.
 
     Args:
-        setup: what is driven.
+        task: the robot, its goals and what it must keep clear of.
+        controller: what a deflection asks for.
+        help_: whether and how much the robot helps.
     """
 
-    def __init__(self, setup: DriveSetup) -> None:
-        self._setup = setup
-        robot = setup.task.robot
+    def __init__(self, task: Task, controller: Controller, help_: Help) -> None:
+        self._controller = controller
+        self._help = help_
+        robot = task.robot
         limits = SafetyConfig()
         self._chain = robot.chain
         self._capsules = robot.capsules
@@ -45,11 +71,11 @@ class GhostPaths:
         self._joint_speed = np.where(robot.chain.slide, limits.link_speed, limits.joint_speed)
         self._tool_speed = limits.link_speed
         self._clearance = limits.clearance
-        planes = [one for one in setup.task.obstacles if isinstance(one, HalfSpace)]
+        planes = [one for one in task.obstacles if isinstance(one, HalfSpace)]
         self._normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
         self._offsets = np.array([plane.normal @ plane.point for plane in planes])
         self._no_heights = np.zeros((0, 0))
-        self._goals = np.array([goal.configuration for goal in setup.task.goals])
+        self._goals = np.array([goal.configuration for goal in task.goals])
         self._found: dict[str, tuple[Point, ...]] = {}
         self._whole: Ghosts | None = None
 
@@ -67,7 +93,7 @@ class GhostPaths:
             mode: index of the controller's mode.
         """
         name, (axis, sign) = list(_DIRECTIONS.items())[direction]
-        u = np.zeros(self._setup.controller.input_dim)
+        u = np.zeros(self._controller.input_dim)
         u[axis] = sign
         self._found[name] = self._path(u, context, mode)
         if direction == len(_DIRECTIONS) - 1 and len(self._found) == len(_DIRECTIONS):
@@ -90,7 +116,7 @@ class GhostPaths:
         return tuple(points)
 
     def _wanted(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        controller, help_ = self._setup.controller, self._setup.help
+        controller, help_ = self._controller, self._help
         action = controller.action(controller.latent(u, context, mode), context, mode)
         if not help_.on:
             return action

@@ -9,10 +9,13 @@ import numpy as np
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputPort, InputSource
 from latentarm.types import Input
-from latentarm.web.arm_process.drive_setup import INPUT_TIMEOUT_S
 from latentarm.web.protocol.channel import Given, parse_given
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.shared_memory import LatestSlot
+
+INPUT_TIMEOUT_S: Final = 0.05
+"""How long a fresh input counts: 2.5 inputs of a page that sends 50 a second. What is left of 0.15 s is the
+stop's."""
 
 LATCH_MAX_S: Final = 10.0
 """For how long an input that nobody holds goes on, s."""

@@ -1,6 +1,7 @@
 """`latentarm teleop`: the page, its server, and the control process behind it."""
 
 import asyncio
+import shlex
 import socket
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
@@ -13,15 +14,16 @@ from starlette.responses import JSONResponse, Response
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
+from latentarm.control.recordings import JOURNAL_SUFFIX
 from latentarm.robots.notices import notices
 from latentarm.web.arm_process.drive_setup import DriveSetup, load_setup
+from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.training import model_names
 from latentarm.web.protocol.messages import FRAME_LIMIT
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.server.addresses import TeleopConfig, check_certificate, listen, origin
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
-from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.frames import MeteredSocket
 from latentarm.web.server.learning import Learning
@@ -40,7 +42,7 @@ _STARTED_S: Final = 0.01
 def serve(
     config: TeleopConfig, say: Callable[[str], None], ready: Callable[[str], None] = lambda address: None
 ) -> None:
-    """Serve the page until Ctrl-C.
+    """Serve the page until Ctrl-C, then say how to use what was recorded.
 
     Args:
         config: what was asked for.
@@ -65,6 +67,8 @@ def serve(
 
     for sentence in notices(setup.task.robot):
         say(sentence)
+    out = config.spec.out
+    before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     control = ControlProcess(config.spec)
     try:
         app = build_app(setup, control)
@@ -89,6 +93,8 @@ def serve(
     finally:
         control.end()
         listening.close()
+    for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):
+        say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
 
 
 def build_app(setup: DriveSetup, control: ControlProcess) -> FastAPI:

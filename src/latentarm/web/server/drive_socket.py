@@ -6,6 +6,7 @@ from typing import Final, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.protocol.channel import ChooseMode, ChooseProfile, Enable, Given, Record, Reset
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.messages import (
@@ -28,7 +29,6 @@ from latentarm.web.protocol.messages import (
 )
 from latentarm.web.protocol.notice import Notice, NoticeCode
 from latentarm.web.protocol.personalise_messages import AnswerQuestion, PersonaliseMessage
-from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.frames import TOO_MANY
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY

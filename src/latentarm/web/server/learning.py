@@ -7,11 +7,11 @@ from typing import Final, final
 from latentarm.control.journal import list_journal
 from latentarm.errors import UserError
 from latentarm.runs.folder import read_run
+from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.training import TrainingJob, TrainingPlan
 from latentarm.web.protocol.channel import ChooseRun
 from latentarm.web.protocol.learning_messages import LearningState, Recorded, Train, Training
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
-from latentarm.web.server.control_process import ControlProcess
 from latentarm.web.server.personalising import Driven, Personalising
 from latentarm.web.server.run_check import WITHIN_S, Trial
 from latentarm.web.server.run_list import RunList

@@ -9,6 +9,7 @@ from typing import Final, final
 
 from latentarm.alignment.profile import TRIAL, discard_trial, keep_trial, profile_folder, trial_folder
 from latentarm.errors import UserError
+from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
 from latentarm.web.protocol.channel import ChooseProfile, Report
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
@@ -24,7 +25,6 @@ from latentarm.web.protocol.personalise_messages import (
     SkipQuestion,
     TryAlignment,
 )
-from latentarm.web.server.control_process import ControlProcess
 
 STICK_AXES: Final = 2
 """A page's stick cannot answer for more."""
