@@ -122,7 +122,7 @@ def asked(page: Page) -> None:
     """A question, and an answer that is still held."""
     personalise(page)
     page.get_by_label("Your name").fill("Ada")
-    page.get_by_label("Motions, at most").select_option("5")
+    page.get_by_label("Maximum number of motions").select_option("5")
     page.get_by_role("button", name="Begin").click()
     page.get_by_role("heading", name="Question 1").wait_for(timeout=LEARNING_MS)
     push_aside(page)

@@ -143,9 +143,9 @@ def test_a_name_that_is_no_folder_is_refused(tmp_path, name):
 
 def test_a_name_that_is_taken_and_too_few_episodes_are_refused(tmp_path):
     (tmp_path / "runs" / "waving").mkdir(parents=True)
-    with pytest.raises(UserError, match="already: choose another name"):
+    with pytest.raises(UserError, match="already exists: choose another name"):
         planned(tmp_path)
-    with pytest.raises(UserError, match="Training needs at least 3 episodes, and one of them is chosen"):
+    with pytest.raises(UserError, match="Training needs at least 3 episodes, and only one is chosen"):
         planned(tmp_path, name="other", episodes=(2, 2, 2))
 
 

@@ -89,7 +89,7 @@ def test_the_arm_learns_on_the_page_what_it_was_shown(open_page, arm, push, tmp_
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         assert found(page) == []
-    page.get_by_label("Name of what is learned").fill("pushing")
+    page.get_by_label("Name for the result").fill("pushing")
     page.get_by_role("radio", name="One axis").check()
     page.evaluate(WATCH_PROGRESS)
     train.click()
@@ -102,7 +102,7 @@ def test_the_arm_learns_on_the_page_what_it_was_shown(open_page, arm, push, tmp_
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         assert found(page) == []
-    expect(page.get_by_label("Name of what is learned")).to_have_value("pushing-1")
+    expect(page.get_by_label("Name for the result")).to_have_value("pushing-1")
     assert (tmp_path / "runs" / "pushing" / "config.json").is_file()
 
     page.get_by_role("button", name="Drive it", exact=True).click()

@@ -40,7 +40,7 @@ test("a goal is marked as the likeliest only where it stands out", () => {
 
 for (const [recording, you, words] of [
   [null, true, "Nothing recorded yet."],
-  [null, false, "The person who drives can record."],
+  [null, false, "Only the driver can record."],
   [{ on: false, samples: 0, episodes: 1, problem: null }, true, "1 episode recorded."],
   [{ on: false, samples: 0, episodes: 2, problem: null }, true, "2 episodes recorded."],
   [{ on: true, samples: 250, episodes: 2, problem: null }, true, "Recording episode 3: 2 s."],
@@ -64,7 +64,7 @@ test("a motion is named as the person sees it", () => {
 
 test("a motion is named by its large parts, the largest first", () => {
   assert.equal(motionWords([0.01, 0.06, 0.1], "facing"), "up, right: 12 cm");
-  assert.equal(motionWords([0, 0, 0.004], "facing"), "hardly moves, or turns");
+  assert.equal(motionWords([0, 0, 0.004], "facing"), "hardly moves, or only turns");
 });
 
 test("the tool's place is said from the table and from the nearest goal", () => {

@@ -68,8 +68,8 @@ for (const [fields, askedHere, words] of [
   [{ you: true, driver: "me", watchers: 3 }, false, "You are driving; 3 other pages watch."],
   [{ you: true, driver: "me", asking: "b", asking_name: "Bea" }, false, "You are driving. Bea asks to drive."],
   [{ you: true, driver: "me", asking: "b" }, false, "You are driving. Somebody asks to drive."],
-  [{ driver: "b", driver_name: "Bea" }, false, "Bea is driving; you are watching, and may stop the arm."],
-  [{ driver: "b" }, true, "Somebody else is driving; you are watching, and may stop the arm. You have asked to drive."],
+  [{ driver: "b", driver_name: "Bea" }, false, "Bea is driving; you are watching and can stop the arm."],
+  [{ driver: "b" }, true, "Somebody else is driving; you are watching and can stop the arm. You have asked to drive."],
 ]) {
   test(`who drives: ${words}`, () => assert.equal(whoDrives(stateOf(fields), askedHere), words));
 }

@@ -46,7 +46,7 @@ test("a training says how far it is", () => {
 
 test("a training that is done says whether it ended early", () => {
   const done = { ...TRAINING, phase: "done", seconds_left: null };
-  assert.equal(progressWords(done), "3 passes, until it got no better · loss 0.123");
+  assert.equal(progressWords(done), "3 passes, until it stopped improving · loss 0.123");
   assert.equal(progressWords({ ...done, epoch: 12 }), "12 passes · loss 0.123");
   assert.equal(progressShare(done), 100);
   assert.ok(!isBusy(done));

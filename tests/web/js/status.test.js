@@ -57,7 +57,7 @@ test("a silent server is said within 0.8 s", () => {
 
 test("why this page stopped the arm is said until the arm is enabled again", () => {
   status.halted("focus_lost");
-  assert.equal(settled({ phase: "disengaged" })[1], "Stopped: this window lost the focus. Press Enable to go on.");
+  assert.equal(settled({ phase: "disengaged" })[1], "Stopped: this window lost the focus. Press Enable to continue.");
   assert.equal(settled({ phase: "ready" })[0], "ready");
 });
 
