@@ -24,7 +24,8 @@ def test_a_name_of_the_api_is_there_and_documented(name):
 @pytest.mark.skipif(not PAGES.exists(), reason="the documentation is not beside this installation")
 def test_the_site_documents_every_name():
     text = "".join(page.read_text() for page in PAGES.glob("*.md"))
-    documented = {line.rpartition(".")[2] for line in text.splitlines() if line.startswith(":::")}
+    places = [line.removeprefix("::: ") for line in text.splitlines() if line.startswith(":::")]
+    documented = {place.rpartition(".")[2] for place in places if not place.startswith("latentarm.testing.")}
     assert documented == set(la.__all__)
 
 
@@ -68,7 +69,7 @@ def test_paths_may_be_texts_or_path_like(kind, tmp_path):
     model = la.SCL(epochs=1).fit(read, checkpoint=folder["checkpoint"])
     config = {"held_out": [], "demonstrations": "", "kind": "scl", "context": "state", "fingerprint": ""}
     model.save(folder["run"], run=config | {"robot": "panda", "end_effector": None})
-    assert la.load_model(folder["run"]).kind == "scl"
+    assert la.load_model(folder["run"]).kind.name == "scl"
     assert la.load_decoder(folder["run"]).latent_dim == 2
     assert la.read_run(folder["run"]).robot == "panda"
     la.Recorder(folder["journal.sqlite"]).close()

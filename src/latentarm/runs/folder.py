@@ -190,13 +190,13 @@ def robot_of(run: Run) -> Robot:
     Raises:
         UserError: the dataset did not say, or the robot cannot be loaded.
     """
-    if run.robot_model is not None:
-        robot = load_copy(run.folder / ROBOT / run.robot_model, run.end_effector)
-        return robot if run.limits is None else restate(robot, run.limits)
     if not run.robot:
         raise UserError(f"{run.demonstrations} does not name its robot: import it again with --robot.")
     try:
-        return load_robot(run.robot, run.end_effector, run.limits)
+        if run.robot_model is None:
+            return load_robot(run.robot, run.end_effector, run.limits)
+        robot = load_copy(run.folder / ROBOT / run.robot_model, run.end_effector)
+        return robot if run.limits is None else restate(robot, run.limits)
     except AmbiguousEndEffectorError as error:
         command = f"latentarm train --demonstrations {run.demonstrations} --end-effector NAME"
         raise UserError(
