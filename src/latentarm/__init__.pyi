@@ -24,8 +24,8 @@ from .demonstrations.importing import import_demonstrations as import_demonstrat
 from .errors import UserError as UserError
 from .models.autoencoders.training import CAE as CAE
 from .models.autoencoders.training import CVAE as CVAE
-from .models.decoder import load_decoder as load_decoder
 from .models.homogeneous.training import Homogeneous as Homogeneous
+from .models.saving import load_decoder as load_decoder
 from .models.saving import load_model as load_model
 from .models.scl.training import SCL as SCL
 from .robots.catalogue import load_robot as load_robot

@@ -26,7 +26,7 @@ from latentarm.alignment.runtime import LearnedAlignment
 from latentarm.alignment.training import FitConfig, fit_alignments
 from latentarm.controllers.latent import LatentController
 from latentarm.errors import UserError
-from latentarm.models.decoder import load_decoder
+from latentarm.models.saving import load_decoder
 from latentarm.types import Context
 
 CONFIG = "profiles/ada/config.json"

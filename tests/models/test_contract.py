@@ -8,8 +8,7 @@ from sklearn.base import clone
 
 from latentarm.errors import UserError
 from latentarm.models.catalogue import MODELS
-from latentarm.models.decoder import load_decoder
-from latentarm.models.saving import load_model
+from latentarm.models.saving import load_decoder, load_model
 from latentarm.testing.models import SMALL, ModelContract
 
 

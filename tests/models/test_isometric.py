@@ -14,10 +14,10 @@ from safetensors.numpy import load, save
 from latentarm.errors import UserError
 from latentarm.models.batches import Batch
 from latentarm.models.catalogue import MODELS
-from latentarm.models.decoder import load_decoder
 from latentarm.models.isometric.runtime import DAMPING_M2
 from latentarm.models.isometric.training import Isometric, _geometry
 from latentarm.models.networks import group_layers
+from latentarm.models.saving import load_decoder
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M, ToolContexts
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.planar import planar

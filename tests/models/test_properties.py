@@ -13,8 +13,7 @@ from sklearn import decomposition
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
 from latentarm.models.catalogue import MODELS
-from latentarm.models.normaliser import action_normaliser, context_normaliser
-from latentarm.models.scaling import CollapseWarning
+from latentarm.models.scaling import CollapseWarning, action_normaliser, context_normaliser
 from latentarm.types import Demonstrations, Episode
 
 TRAINED = {"seeds": 2, "epochs": 25, "hidden": (24, 24), "window": 2}

@@ -12,8 +12,7 @@ from safetensors.numpy import load, save
 
 from latentarm.errors import UserError
 from latentarm.models.catalogue import MODELS
-from latentarm.models.decoder import load_decoder
-from latentarm.models.saving import load_model, write_model
+from latentarm.models.saving import load_decoder, load_model, write_model
 
 CONFIG, WEIGHTS = "config.json", "model.safetensors"
 
@@ -239,7 +238,7 @@ def test_saving_again_replaces_both_files(folder, fitted, demonstrations, sample
 def test_the_decoder_loads_without_torch(folder):
     script = (
         "import sys; from pathlib import Path; import numpy as np\n"
-        "from latentarm.models.decoder import load_decoder\n"
+        "from latentarm.models.saving import load_decoder\n"
         "decoder = load_decoder(Path(sys.argv[1]))\n"
         "print(decoder.decode(np.zeros(2), np.zeros(4)).shape)\n"
         "print([name for name in ('torch', 'mujoco', 'sklearn', 'pyarrow', 'h5py') if name in sys.modules])"

@@ -16,8 +16,14 @@ from latentarm.alignment.error import lengths, outcome
 from latentarm.alignment.poses import pose_vectors
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
-from latentarm.models.decoder import Decoder
+from latentarm.models.kind import Decoder
 from latentarm.types import FloatArray
+
+TOO_FEW: Final = 3
+"""Answers below which alignments agree or disagree by chance."""
+
+ENSEMBLE: Final = 5
+"""Alignments that disagree, and of which the best is kept in the end."""
 
 PLACE_WEIGHT: Final = 0.5
 """Weight of a motion's place relative to its direction when motions are compared."""

@@ -61,6 +61,10 @@ class FitConfig:
             raise UserError(f"The learning rate must be positive, not {self.learning_rate:g}.")
 
 
+QUICK: Final = FitConfig(steps=150)
+"""How an ensemble is learned between two questions, while a person waits."""
+
+
 @final
 @dataclass(frozen=True, eq=False)
 class FittedAlignments:

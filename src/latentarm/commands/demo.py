@@ -29,7 +29,7 @@ from latentarm.metrics.drives import drive_rows
 from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject, headline
 from latentarm.metrics.table import markdown_table
-from latentarm.models.decoder import load_decoder
+from latentarm.models.saving import load_decoder
 from latentarm.models.training import epoch_bar
 from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.runs.checks import check_count, check_seed

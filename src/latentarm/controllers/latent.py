@@ -9,7 +9,8 @@ from latentarm.alignment.contract import Alignment, identity
 from latentarm.alignment.profile import load_profile
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
-from latentarm.models.decoder import Decoder, load_decoder
+from latentarm.models.kind import Decoder
+from latentarm.models.saving import load_decoder
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray
 

@@ -18,10 +18,8 @@ from latentarm.demonstrations.split import split_episodes
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import TrainingData
-from latentarm.models.decoder import Decoder
-from latentarm.models.kind import Dimensions, ModelKind, TrainedModel, TrainingSummary
+from latentarm.models.kind import Decoder, Dimensions, ModelKind, TrainedModel, TrainingSummary
 from latentarm.models.networks import Networks
-from latentarm.models.normaliser import Normaliser, action_normaliser, context_normaliser
 from latentarm.models.parameters import (
     MOST_SEEDS,
     RANGE,
@@ -37,6 +35,9 @@ from latentarm.models.saving import write_model
 from latentarm.models.scaling import (
     EFFECT_SAMPLES,
     CollapseWarning,
+    Normaliser,
+    action_normaliser,
+    context_normaliser,
     describe_collapse,
     effect_of_dimensions,
     find_collapsed,

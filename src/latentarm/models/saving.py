@@ -21,7 +21,7 @@ from safetensors.numpy import load, save
 from latentarm.errors import UserError
 from latentarm.files import write_text, written_whole
 from latentarm.models.catalogue import KINDS, MODELS
-from latentarm.models.kind import Dimensions, Shape, TrainedModel, TrainingSummary
+from latentarm.models.kind import Decoder, Dimensions, Shape, TrainedModel, TrainingSummary
 from latentarm.models.parameters import check_parameters
 from latentarm.models.reading import Section
 from latentarm.plugins import Origin
@@ -237,3 +237,16 @@ def _versions(origin: Origin | None) -> dict[str, str]:
         except PackageNotFoundError:
             versions[package] = "not installed as a package"
     return versions
+
+
+def load_decoder(folder: StrPath, seed: int = 0) -> Decoder:
+    """Read one seed's decoder from a folder that a model was saved to. Loads no torch.
+
+    Args:
+        folder: holds ``config.json`` and ``model.safetensors``.
+        seed: index of the seed, 0..S-1.
+
+    Raises:
+        UserError: the files are missing, broken or foreign, or there is no such seed.
+    """
+    return Decoder(read_model(Path(folder)), seed)

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from latentarm.models.normaliser import Normaliser
+from latentarm.models.scaling import Normaliser
 from latentarm.types import FloatArray
 
 

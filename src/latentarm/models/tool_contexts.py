@@ -10,8 +10,7 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain, Frame
-from latentarm.models.normaliser import Normaliser, context_normaliser
-from latentarm.models.scaling import SPAN_QUANTILE
+from latentarm.models.scaling import SPAN_QUANTILE, Normaliser, context_normaliser
 from latentarm.types import FloatArray
 
 TWIST: Final = 6

@@ -12,6 +12,7 @@ from latentarm.alignment.contract import identity
 from latentarm.alignment.demonstrated import shown
 from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.profile import Profile, model_fingerprint, save_profile
+from latentarm.alignment.queries import ENSEMBLE
 from latentarm.alignment.training import FitConfig
 from latentarm.assistance.annotation import prepared
 from latentarm.demonstrations.split import select_episodes
@@ -21,7 +22,7 @@ from latentarm.metrics.results import as_document
 from latentarm.models.saving import load_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
-from latentarm.runs.questions import ENSEMBLE, Scene, Watch, unwatched
+from latentarm.runs.questions import Scene, Watch, unwatched
 from latentarm.runs.samples import ALIGN_STREAM, load_samples
 from latentarm.types import Row
 

@@ -3,12 +3,14 @@
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from typing import Final, final
+from typing import final
 
 import numpy as np
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.queries import (
+    ENSEMBLE,
+    TOO_FEW,
     StoppingRule,
     bootstrap,
     disagreement,
@@ -16,21 +18,12 @@ from latentarm.alignment.queries import (
     next_motion,
     novelty,
 )
-from latentarm.alignment.training import FitConfig, FittedAlignments, Report, fit_alignments, unheard
+from latentarm.alignment.training import QUICK, FitConfig, FittedAlignments, Report, fit_alignments, unheard
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.model import LatentActionModel
 from latentarm.runs.person import Person, Question, Say
 from latentarm.types import FloatArray
-
-TOO_FEW: Final = 3
-"""Answers below which alignments agree or disagree by chance."""
-
-ENSEMBLE: Final = 5
-"""Alignments that disagree, and of which the best is kept in the end."""
-
-QUICK: Final = FitConfig(steps=150)
-"""How an ensemble is learned between two questions, while a person waits."""
 
 Watch = Callable[[], AbstractContextManager[Report]]
 

@@ -17,9 +17,8 @@ from sklearn.utils.validation import check_is_fitted
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.errors import UserError
 from latentarm.models.catalogue import KINDS
-from latentarm.models.decoder import load_decoder
 from latentarm.models.model import LatentActionModel
-from latentarm.models.saving import load_model
+from latentarm.models.saving import load_decoder, load_model
 from latentarm.models.scaling import CollapseWarning
 from latentarm.robots.planar import planar
 from latentarm.types import Demonstrations, Episode, FloatArray

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from latentarm.studies.alignment.cell import Cell, CellResult
-from latentarm.studies.alignment.conditions import CONDITIONS, NO_ALIGN
 from latentarm.studies.alignment.curves import BY_DISAGREEMENT, CHOICES, CurveCell, CurveResult
-from latentarm.studies.alignment.decoder import DecoderCell, LearnedDecoder
-from latentarm.studies.alignment.preset import PRESETS
+from latentarm.studies.alignment.preset import CONDITIONS, NO_ALIGN, PRESETS
+from latentarm.studies.alignment.scene import DecoderCell, LearnedDecoder
 
 AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1)
 """Means of the conditions, in their order."""

@@ -16,7 +16,6 @@ from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.operators.expectation import Expectation
 from latentarm.robots.catalogue import load_robot
 from latentarm.simulation.drive import Setup
-from latentarm.studies.alignment.conditions import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS
 from latentarm.studies.alignment.drives import (
     DRIVEN,
     HELPED,
@@ -27,11 +26,11 @@ from latentarm.studies.alignment.drives import (
     drive_all,
     drive_cells,
 )
-from latentarm.studies.alignment.drives_comparison import compare_drives, drives_rows, misses
 from latentarm.studies.alignment.drives_learning import TURN_RAD, Learned, learn, turned_person
+from latentarm.studies.alignment.drives_tables import compare_drives, drives_rows, misses
 from latentarm.studies.alignment.figures import drives_figure
-from latentarm.studies.alignment.measured import Measured
-from latentarm.studies.alignment.preset import PRESETS, Drives
+from latentarm.studies.alignment.preset import ALL_PRIORS, IDEAL, NO_ALIGN, PRESETS, WITHOUT_PRIORS, Drives
+from latentarm.studies.alignment.rows import Measured
 from latentarm.studies.alignment.study import STUDY
 from latentarm.studies.study import Request
 from latentarm.style import save_figure

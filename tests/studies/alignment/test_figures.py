@@ -3,9 +3,9 @@ import pytest
 
 from figure_faults import faults
 from latentarm.metrics.looks import look_of
-from latentarm.studies.alignment.conditions import CONDITIONS
 from latentarm.studies.alignment.curves import CHOICES
 from latentarm.studies.alignment.figures import conditions_figure, curves_figure
+from latentarm.studies.alignment.preset import CONDITIONS
 from latentarm.style import MM_PER_INCH, TWO_COLUMNS_MM
 from latentarm.tasks.pouring.tasks import POURING_TASKS
 

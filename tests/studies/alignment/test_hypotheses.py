@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from latentarm.studies.alignment.conditions import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS
 from latentarm.studies.alignment.curves import AT_RANDOM, BY_NOVELTY
-from latentarm.studies.alignment.hypotheses import CLAIMS, compare_conditions
-from latentarm.studies.alignment.targets import answers_needed, targets
+from latentarm.studies.alignment.hypotheses import CLAIMS, answers_needed, compare_conditions, targets
+from latentarm.studies.alignment.preset import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS
 from latentarm.studies.hypotheses import verdicts
 
 AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1)

@@ -9,14 +9,6 @@ from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.queries import next_motion, novelty
 from latentarm.studies.alignment.cell import Cell, measure_cell
-from latentarm.studies.alignment.conditions import (
-    ALL_PRIORS,
-    CONDITIONS,
-    FEW_ANSWERS,
-    LEARNED,
-    NO_ALIGN,
-    SINGLE_PRIORS,
-)
 from latentarm.studies.alignment.curves import (
     AT_RANDOM,
     BY_DISAGREEMENT,
@@ -25,11 +17,19 @@ from latentarm.studies.alignment.curves import (
     CurveCell,
     measure_curve,
 )
-from latentarm.studies.alignment.decoder import DecoderCell, learn_decoder
-from latentarm.studies.alignment.documents import time_alignment
-from latentarm.studies.alignment.preset import Curves, Preset
-from latentarm.studies.alignment.scene import scene_of
-from latentarm.studies.alignment.streams import Stream
+from latentarm.studies.alignment.preset import (
+    ALL_PRIORS,
+    CONDITIONS,
+    FEW_ANSWERS,
+    LEARNED,
+    NO_ALIGN,
+    SINGLE_PRIORS,
+    Curves,
+    Preset,
+    Stream,
+)
+from latentarm.studies.alignment.rows import time_alignment
+from latentarm.studies.alignment.scene import DecoderCell, learn_decoder, scene_of
 
 TINY = Preset(
     "tiny",

@@ -8,8 +8,7 @@ from rich.console import Console
 
 from latentarm.metrics.measures import MEASURES
 from latentarm.runs.results_folder import CONFIG
-from latentarm.studies.alignment.conditions import CONDITIONS
-from latentarm.studies.alignment.preset import PRESETS, Curves, Drives, Preset
+from latentarm.studies.alignment.preset import CONDITIONS, PRESETS, Curves, Drives, Preset
 from latentarm.studies.alignment.study import MODELS, STUDY, TASKS
 from latentarm.studies.alignment.tables import summary_tables
 from latentarm.studies.study import ALWAYS_MADE, Request, run_study

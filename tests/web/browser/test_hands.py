@@ -8,7 +8,7 @@ import pytest
 
 from latentarm.alignment.profile import Profile, model_fingerprint, new_profile_folder, save_profile
 from latentarm.alignment.runtime import LearnedAlignment
-from latentarm.models.decoder import load_decoder
+from latentarm.models.saving import load_decoder
 
 SWITCH_KEY, NEXT_KEY = "Enter", "Backspace"
 FAR_M = 0.02

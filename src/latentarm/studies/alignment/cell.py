@@ -11,10 +11,8 @@ from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.priors import NO_PRIORS
 from latentarm.alignment.training import FitConfig
-from latentarm.studies.alignment.conditions import IDEAL, LEARNED, MANUAL, NO_ALIGN
-from latentarm.studies.alignment.decoder import LearnedDecoder
-from latentarm.studies.alignment.scene import Scene, scene_of
-from latentarm.studies.alignment.streams import Stream
+from latentarm.studies.alignment.preset import IDEAL, LEARNED, MANUAL, NO_ALIGN, Stream
+from latentarm.studies.alignment.scene import LearnedDecoder, Scene, scene_of
 from latentarm.types import FloatArray
 
 

@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.queries import (
+    TOO_FEW,
     StoppingRule,
     bootstrap,
     disagreement,
@@ -18,11 +19,8 @@ from latentarm.alignment.queries import (
 )
 from latentarm.alignment.runtime import LearnedAlignment
 from latentarm.alignment.training import FitConfig
-from latentarm.runs.questions import TOO_FEW
-from latentarm.studies.alignment.decoder import LearnedDecoder
-from latentarm.studies.alignment.preset import Preset
-from latentarm.studies.alignment.scene import Scene, scene_of
-from latentarm.studies.alignment.streams import Stream
+from latentarm.studies.alignment.preset import Preset, Stream
+from latentarm.studies.alignment.scene import LearnedDecoder, Scene, scene_of
 from latentarm.studies.streams import generator
 from latentarm.types import FloatArray
 

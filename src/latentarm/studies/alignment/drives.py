@@ -19,9 +19,8 @@ from latentarm.controllers.latent import LatentController
 from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.simulation.drive import RATE_HZ, Setup, simulate
 from latentarm.simulation.drives import drive_plan
-from latentarm.studies.alignment.conditions import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS
 from latentarm.studies.alignment.drives_learning import DriveCell, Learned, learn
-from latentarm.studies.alignment.preset import Preset
+from latentarm.studies.alignment.preset import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS, Preset
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray, StepRecord

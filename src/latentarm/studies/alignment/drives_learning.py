@@ -18,18 +18,24 @@ from latentarm.alignment.contract import Alignment, identity
 from latentarm.alignment.demonstrated import demonstrated_motions, shown
 from latentarm.alignment.error import relative_alignment_error
 from latentarm.alignment.priors import NO_PRIORS
-from latentarm.alignment.queries import StoppingRule
+from latentarm.alignment.queries import ENSEMBLE, StoppingRule
 from latentarm.alignment.training import FitConfig
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.kinematics.chain import Chain
 from latentarm.models.model import LatentActionModel
 from latentarm.operators.expectation import Expectation, displacements, main_directions
-from latentarm.runs.questions import ENSEMBLE, Scene, ask, unwatched
+from latentarm.runs.questions import Scene, ask, unwatched
 from latentarm.simulation.asking import FASTEST, SimulatedPerson
 from latentarm.simulation.drive import STATE_NOISE_RAD
-from latentarm.studies.alignment.conditions import ALL_PRIORS, IDEAL, LEARNED, NO_ALIGN, WITHOUT_PRIORS
-from latentarm.studies.alignment.preset import Preset
-from latentarm.studies.alignment.streams import Stream
+from latentarm.studies.alignment.preset import (
+    ALL_PRIORS,
+    IDEAL,
+    LEARNED,
+    NO_ALIGN,
+    WITHOUT_PRIORS,
+    Preset,
+    Stream,
+)
 from latentarm.studies.fitting import fit_model
 from latentarm.studies.streams import generator, integer, sequence
 from latentarm.tasks.table_top import TableTop

@@ -8,11 +8,11 @@ import numpy as np
 from latentarm.metrics.looks import look_of
 from latentarm.simulation.drive_figures import GOAL_COLOURS, GOAL_MARKERS, OUTCOMES, outcome_lines
 from latentarm.studies.alignment.cell import CellResult
-from latentarm.studies.alignment.conditions import CONDITIONS
 from latentarm.studies.alignment.curves import AT_RANDOM, BY_NOVELTY, CHOICES, CurveResult
 from latentarm.studies.alignment.drives import DRIVEN, Driven, DrivesResult
+from latentarm.studies.alignment.hypotheses import RANDOM_ANSWERS
+from latentarm.studies.alignment.preset import CONDITIONS
 from latentarm.studies.alignment.rows import ENCODED
-from latentarm.studies.alignment.targets import RANDOM_ANSWERS
 from latentarm.studies.drawing import name_series, plain_ticks, title
 from latentarm.studies.statistics import bootstrap_interval, reach_of_interval
 from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure, tidy

@@ -1,9 +1,13 @@
-"""How large the study is."""
+"""How large the study is, which ways of alignment it compares, and its streams of randomness."""
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import IntEnum
 from typing import Final
 
-from latentarm.runs.questions import ENSEMBLE, QUICK
+from latentarm.alignment.priors import NO_PRIORS, Priors
+from latentarm.alignment.queries import ENSEMBLE
+from latentarm.alignment.training import QUICK
 
 
 @dataclass(frozen=True)
@@ -118,3 +122,48 @@ PRESETS: Final[dict[str, Preset]] = {
         ),
     ),
 }
+
+
+class Stream(IntEnum):
+    """The uses of randomness."""
+
+    TRAINING = 0
+    TEST = 1
+    NETWORKS = 2
+    STATE_NOISE = 3
+    SHOWN = 4
+    TEST_MOTIONS = 5
+    UNLABELLED = 6
+    QUESTIONS = 7
+    ANSWERS = 8
+    CANDIDATES = 9
+    CANDIDATE_ANSWERS = 10
+    ENSEMBLES = 11
+
+
+NO_ALIGN: Final = "No Align"
+MANUAL: Final = "Manual Align"
+WITHOUT_PRIORS: Final = "No Priors"
+ALL_PRIORS: Final = "All Priors"
+IDEAL: Final = "Ideal Align"
+
+SINGLE_PRIORS: Final[Mapping[str, Priors]] = {
+    "Proportional": replace(NO_PRIORS, proportional=Priors().proportional),
+    "Reversible": replace(NO_PRIORS, reversible=Priors().reversible),
+    "Consistent": replace(NO_PRIORS, consistent=Priors().consistent),
+}
+"""One prior at a time, with the weight that it has among all."""
+
+LEARNED: Final[Mapping[str, Priors]] = {WITHOUT_PRIORS: NO_PRIORS, **SINGLE_PRIORS, ALL_PRIORS: Priors()}
+"""Networks that are learned from a few answers, and the priors of each; all as `latentarm align` has them."""
+
+FEW_ANSWERS: Final = (MANUAL, *LEARNED)
+"""All that are given the same few answers."""
+
+CONDITIONS: Final = (NO_ALIGN, *FEW_ANSWERS, IDEAL)
+"""All, as tables and figures order them."""
+
+
+def under(condition: str, noise: float) -> str:
+    """How rows name a condition under a noise."""
+    return f"{condition}, noise {noise:g}"

@@ -1,11 +1,13 @@
-"""Everything about one task and one decoder that all alignments share."""
+"""What alignments are learned in: a decoder, learned once for each task and model, and a simulated person."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from time import perf_counter
 from typing import Final, final
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import Alignment
@@ -14,15 +16,110 @@ from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import pose_vectors
 from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
 from latentarm.kinematics.chain import Chain
-from latentarm.models.decoder import Decoder
+from latentarm.models.kind import Decoder
 from latentarm.models.model import LatentActionModel
-from latentarm.operators.preference import Imprecise, Preference
-from latentarm.studies.alignment.decoder import LearnedDecoder, demonstrate
-from latentarm.studies.alignment.people import preference_of
-from latentarm.studies.alignment.streams import Stream
-from latentarm.studies.streams import generator
-from latentarm.tasks.pouring.tasks import POURING_TASKS
-from latentarm.types import FloatArray
+from latentarm.operators.preference import ByPlace, HeightAndTilt, Imprecise, Preference, ToolAxes
+from latentarm.studies.alignment.preset import Preset, Stream
+from latentarm.studies.fitting import fit_model, validation_episodes
+from latentarm.studies.streams import generator, integer, sequence
+from latentarm.tasks.pouring.tasks import POURING_TASKS, at_bowl
+from latentarm.tasks.pouring.tool_path import SPEED_M_S, TURN_RAD_S
+from latentarm.types import Demonstrations, FloatArray
+
+
+def preference_of(task: str, chain: Chain) -> Preference:
+    """What is meant in a task: a full push is the fastest motion of the demonstrations.
+
+    Args:
+        task: a name of `POURING_TASKS`.
+        chain: the arm.
+    """
+    plane = ToolAxes(chain, 2, SPEED_M_S)
+    pour = HeightAndTilt(chain, SPEED_M_S, TURN_RAD_S)
+    return {"plane": plane, "pour": pour, "reach_and_pour": ByPlace(chain, at_bowl, pour, plane)}[task]
+
+
+WINDOW: Final = 10
+"""Samples that an action may reach ahead and back: half a second, as long as a motion that is asked about."""
+
+
+@dataclass(frozen=True)
+class DecoderCell:
+    """A decoder to be learned.
+
+    Attributes:
+        task: a name of `POURING_TASKS`.
+        model: a name of `MODELS`.
+        preset: sizes of the study.
+        seed: of the whole study; the same demonstrations come from it for every model.
+    """
+
+    task: str
+    model: str
+    preset: Preset
+    seed: int
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedDecoder:
+    """A decoder that was learned.
+
+    Attributes:
+        cell: what was asked for.
+        model: fitted, of one seed.
+        fit_s: how long that took, s.
+    """
+
+    cell: DecoderCell
+    model: LatentActionModel
+    fit_s: float
+
+
+def learn_decoder(cell: DecoderCell) -> LearnedDecoder:
+    """Demonstrate and fit.
+
+    The weights are the same to the last bit in whatever process this runs: one thread each for linear algebra
+    and for torch, since more of them add up in another order.
+
+    Raises:
+        UserError: the preset's sizes make no sense to the model or to the task.
+    """
+    with threadpool_limits(limits=1):
+        demonstrations = demonstrate(cell, Stream.TRAINING)
+        began = perf_counter()
+        model = _fit(cell, demonstrations)
+        return LearnedDecoder(cell, model, perf_counter() - began)
+
+
+def demonstrate(cell: DecoderCell, stream: Stream) -> Demonstrations:
+    """The demonstrations for training or for testing: the same whenever they are asked for.
+
+    Raises:
+        UserError: the preset asks for none.
+    """
+    preset = cell.preset
+    episodes = preset.episodes if stream == Stream.TRAINING else preset.test_episodes
+    return POURING_TASKS[cell.task]().demonstrate(episodes, generator(cell.seed, cell.task, stream))
+
+
+def _fit(cell: DecoderCell, demonstrations: Demonstrations) -> LatentActionModel:
+    preset = cell.preset
+    return fit_model(
+        cell.model,
+        demonstrations,
+        validation=validation_episodes(demonstrations),
+        latent_dim=2,
+        window=WINDOW,
+        state_noise_rad=preset.state_noise_rad,
+        data_seed=integer(sequence(cell.seed, cell.task, Stream.STATE_NOISE)),
+        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        hidden=preset.hidden,
+        epochs=preset.epochs,
+        batch_size=preset.batch_size,
+        patience=preset.epochs,
+        fit={"chain": POURING_TASKS[cell.task]().robot.chain},
+    )
+
 
 ALL: Final = 10**9
 """More motions than there are."""

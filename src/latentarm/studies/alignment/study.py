@@ -7,23 +7,21 @@ from typing import TYPE_CHECKING, Final
 from latentarm.alignment.demonstrated import DURATION_S
 from latentarm.alignment.poses import ROTATION_WEIGHT_M
 from latentarm.alignment.priors import Priors
+from latentarm.alignment.queries import TOO_FEW
 from latentarm.metrics.looks import look_of
-from latentarm.runs.questions import TOO_FEW
-from latentarm.studies.alignment import conditions, curves, drives
+from latentarm.studies.alignment import curves, drives
+from latentarm.studies.alignment import preset as conditions
 from latentarm.studies.alignment.cell import Cell, CellResult, measure_cell
 from latentarm.studies.alignment.curves import CurveCell, CurveResult, measure_curve
-from latentarm.studies.alignment.decoder import DecoderCell, LearnedDecoder, learn_decoder
-from latentarm.studies.alignment.documents import by_run, time_alignment, timings
 from latentarm.studies.alignment.drives import DrivesResult, drive_cells, measure_drives
-from latentarm.studies.alignment.drives_comparison import compare_drives, drives_rows
 from latentarm.studies.alignment.drives_learning import TASK, TURN_RAD, DriveCell
-from latentarm.studies.alignment.drives_tables import WORDS, drive_parts, ways
+from latentarm.studies.alignment.drives_tables import WORDS, compare_drives, drive_parts, drives_rows, ways
 from latentarm.studies.alignment.figures import conditions_figure, curves_figure, drives_figure
-from latentarm.studies.alignment.hypotheses import NEAR, compare_conditions
-from latentarm.studies.alignment.measured import Measured
+from latentarm.studies.alignment.hypotheses import NEAR, PAPER_MODEL, Target, compare_conditions, targets
 from latentarm.studies.alignment.preset import PRESETS, Preset
 from latentarm.studies.alignment.rows import STUDY as NAME
-from latentarm.studies.alignment.rows import rows_of
+from latentarm.studies.alignment.rows import Measured, by_run, rows_of, time_alignment, timings
+from latentarm.studies.alignment.scene import DecoderCell, LearnedDecoder, learn_decoder
 from latentarm.studies.alignment.tables import (
     condition_table,
     curve_table,
@@ -31,7 +29,6 @@ from latentarm.studies.alignment.tables import (
     summary_tables,
     target_table,
 )
-from latentarm.studies.alignment.targets import PAPER_MODEL, Target, targets
 from latentarm.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm.studies.page import render_page
 from latentarm.studies.statistics import LEVEL

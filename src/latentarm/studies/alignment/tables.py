@@ -8,14 +8,13 @@ from rich.table import Table
 from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import ABSENT, format_figure, measure_name
 from latentarm.studies.alignment.cell import CellResult
-from latentarm.studies.alignment.conditions import CONDITIONS, under
 from latentarm.studies.alignment.curves import CHOICES, CurveResult
 from latentarm.studies.alignment.drives import DRIVEN
-from latentarm.studies.alignment.drives_comparison import REACHED, TIME
 from latentarm.studies.alignment.drives_learning import TASK
-from latentarm.studies.alignment.preset import Preset
+from latentarm.studies.alignment.drives_tables import REACHED, TIME
+from latentarm.studies.alignment.hypotheses import PAPER_MODEL, Target
+from latentarm.studies.alignment.preset import CONDITIONS, Preset, under
 from latentarm.studies.alignment.rows import ENCODED, ERROR
-from latentarm.studies.alignment.targets import PAPER_MODEL, Target
 from latentarm.studies.page import markdown_table
 from latentarm.types import FloatArray, Row
 

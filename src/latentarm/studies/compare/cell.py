@@ -10,14 +10,13 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.demonstrations.folds import Fold
 from latentarm.demonstrations.split import select_episodes
-from latentarm.models.decoder import Decoder
+from latentarm.models.kind import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.robots.robot import Robot
 from latentarm.studies.compare.datasets import Dataset
 from latentarm.studies.compare.measures import measure_model
-from latentarm.studies.compare.preset import Preset
-from latentarm.studies.compare.streams import Stream
+from latentarm.studies.compare.preset import Preset, Stream
 from latentarm.studies.fitting import fit_model
 from latentarm.studies.streams import integer, sequence
 from latentarm.types import FloatArray

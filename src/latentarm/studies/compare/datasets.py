@@ -10,7 +10,7 @@ from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.folds import Fold, make_folds
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_recorded_robot
-from latentarm.studies.compare.streams import Stream
+from latentarm.studies.compare.preset import Stream
 from latentarm.studies.streams import sequence
 from latentarm.types import Demonstrations
 

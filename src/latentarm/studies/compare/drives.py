@@ -21,14 +21,14 @@ from latentarm.metrics.drives import Drive, drive_rows
 from latentarm.metrics.ending import Ending
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.undone import undone_share
-from latentarm.models.decoder import Decoder
+from latentarm.models.kind import Decoder
 from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.operators.catalogue import PLANNING, usual_operator
 from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.simulation.drive import Setup, simulate
 from latentarm.studies.compare.cell import CellResult
 from latentarm.studies.compare.datasets import Dataset
-from latentarm.studies.compare.streams import Stream
+from latentarm.studies.compare.preset import Stream
 from latentarm.studies.streams import sequence
 from latentarm.tasks.replay import Replay, routes_of
 from latentarm.types import Row

@@ -1,6 +1,7 @@
 """How large the comparison is."""
 
 from dataclasses import dataclass, field
+from enum import IntEnum
 from typing import Final
 
 from latentarm.errors import UserError
@@ -78,3 +79,13 @@ PRESETS: Final[dict[str, Preset]] = {
         drive_limit_s=10.0,
     ),
 }
+
+
+class Stream(IntEnum):
+    """What randomness is for: each use has a stream of its own, the same for every model and noise."""
+
+    FOLDS = 0
+    NETWORKS = 1
+    TRAINING_NOISE = 2
+    TEST_NOISE = 3
+    DRIVES = 4

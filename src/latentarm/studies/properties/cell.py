@@ -10,7 +10,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.demonstrations.split import select_episodes
-from latentarm.models.decoder import Decoder
+from latentarm.models.kind import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.properties.measures import (
