@@ -72,7 +72,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 }
 """Every command by the words that run it, in the order of the help.
 
-Its module and function in `latentarm.commands`, or its study, and the first line of its own help; only the
+Its module and function in `latentarm.commands`, or its study, and the first line of its help; only the
 module of the command that runs is imported.
 """
 
@@ -121,10 +121,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _app(words: Sequence[str]) -> SubcommandApp:
-    """All commands, and the one that is to run with defaults from its ``--config``.
+    """Return all commands; the one to run has its defaults from ``--config``.
 
     Raises:
-        UserError: that file is not one of options of that command.
+        UserError: the file does not hold options of that command.
     """
     app = SubcommandApp()
     groups: dict[str, SubcommandApp] = {}
@@ -151,7 +151,7 @@ def _load(place: str) -> Command:
 
 
 def _never_run() -> int:
-    """Stands for a command that the words do not name."""
+    """Placeholder for the commands that will not run."""
     raise AssertionError("a command ran that was not named")
 
 
@@ -162,7 +162,7 @@ def _refuse(sentence: str) -> int:
 
 
 def _warn(message: Warning | str, *where: object) -> None:
-    """A warning as the sentence that it is, without the line of code that gave it."""
+    """Format a warning as its sentence alone, without the line of code that raised it."""
     print(f"latentarm: warning: {one_line(str(message))}", file=sys.stderr)
 
 

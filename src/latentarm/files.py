@@ -13,7 +13,7 @@ from latentarm.errors import UserError
 def sync_folder(folder: Path) -> None:
     """Flush a folder's entries to disk, so that a rename in it survives a power cut.
 
-    Windows opens no folder as a file and journals its entries by itself.
+    Windows cannot open a folder as a file, and journals its entries itself.
     """
     if sys.platform == "win32":
         return
@@ -26,7 +26,7 @@ def sync_folder(folder: Path) -> None:
 
 @contextmanager
 def written_whole(path: Path) -> Generator[Path]:
-    """Yield a temporary path beside ``path``; on success flush it and rename it into place.
+    """Yield a temporary path in the folder of ``path``; on success flush it and rename it into place.
 
     On any error nothing is left behind and an older ``path`` is untouched.
 

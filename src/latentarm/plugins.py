@@ -5,7 +5,7 @@ A distribution adds a model, an arm, a task or a belief with a few lines in its 
     [project.entry-points."latentarm.models"]
     theirs = "their_package.module:Theirs"
 
-Nothing of it is imported before somebody asks for it by name. A name read from a file is only ever compared
+Nothing of it is imported before it is looked up by name. A name read from a file is only ever compared
 with registered names, so a file cannot make us import a module.
 """
 
@@ -62,8 +62,8 @@ class Catalogue(Mapping[str, T], Generic[T]):
         group: of entry points, such as ``latentarm.models``.
         noun: what one of them is called in messages, such as ``model``.
         own: what this project has, each as ``package.module:attribute``.
-        check: makes the family's object of what was imported; raises TypeError or ValueError, with a
-            reason, where it is none.
+        check: makes the family's object of what was imported; raises TypeError or ValueError, with a reason,
+            for anything else.
     """
 
     def __init__(
@@ -134,20 +134,20 @@ class Catalogue(Mapping[str, T], Generic[T]):
         return _origin(self._plugins[name][0]) if name in self._plugins else None
 
     def running(self, name: str, act: Callable[[], R]) -> R:
-        """Run code of a registered thing, and say whose it was where it fails.
+        """Run code of a registered thing; if it fails, name its distribution.
 
         Args:
             name: of the thing.
             act: runs the code.
 
         Raises:
-            UserError: it is a plug-in's and failed.
+            UserError: the code is a plug-in's and failed.
         """
         if name in self._own:
             return act()
         try:
             return act()
-        # Somebody else's code runs here, and may fail in any way.
+        # A plug-in's code runs here, and may fail in any way.
         except Exception as error:
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise UserError(
@@ -162,7 +162,7 @@ class Catalogue(Mapping[str, T], Generic[T]):
         for entry in sorted(entry_points(group=self._group), key=lambda entry: entry.name):
             origin = _origin(entry)
             if entry.name in self._own:
-                self._refuse(entry.name, origin, "latentarm has one of that name: ours is used")
+                self._refuse(entry.name, origin, "latentarm already has one of that name")
             elif not NAME.fullmatch(entry.name):
                 self._refuse(entry.name, origin, "a name has lower-case letters, digits and underscores only")
             elif entry not in found.setdefault(entry.name, []):

@@ -21,7 +21,7 @@ class Look:
     Attributes:
         label: its name as people read it.
         colour: hex colour of the Okabe-Ito palette (distinct for colour-blind readers).
-        marker: matplotlib marker, so that the series is told apart in grey too.
+        marker: matplotlib marker, so that series differ in grey too.
         dash: matplotlib line style, by name or as (offset, lengths of ink and gap in line widths).
     """
 
@@ -38,11 +38,11 @@ FONT_SIZE = 8.0
 SMALL_FONT_SIZE = 7.0
 MM_PER_INCH = 25.4
 LEGEND_MARGIN_MM = 4.0
-"""Kept free beside a legend, both sides together."""
+"""Width kept free around a legend, both sides together."""
 
 
 def tidy(axes: "Axes") -> None:
-    """Strip what does not carry data: upper and right frame lines; a faint grid behind the data."""
+    """Remove the upper and right frame lines and draw a faint grid behind the data."""
     axes.spines["top"].set_visible(False)
     axes.spines["right"].set_visible(False)
     axes.grid(True, color="#dddddd", linewidth=0.6)
@@ -54,11 +54,11 @@ def tidy(axes: "Axes") -> None:
 
 
 MOST_CHARACTERS: Final = 40
-"""Of a name in a figure; of a longer one the beginning is shown."""
+"""Longest name in a figure; longer ones are cut."""
 
 
 def literal(text: str) -> str:
-    """Text that others wrote, for a figure: shortened, and without formulas between dollars."""
+    """Text from outside, for a figure: shortened, with dollar signs escaped."""
     shown = visible(text)
     if len(shown) > MOST_CHARACTERS:
         shown = f"{shown[: MOST_CHARACTERS - 1]}…"

@@ -26,7 +26,7 @@ class ArmFactory(Protocol):
 
 def _factory(name: str, thing: object) -> ArmFactory:
     if not callable(thing):
-        raise TypeError(f"{thing!r} is no class or function that makes an arm")
+        raise TypeError(f"{thing!r} is not a class or function that makes an arm")
     return cast(ArmFactory, thing)
 
 
@@ -46,11 +46,12 @@ def make_arm(name: str, robot: Robot, state: FloatArray) -> Arm:
         state: (n,), where a simulated arm starts, rad.
 
     Raises:
-        UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is no arm.
+        UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is not an
+        arm.
     """
-    arm = cast(object, ARMS.find(name, "--arm")(robot, state))  # another distribution may break the contract
+    arm = cast(object, ARMS.find(name, "--arm")(robot, state))  # a plug-in may break the contract
     if not isinstance(arm, Arm):
-        raise UserError(f"--arm {name} made {type(arm).__name__}, which is no latentarm.arms.contract.Arm.")
+        raise UserError(f"--arm {name} made {type(arm).__name__}, not a latentarm.arms.contract.Arm.")
     return arm
 
 

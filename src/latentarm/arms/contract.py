@@ -18,7 +18,7 @@ class Arm(ABC):
     @property
     @abstractmethod
     def simulated(self) -> bool:
-        """Whether nothing real moves; `check_limits` asks more of a real arm."""
+        """Whether the arm is simulated; `check_limits` is stricter for a real one."""
 
     @abstractmethod
     def state(self) -> FloatArray:
@@ -38,7 +38,7 @@ class Arm(ABC):
 
 
 class SimulatedArm(Arm):
-    """An arm that moves nothing real. Time passes for it only in `advance`."""
+    """A simulated arm. Its time passes only in `advance`."""
 
     @property
     @final
@@ -59,7 +59,7 @@ class SimulatedArm(Arm):
 
 
 def check_limits(arm: Arm, robot: Robot) -> None:
-    """Refuse to drive a real arm within limits that nobody stated.
+    """Refuse to drive a real arm within assumed limits.
 
     Args:
         arm: what is to be driven.

@@ -1,4 +1,4 @@
-"""A simulated arm that lives in real time."""
+"""A simulated arm that runs in real time."""
 
 from collections.abc import Callable
 from typing import final
@@ -9,9 +9,9 @@ from latentarm.types import Command, FloatArray
 
 @final
 class LiveArm(Arm):
-    """A simulated arm that moves as time passes, whether or not anybody is late.
+    """A simulated arm that moves as time passes, even if the control loop is late.
 
-    So it stops by itself once a command has run out, as a real one must.
+    So it stops by itself once a command has expired, as a real one must.
 
     Args:
         arm: what moves; nothing else may let time pass for it.

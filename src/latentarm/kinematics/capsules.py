@@ -62,7 +62,7 @@ def segment_distance(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Shortest distance between segments p1-q1 and p2-q2, exact, also where a segment is a point.
 
-    Rounding costs some 10 nm at most, where nearly parallel segments cross. After Ericson, Real-Time
+    Rounding errors are at most about 10 nm, where nearly parallel segments cross. After Ericson, Real-Time
     Collision Detection (2005), section 5.1.9.
 
     Args:

@@ -183,7 +183,7 @@ def _check_open(model: mujoco.MjModel, joints: IntArray) -> None:
             if model.eq_objtype[i] == _SITE:
                 first, second = int(model.site_bodyid[first]), int(model.site_bodyid[second])
             if model.body_mocapid[first] >= 0 or model.body_mocapid[second] >= 0:
-                continue  # a handle to drag the simulated arm by, and no part of it
+                continue  # a handle for dragging the simulated arm, not part of it
             loop = (_joints_above(model, first) ^ _joints_above(model, second)) & driven
             if loop:
                 raise UserError(

@@ -34,7 +34,7 @@ def _processes(jobs: int) -> Generator[int]:
 @contextmanager
 def _ray(jobs: int) -> Generator[int]:
     """A Ray cluster: that of ``RAY_ADDRESS``, or a new one on this machine."""
-    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Ray would tell its makers that it was used
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # no usage statistics
     try:
         import ray
         from ray.util.joblib import register_ray
@@ -56,7 +56,7 @@ def _ray(jobs: int) -> Generator[int]:
 def _start_ray() -> None:
     """Join the cluster that the environment names, or else start one.
 
-    Without a name Ray would look for a cluster here by itself, and wait for one that is long gone.
+    Without an address Ray would look for a cluster on this machine, and wait for one that has ended.
 
     Raises:
         UserError: the cluster does not answer, or wants a token that the environment does not name.

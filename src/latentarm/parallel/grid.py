@@ -23,7 +23,7 @@ Result = TypeVar("Result")
 
 
 class CellError(Exception):
-    """A cell failed by a fault that is not the user's; names the cell and holds the traceback."""
+    """A cell failed because of a bug; names the cell and holds the traceback."""
 
 
 @dataclass(frozen=True)
@@ -66,13 +66,13 @@ def run_grid(
         The results in the order of the cells.
 
     Raises:
-        UserError: jobs or backend are none, the backend is not to be had, one of joblib's own processes
-            was killed, or a cell raised one; then it says which.
+        UserError: jobs or backend are invalid, the backend is not available, one of joblib's processes was
+            killed, or a cell raised one; the message names the cell.
         CellError: a cell raised anything else.
     """
     check_processes(jobs, backend)
     with BACKENDS[backend](jobs) as workers, counting_bar(bars) as bar:
-        # One cell at a time to each process: a cell takes seconds, and so the bar is told of each.
+        # One cell at a time per process: a cell takes seconds, and the bar then advances with each.
         one_by_one: dict[str, Any] = {"batch_size": 1, "pre_dispatch": workers}
         parallel = Parallel(n_jobs=workers, **one_by_one)
         try:
@@ -81,7 +81,7 @@ def run_grid(
             )
         except BrokenProcessPool as error:
             raise UserError(
-                "A process of the grid was killed, mostly for want of memory: try fewer with --jobs."
+                "A process of the grid was killed, most likely because memory ran out: try fewer with --jobs."
             ) from error
     results = cast(list[_Measured[Result]], measured)
     for cell, entry in zip(cells, results, strict=True):
@@ -91,10 +91,10 @@ def run_grid(
 
 
 def check_processes(jobs: int, backend: str) -> None:
-    """Refuse what no grid can run on, before any work is done for it.
+    """Check jobs and backend before any work is done.
 
     Raises:
-        UserError: the number of jobs or the backend is none.
+        UserError: the number of jobs or the backend is invalid.
     """
     if jobs != -1 and jobs < 1:
         raise UserError(f"The number of jobs is {jobs}: it must be at least 1, or -1 for one per core.")
@@ -105,7 +105,7 @@ def check_processes(jobs: int, backend: str) -> None:
 def _measure(function: Callable[[Cell], Result], cell: Cell, name: str) -> _Measured[Result]:
     """Measure one cell; runs in any process.
 
-    Errors become ones that hold text alone, because others may not survive the way between processes.
+    Errors are replaced by ones that hold only text, because others may not survive pickling.
 
     Raises:
         UserError: the cell raised one.

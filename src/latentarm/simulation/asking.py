@@ -1,4 +1,4 @@
-"""Whom `latentarm align` asks: a person at the terminal, or a simulated one."""
+"""The person that `latentarm align` asks: at the terminal, or simulated."""
 
 from collections.abc import Callable
 from typing import Final, final

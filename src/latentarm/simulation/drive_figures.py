@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 GOAL_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 GOAL_MARKERS = ("o", "s", "^", "D", "v", "P")
 OUTCOMES: Final[dict[str, Literal["-", ":"]]] = {"goal reached": "-", "goal not reached": ":"}
-"""What became of a drive -> the line that its path has."""
+"""Outcome of a drive -> line style of its path."""
 
 PANEL_MM = 51.0
 WIDTH_MM = 170.0

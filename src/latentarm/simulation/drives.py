@@ -10,7 +10,7 @@ from latentarm.simulation.drive import Setup, Trace, simulate
 from latentarm.tasks.task import Task
 
 DRIVE_STREAM = 2
-"""Keeps the drives apart from everything else that is drawn from the same seed."""
+"""Separates the drives' randomness from everything else drawn from the same seed."""
 
 DrivePlan = tuple[int, str, np.random.Generator]
 """Goal, manner and randomness of a drive."""
@@ -25,7 +25,7 @@ def drive_all(
     same starts and the number of processes changes nothing.
 
     Args:
-        setups: on one task; they take turns, so that no figure hangs on one trained model.
+        setups: on one task; they take turns, so that no figure depends on one trained model.
         drives: to each goal.
         seed: of the starts and of the simulated operator.
         jobs: processes; -1 is one per core.

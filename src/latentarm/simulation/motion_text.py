@@ -39,12 +39,12 @@ def said(name: str, before: Pose, after: Pose) -> str:
 
 
 def draw(before: Pose, after: Pose, reach_m: float) -> str:
-    """The way of a tool from above, and its height: from o to *.
+    """A tool's path from above, and its height: from o to *.
 
     Args:
         before: where it starts, in the middle of the figure.
         after: where it ends.
-        reach_m: what the figure reaches from its middle, m.
+        reach_m: distance from the figure's middle to its edge, m.
 
     Returns:
         Lines of ASCII.
@@ -53,7 +53,7 @@ def draw(before: Pose, after: Pose, reach_m: float) -> str:
     size = 2 * CELLS + 1
     above = [["."] * size for _ in range(size)]
     height = ["."] * size
-    # As one who sits behind the arm sees it: up is away from the base (x), left is y.
+    # As seen from behind the arm: up is away from the base (x), left is y.
     for share in np.linspace(0, 1, 4 * size):
         x, y, z = (int(np.clip(np.rint(value), -CELLS, CELLS)) for value in share * step)
         above[CELLS - x][CELLS - y] = height[CELLS - z] = "+"

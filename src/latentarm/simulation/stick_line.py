@@ -28,18 +28,19 @@ def parse(line: str, axes: int) -> FloatArray | None:
     """An input from what was typed.
 
     Args:
-        line: ``axes`` numbers in [-1, 1], parted by blanks or commas; or arrow keys as terminals send them.
+        line: ``axes`` numbers in [-1, 1], separated by blanks or commas; or arrow keys as terminals send
+            them.
         axes: d.
 
     Returns:
         (d,), or None for an empty line.
 
     Raises:
-        ValueError: it is none of these; with a sentence for the person.
+        ValueError: the line is neither; the message is a sentence for the person.
     """
     if ARROW.search(line):
         if ARROW.sub("", line).strip():
-            raise ValueError("That was arrow keys and letters at once.")
+            raise ValueError("That mixes arrow keys and letters.")
         return _pushed(line, axes)
     words = line.replace(",", " ").split()
     if not words:
@@ -47,7 +48,7 @@ def parse(line: str, axes: int) -> FloatArray | None:
     try:
         u = np.array([float(word) for word in words])
     except ValueError as error:
-        raise ValueError("That was no number.") from error
+        raise ValueError("That is not a number.") from error
     if len(u) != axes:
         raise ValueError(f"That was {len(u)} of {axes} numbers.")
     # Written so that a value that is not a number fails too.
@@ -65,7 +66,7 @@ def read_line(axes: int) -> str:
         axes: d.
 
     Raises:
-        EOFError: there is none.
+        EOFError: the input has ended.
     """
     if sys.platform != "win32" and sys.stdin.isatty():
         return _read_terminal(axes)
@@ -86,7 +87,7 @@ def _read_terminal(axes: int) -> str:
 
     descriptor = sys.stdin.fileno()
     before = termios.tcgetattr(descriptor)
-    tty.setcbreak(descriptor, termios.TCSAFLUSH)  # what was typed before the question is no answer to it
+    tty.setcbreak(descriptor, termios.TCSAFLUSH)  # what was typed before the question does not answer it
     try:
         return _read_keys(lambda: os.read(descriptor, 1).decode("latin-1"), _show, axes)
     finally:
@@ -112,7 +113,7 @@ def _read_keys(key: Callable[[], str], show: Callable[[str], None], axes: int) -
         if pressed in ("\n", "\r"):
             return line
         if pressed in ERASE:
-            # Pushes are not taken back one by one: the stick returns to its middle.
+            # Pushes are not undone one by one: the stick returns to the centre.
             line = "" if ARROW.search(line) else line[:-1]
         elif ARROW.fullmatch(pressed) or pressed.isprintable():
             line += pressed
@@ -126,7 +127,7 @@ def _shown(line: str, axes: int) -> str:
     try:
         u = parse(line, axes)
     except ValueError as error:
-        return f"{error} (Backspace starts anew.)"
+        return f"{error} (Backspace starts over.)"
     return "" if u is None else f"stick at ({', '.join(f'{value:+.2f}' for value in u)})"
 
 

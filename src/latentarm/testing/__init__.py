@@ -1,4 +1,4 @@
-"""Tests that everything of a family passes; authors of plug-ins run them over theirs.
+"""Contract tests of each family, which authors of plug-ins run over theirs.
 
 Each module has one class. Subclass it in a test file of your own and give it the fixture that it names. The
 modules import pytest and hypothesis, which ``pip install 'latentarm[testing]'`` brings.
@@ -6,5 +6,5 @@ modules import pytest and hypothesis, which ``pip install 'latentarm[testing]'``
 
 import pytest
 
-# Before they are imported: their assertions are to say what they compared.
+# Before the modules are imported, so that pytest rewrites their assertions.
 pytest.register_assert_rewrite(*(f"{__name__}.{family}" for family in ("arms", "beliefs", "models", "tasks")))

@@ -1,4 +1,4 @@
-"""What every simulated arm does."""
+"""Contract tests of simulated arms."""
 
 from functools import cache
 
@@ -29,7 +29,7 @@ class ArmContract:
                 return TheirArm
 
     Attributes:
-        tolerance_rad: how far the arm may be from where its commands lead, rad; more for one with inertia.
+        tolerance_rad: allowed distance from where the commands lead, rad; larger for an arm with inertia.
         settling_s: how long it may take to come to rest, s.
     """
 

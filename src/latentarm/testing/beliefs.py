@@ -1,4 +1,4 @@
-"""What every belief over goals does."""
+"""Contract tests of beliefs over goals."""
 
 from collections.abc import Callable
 
@@ -24,7 +24,7 @@ maps = hnp.arrays(float, (2, DOF), elements=st.floats(-1, 1))
 seeds = st.integers(0, 2**32 - 1)
 anything = st.floats(allow_nan=True, allow_infinity=True)
 
-# A rule is a class and keeps nothing, so one will do for all examples, and for every subclass of the tests.
+# A rule is a class without state, so one serves all examples and every subclass of the tests.
 law = settings(
     max_examples=40,
     deadline=None,

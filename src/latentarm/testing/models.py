@@ -1,4 +1,4 @@
-"""What every latent action model does."""
+"""Contract tests of latent action models."""
 
 import warnings
 from dataclasses import replace
@@ -55,7 +55,7 @@ def demonstrations(episodes: int = 12) -> Demonstrations:
 
 
 def fit(model: LatentActionModel, episodes: int = 12) -> LatentActionModel:
-    """Fit a model to `demonstrations` of an arm that is known; what collapsed is of no interest."""
+    """Fit a model to `demonstrations` of a known arm; warnings about collapsed dimensions are ignored."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CollapseWarning)
         return model.fit(demonstrations(episodes), chain=planar(JOINTS).chain)
@@ -63,7 +63,7 @@ def fit(model: LatentActionModel, episodes: int = 12) -> LatentActionModel:
 
 @cache
 def fitted(estimator: type[LatentActionModel], context: ContextKind) -> LatentActionModel:
-    """A model that all tests of a session look at, and none changes."""
+    """A model that all tests of a session share; none may change it."""
     return fit(estimator(**SMALL, context=context))
 
 
@@ -77,7 +77,7 @@ class ModelContract:
             def estimator(self):
                 return TheirModel
 
-    A model is trained on small data a few times; on the same two trainings most tests look.
+    A model is trained on small data a few times; most tests share the same two trainings.
     """
 
     @pytest.fixture
@@ -87,7 +87,7 @@ class ModelContract:
 
     @pytest.fixture
     def model(self, estimator: type[LatentActionModel]) -> LatentActionModel:
-        """A fitted one, of two seeds, which nothing changes."""
+        """A fitted model of two seeds, which no test may change."""
         return fitted(estimator, "state")
 
     @pytest.fixture

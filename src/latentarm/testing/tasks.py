@@ -1,4 +1,4 @@
-"""What every task does."""
+"""Contract tests of tasks."""
 
 import numpy as np
 import pytest
