@@ -25,7 +25,7 @@ import numpy as np
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.kinematics.capsules import segment_distance
+from latentarm.kinematics.distances import segment_distance
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.kinematics.reader import read
 from latentarm.robots.catalogue import load_robot

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from latentarm.control.controller import Controller
-from latentarm.kinematics.capsules import segment_distance
+from latentarm.kinematics.distances import segment_distance
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.robots.assemble import assemble
 from latentarm.robots.limits import JointLimits

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from latentarm.control.safety.box_distance import box_separation
+from latentarm.kinematics.distances import box_separation
 
 
 def height(normal, start, end, centre, rotation, extents):

@@ -5,7 +5,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.optimize import minimize
 
-from latentarm.kinematics.capsules import Capsules, segment_distance
+from latentarm.kinematics.chain import Capsules
+from latentarm.kinematics.distances import segment_distance
 from latentarm.robots.planar import planar
 
 points = arrays(np.float64, 3, elements=st.floats(-2.0, 2.0).map(lambda x: round(x, 3)))

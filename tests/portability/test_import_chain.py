@@ -4,7 +4,7 @@ from graphlib import TopologicalSorter
 
 import grimp
 
-LONGEST = 18
+LONGEST = 17
 """Modules in the longest chain. The aim is 12: lower this when a change allows it, and never raise it."""
 
 

@@ -5,7 +5,7 @@ import pytest
 
 LIGHT = [
     "latentarm.kinematics.chain",
-    "latentarm.kinematics.capsules",
+    "latentarm.kinematics.distances",
     "latentarm.kinematics.rotations",
     "latentarm.robots.limits",
     "latentarm.robots.robot",

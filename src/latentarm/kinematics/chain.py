@@ -1,4 +1,4 @@
-"""A kinematic tree in NumPy: forward kinematics and geometric Jacobians, batched."""
+"""A kinematic tree in NumPy, batched: forward kinematics, geometric Jacobians, and capsules on its links."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,8 +8,8 @@ import numpy as np
 
 from latentarm.types import BoolArray, FloatArray, IntArray, Pose
 
-# Row (i, j, k) -> -epsilon_ijk, so that v @ _SKEW is [v]x row by row: ([v]x)_jk = -epsilon_ijk v_i.
-_SKEW: FloatArray = np.array(
+# Row (i, j, k) -> -epsilon_ijk, so that v @ SKEW is [v]x row by row: ([v]x)_jk = -epsilon_ijk v_i.
+SKEW: FloatArray = np.array(
     [
         [0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0],
         [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0],
@@ -201,7 +201,7 @@ class Chain:
         """
         constants = np.zeros((self.dof, 4, 4, 4))
         for joint in range(self.dof):
-            skew = (self.axis[joint] @ _SKEW).reshape(3, 3)
+            skew = (self.axis[joint] @ SKEW).reshape(3, 3)
             if self.slide[joint]:
                 constants[joint, 0] = np.eye(4)
                 constants[joint, 3, :3, 3] = self.axis[joint]
@@ -244,5 +244,49 @@ class Chain:
 
 def _column_velocity(axes: FloatArray, arms: FloatArray) -> FloatArray:
     """Cross product axis × arm, several times faster than ``np.cross`` on small batches."""
-    skew = (axes @ _SKEW).reshape(*axes.shape[:-1], 3, 3)
+    skew = (axes @ SKEW).reshape(*axes.shape[:-1], 3, 3)
     return (skew @ arms[..., None])[..., 0]
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Capsules:
+    """The shape of a robot for distances: K segments with a radius, each fixed to a link.
+
+    Attributes:
+        name: K names, for the person ("link 5", "hand").
+        link: (K,), the link that carries each capsule, -1 for the base.
+        start: (K, 3), one end of the segment in its link's frame, m.
+        end: (K, 3), the other end, m; equal to ``start`` for a sphere.
+        radius: (K,), m.
+    """
+
+    name: tuple[str, ...]
+    link: IntArray
+    start: FloatArray
+    end: FloatArray
+    radius: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+    def placed(self, chain: Chain, transforms: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Ends of all segments in the base frame.
+
+        Args:
+            chain: the robot's chain.
+            transforms: (..., n, 4, 4), from its ``link_transforms``.
+
+        Returns:
+            Starts and ends, each (..., K, 3), m.
+        """
+        both = chain.points(transforms, self._links_twice, self._starts_and_ends)
+        return both[..., : len(self), :], both[..., len(self) :, :]
+
+    @cached_property
+    def _links_twice(self) -> IntArray:
+        return np.concatenate([self.link, self.link])
+
+    @cached_property
+    def _starts_and_ends(self) -> FloatArray:
+        return np.concatenate([self.start, self.end])

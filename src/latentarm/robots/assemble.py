@@ -6,14 +6,13 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from latentarm.kinematics.capsules import Capsules
+from latentarm.kinematics.chain import Capsules
 from latentarm.kinematics.reader import read
 from latentarm.robots.end_effector import arm_joints, finger_joints
 from latentarm.robots.limits import JointLimits, Source
 from latentarm.robots.limits_file import with_stated
 from latentarm.robots.robot import Robot
-from latentarm.robots.self_pairs import self_pairs
-from latentarm.robots.shapes import body_name, read_capsules
+from latentarm.robots.shapes import body_name, read_capsules, self_pairs
 from latentarm.types import BoolArray, FloatArray, StatedLimits
 
 

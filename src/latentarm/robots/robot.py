@@ -3,8 +3,7 @@
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, final
 
-from latentarm.kinematics.capsules import Capsules
-from latentarm.kinematics.chain import Chain
+from latentarm.kinematics.chain import Capsules, Chain
 from latentarm.robots.limits import JointLimits, Source
 from latentarm.types import FloatArray, IntArray, StatedLimits
 

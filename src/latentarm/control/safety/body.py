@@ -5,17 +5,9 @@ from typing import final
 
 import numpy as np
 
+from latentarm.kinematics.chain import SKEW
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, IntArray
-
-# v @ _SKEW holds the matrix [v]x row by row.
-_SKEW: FloatArray = np.array(
-    [
-        [0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0],
-        [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    ]
-)
 
 
 @final
@@ -162,7 +154,7 @@ class Placement:
         self.points = chain.points(transforms, body.link, body.local)
         axes, origins = chain.joint_axes(transforms)
         turn = axes * body.turns
-        skew = (turn @ _SKEW).reshape(-1, 3, 3)
+        skew = (turn @ SKEW).reshape(-1, 3, 3)
         shift = axes - turn - (skew @ origins[:, :, None])[:, :, 0]
         jacobian = np.empty((len(axes), 6, len(self.points)))
         jacobian[:, :3] = skew @ self.points.T

@@ -6,9 +6,8 @@ from typing import final
 import numpy as np
 
 from latentarm.control.safety.body import Body, Placement
-from latentarm.control.safety.box_distance import box_separation
 from latentarm.control.safety.small import largest, some
-from latentarm.kinematics.capsules import segment_distance
+from latentarm.kinematics.distances import box_separation, segment_distance
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.types import BoolArray, FloatArray, IntArray
 

@@ -27,10 +27,9 @@ from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Conne
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.frames import MeteredSocket
 from latentarm.web.server.learning import Learning
-from latentarm.web.server.loaded_run import LoadedRun
+from latentarm.web.server.loaded_run import LoadedRun, RunList
 from latentarm.web.server.logs import LOGGING
 from latentarm.web.server.pages import PAGES, Pages
-from latentarm.web.server.run_list import RunList
 from latentarm.web.server.security import DRIVE, ENTRY, Gate, Keys
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States

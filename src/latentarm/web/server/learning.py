@@ -12,9 +12,9 @@ from latentarm.web.jobs.training import TrainingJob, TrainingPlan
 from latentarm.web.protocol.channel import ChooseRun
 from latentarm.web.protocol.learning_messages import LearningState, Recorded, Train, Training
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
+from latentarm.web.server.loaded_run import RunList
 from latentarm.web.server.personalising import Driven, Personalising
 from latentarm.web.server.run_check import WITHIN_S, Trial
-from latentarm.web.server.run_list import RunList
 from latentarm.web.server.states import States
 
 LOOK_S: Final = 0.2

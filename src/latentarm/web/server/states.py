@@ -17,8 +17,7 @@ from latentarm.web.protocol.channel import Ghosts, Report
 from latentarm.web.protocol.messages import RecordingState, State
 from latentarm.web.protocol.notice import Notice, notice_of, sentence
 from latentarm.web.protocol.scene import pose_of
-from latentarm.web.server.loaded_run import LoadedRun, load_reported_run
-from latentarm.web.server.run_list import RunList
+from latentarm.web.server.loaded_run import LoadedRun, RunList, load_reported_run
 from latentarm.web.server.sessions import Page, Sessions
 
 POLL_S: Final = 0.0025
