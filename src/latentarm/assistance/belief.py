@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Protocol, final
+from typing import Protocol, TypedDict, final
 
 import numpy as np
 
@@ -25,6 +25,14 @@ class Rule(Protocol):
         ...
 
 
+class BeliefOptions(TypedDict, total=False):
+    """What every belief can be made with besides its rule's own parameters; see `Belief`."""
+
+    period_s: float
+    prior: FloatArray | None
+    floor: float
+
+
 class Belief(ABC):
     """Bayes' rule over goals, ``b'(g) ∝ P(u | s, g) b(g)`` (equation 9); the likelihood is the rule's own.
 
@@ -37,7 +45,7 @@ class Belief(ABC):
 
     Args:
         goals: (G, n), the goals' configurations, rad.
-        horizon_s: the look-ahead tau, s.
+        horizon_s: the look-ahead tau, s; the period where None.
         period_s: time between updates, s.
         prior: (G,), the belief before any input; uniform where None.
         floor: smallest probability of any goal, in [0, 1/G).
@@ -55,21 +63,22 @@ class Belief(ABC):
     def __init__(
         self,
         goals: FloatArray | Sequence[FloatArray],
-        horizon_s: float,
-        period_s: float,
-        prior: FloatArray | None,
-        floor: float,
+        horizon_s: float | None = None,
+        *,
+        period_s: float = 0.05,
+        prior: FloatArray | None = None,
+        floor: float = 0.01,
     ) -> None:
         self.goals = np.ascontiguousarray(goals, dtype=float)
         if self.goals.ndim != 2 or not self.goals.size or not np.isfinite(self.goals).all():
             raise UserError("A belief needs at least one goal, each a finite configuration in rad.")
         self.period_s = positive("period_s", period_s)
-        self.horizon_s = positive("horizon_s", horizon_s)
+        self.horizon_s = period_s if horizon_s is None else positive("horizon_s", horizon_s)
         # A floor within rounding of 1/G would leave no probability to distribute.
         if not 0 <= floor < (1 - 1e-9) / len(self.goals):
             raise UserError(f"The belief's floor must be in [0, 1/{len(self.goals)}), not {floor}.")
         self.floor = floor
-        self._share = period_s / horizon_s
+        self._share = period_s / self.horizon_s
         self._above_floors = 1.0 - floor * len(self.goals)
         self._prior = self._checked_prior(prior)
 

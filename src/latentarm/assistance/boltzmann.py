@@ -1,9 +1,9 @@
 """Belief for a Boltzmann-rational person in joint space: the likelihood of section 8.2."""
 
 from collections.abc import Sequence
-from typing import final
+from typing import Unpack, final
 
-from latentarm.assistance.belief import Belief, log_choice, not_negative
+from latentarm.assistance.belief import Belief, BeliefOptions, log_choice, not_negative
 from latentarm.types import FloatArray
 
 
@@ -25,9 +25,7 @@ class BoltzmannBelief(Belief):
         goals: (G, n), the goals' configurations, rad.
         beta: rationality, 1/rad²; 0 learns nothing.
         horizon_s: the look-ahead tau, s.
-        period_s: time between updates, s.
-        prior: (G,), the belief before any input; uniform where None.
-        floor: smallest probability of any goal, in [0, 1/G).
+        options: see `Belief`.
 
     Raises:
         UserError: a parameter is not finite or out of its range.
@@ -38,11 +36,9 @@ class BoltzmannBelief(Belief):
         goals: FloatArray | Sequence[FloatArray],
         beta: float = 20.0,
         horizon_s: float = 0.5,
-        period_s: float = 0.05,
-        prior: FloatArray | None = None,
-        floor: float = 0.01,
+        **options: Unpack[BeliefOptions],
     ) -> None:
-        super().__init__(goals, horizon_s, period_s, prior, floor)
+        super().__init__(goals, horizon_s, **options)
         self.beta = not_negative("beta", beta)
 
     def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:

@@ -4,11 +4,11 @@ Dragan and Srinivasa, "A policy-blending formalism for shared control", 2013.
 """
 
 from collections.abc import Sequence
-from typing import final
+from typing import Unpack, final
 
 import numpy as np
 
-from latentarm.assistance.belief import Belief, not_negative
+from latentarm.assistance.belief import Belief, BeliefOptions, not_negative
 from latentarm.types import FloatArray
 
 
@@ -33,9 +33,7 @@ class DistanceBelief(Belief):
     Args:
         goals: (G, n), the goals' configurations, rad.
         beta: rationality, 1/rad; 0 learns nothing.
-        period_s: time between updates, s; the look-ahead too.
-        prior: (G,), the belief before any input; uniform where None.
-        floor: smallest probability of any goal, in [0, 1/G).
+        options: see `Belief`; the look-ahead is one period.
 
     Raises:
         UserError: a parameter is not finite or out of its range.
@@ -45,11 +43,9 @@ class DistanceBelief(Belief):
         self,
         goals: FloatArray | Sequence[FloatArray],
         beta: float = 5.0,
-        period_s: float = 0.05,
-        prior: FloatArray | None = None,
-        floor: float = 0.01,
+        **options: Unpack[BeliefOptions],
     ) -> None:
-        super().__init__(goals, period_s, period_s, prior, floor)
+        super().__init__(goals, **options)
         self.beta = not_negative("beta", beta)
 
     def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:

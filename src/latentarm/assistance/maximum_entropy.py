@@ -5,11 +5,11 @@ inverse optimal control.
 """
 
 from collections.abc import Sequence
-from typing import final
+from typing import Unpack, final
 
 import numpy as np
 
-from latentarm.assistance.belief import Belief, log_choice, not_negative, positive
+from latentarm.assistance.belief import Belief, BeliefOptions, log_choice, not_negative, positive
 from latentarm.types import FloatArray
 
 
@@ -36,9 +36,7 @@ class MaximumEntropyBelief(Belief):
         cost_per_rad: c, 1/rad, in units of log probability; 0 learns nothing.
         near_rad: delta, rad.
         horizon_s: the look-ahead tau, s.
-        period_s: time between updates, s.
-        prior: (G,), the belief before any input; uniform where None.
-        floor: smallest probability of any goal, in [0, 1/G).
+        options: see `Belief`.
 
     Raises:
         UserError: a parameter is not finite or out of its range.
@@ -50,11 +48,9 @@ class MaximumEntropyBelief(Belief):
         cost_per_rad: float = 20.0,
         near_rad: float = 0.5,
         horizon_s: float = 0.5,
-        period_s: float = 0.05,
-        prior: FloatArray | None = None,
-        floor: float = 0.01,
+        **options: Unpack[BeliefOptions],
     ) -> None:
-        super().__init__(goals, horizon_s, period_s, prior, floor)
+        super().__init__(goals, horizon_s, **options)
         self.cost_per_rad = not_negative("cost_per_rad", cost_per_rad)
         self.near_rad = positive("near_rad", near_rad)
 

@@ -84,21 +84,40 @@ def demonstrate_goals(
     Raises:
         UserError: fewer than one episode is asked for.
     """
+    hand, goals = Hand(), task.goals
+
+    def episode(index: int) -> Episode:
+        goal = index % len(goals)
+        state = demonstrate(task.robot.chain, task.sample_start(goal, rng), (stroke(goal),), hand, rng)
+        timestamp = np.arange(len(state)) / hand.rate_hz
+        return Episode(state=state, timestamp=timestamp, task=f"{verb} {goals[goal].name}")
+
+    return demonstrations_of(task, episode, episodes, hand)
+
+
+def demonstrations_of(
+    task: Task, episode: Callable[[int], Episode], episodes: int, hand: Hand
+) -> Demonstrations:
+    """Episodes of a task, one after the other, with what a dataset says of its robot and goals.
+
+    Args:
+        task: what is demonstrated.
+        episode: makes the episode with an index.
+        episodes: how many.
+        hand: how the simulated person moves.
+
+    Raises:
+        UserError: fewer than one episode is asked for.
+    """
     if episodes < 1:
         raise UserError(f"Ask for at least one demonstration, not {episodes}.")
-    hand, robot, goals = Hand(), task.robot, task.goals
-    shown: list[Episode] = []
-    for index in range(episodes):
-        goal = index % len(goals)
-        state = demonstrate(robot.chain, task.sample_start(goal, rng), (stroke(goal),), hand, rng)
-        timestamp = np.arange(len(state)) / hand.rate_hz
-        shown.append(Episode(state=state, timestamp=timestamp, task=f"{verb} {goals[goal].name}"))
+    robot = task.robot
     return Demonstrations(
-        episodes=tuple(shown),
+        episodes=tuple(episode(index) for index in range(episodes)),
         rate_hz=hand.rate_hz,
         joint_names=robot.joint_names,
         robot=robot.name,
-        goals=goals,
+        goals=task.goals,
         end_effector=robot.end_effector,
         limits=robot.stated_limits,
     )

@@ -22,7 +22,7 @@ from scipy.interpolate import CubicSpline
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.tasks.demonstrator import Hand, demonstrate
+from latentarm.tasks.demonstrator import Hand, demonstrate, demonstrations_of
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.task import Task
 from latentarm.tasks.tolerance import within
@@ -130,16 +130,8 @@ class TwoCups(Task, ABC):
         Raises:
             UserError: fewer than one episode is asked for.
         """
-        if episodes < 1:
-            raise UserError(f"Ask for at least one demonstration, not {episodes}.")
         hand = Hand()
-        return Demonstrations(
-            episodes=tuple(self._episode(index, hand, rng) for index in range(episodes)),
-            rate_hz=hand.rate_hz,
-            joint_names=self.robot.joint_names,
-            robot=self.robot.name,
-            goals=self.goals,
-        )
+        return demonstrations_of(self, lambda index: self._episode(index, hand, rng), episodes, hand)
 
     def _episode(self, index: int, hand: Hand, rng: np.random.Generator) -> Episode:
         goal = index % len(CUPS)

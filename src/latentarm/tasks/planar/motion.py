@@ -31,6 +31,12 @@ BEARING_RAD = 0.75 * np.pi
 """Direction from the base to the tool in that posture; the tool then lies near (-0.22, 0.22) m."""
 
 
+def outline(middle: FloatArray, depth_m: float, width_m: float) -> FloatArray:
+    """The closed outline (5, 2) of a rectangle about a middle (2,), m: along x and along y."""
+    corner = np.array([[-1, -1], [-1, 1], [1, 1], [1, -1], [-1, -1]])
+    return middle + corner * (depth_m / 2, width_m / 2)
+
+
 class PlanarMotion(ABC):
     """A continuous motion to be demonstrated and learned, without discrete goals.
 

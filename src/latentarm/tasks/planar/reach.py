@@ -11,7 +11,7 @@ from typing import final
 import numpy as np
 
 from latentarm.robots.planar import planar
-from latentarm.tasks.planar.motion import POSTURE_SPREAD_RAD, PlanarMotion
+from latentarm.tasks.planar.motion import POSTURE_SPREAD_RAD, PlanarMotion, outline
 from latentarm.tasks.planar.resolved_rate import curled, follow, plane_point
 from latentarm.types import Demonstrations, FloatArray
 
@@ -45,8 +45,7 @@ class ReachRegion(PlanarMotion):
     @property
     def guides(self) -> tuple[FloatArray, ...]:
         """The outline of the goal region."""
-        corner = np.array([[-1, -1], [-1, 1], [1, 1], [1, -1], [-1, -1]])
-        return (self._region + corner * (DEPTH_M / 2, WIDTH_M / 2),)
+        return (outline(self._region, DEPTH_M, WIDTH_M),)
 
     def sample_goals(self, count: int, rng: np.random.Generator) -> FloatArray:
         """Places (count, 2) in the goal region, m."""

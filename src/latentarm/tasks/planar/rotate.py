@@ -12,7 +12,7 @@ import numpy as np
 
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
-from latentarm.tasks.planar.motion import BACK_AND_FORTH_S, POSTURE_SPREAD_RAD, PlanarMotion
+from latentarm.tasks.planar.motion import BACK_AND_FORTH_S, POSTURE_SPREAD_RAD, PlanarMotion, outline
 from latentarm.tasks.planar.resolved_rate import follow
 from latentarm.types import Demonstrations, FloatArray
 
@@ -50,8 +50,7 @@ class Rotate(PlanarMotion):
     @property
     def guides(self) -> tuple[FloatArray, ...]:
         """The box in its nominal place."""
-        corner = np.array([[-1, -1], [-1, 1], [1, 1], [1, -1], [-1, -1]])
-        return (np.array(PLACE_M) + corner * (BOX_DEPTH_M / 2, BOX_WIDTH_M / 2),)
+        return (outline(np.array(PLACE_M), BOX_DEPTH_M, BOX_WIDTH_M),)
 
     def headings(self, state: FloatArray) -> FloatArray:
         """Headings (..., 2) of the left and the right gripper at states (..., 10), rad."""
