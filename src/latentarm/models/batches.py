@@ -1,4 +1,4 @@
-"""Pairs on their way into the training loop: shuffled, for every seed by itself."""
+"""Batches for the training loop, shuffled for each seed separately."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,14 +14,14 @@ ELSEWHERE: Final = 32
 """Contexts without demonstrated actions that a step sees, at most, for terms that ask for them."""
 
 ELSEWHERE_JUDGED: Final = 256
-"""The same where a seed is judged: the first so many, always."""
+"""The same for validation, which always uses the first ones."""
 
 FEWEST_STEPS: Final = 16
 """Steps of an epoch, at least: a small dataset is cut into smaller batches."""
 
 
 class Batch(NamedTuple):
-    """What one step sees.
+    """One training step's data.
 
     Attributes:
         context: (S, B, c), normalised.
@@ -66,8 +66,8 @@ class TrainingData:
 def seed_generator(seed: int, stream: int) -> torch.Generator:
     """A seed's own source of randomness for one purpose: stream 0 for its weights, e for epoch e.
 
-    A new generator per epoch makes every draw a function of (seed, epoch) alone: not of the seeds
-    beside it, and not of whether the training was cut off in between.
+    A new generator per epoch makes every draw a function of (seed, epoch) alone: not of the other seeds, and
+    not of whether the training was cut off in between.
     """
     state = np.random.SeedSequence([seed, stream]).generate_state(1, np.uint64)[0]
     return torch.Generator().manual_seed(int(state) >> 1)

@@ -1,4 +1,4 @@
-"""Where a training stands, on disk: one safetensors file, written whole or not at all."""
+"""Checkpoints of a training: one safetensors file, written whole or not at all."""
 
 import hashlib
 import json
@@ -20,7 +20,7 @@ from latentarm.types import BoolArray, FloatArray, IntArray
 from latentarm.untrusted.opening import check_file
 
 _HEADER_BYTES: Final = 1 << 26
-"""That the names and the losses so far may take: 64 MiB."""
+"""Bytes that the names and the loss history may take: 64 MiB."""
 
 METADATA_KEY: Final = "latentarm_training"
 
@@ -28,7 +28,7 @@ METADATA_KEY: Final = "latentarm_training"
 @final
 @dataclass
 class TrainingState:
-    """Everything that the next epoch depends on. Changes as the training goes on.
+    """Everything that the next epoch depends on; updated in place.
 
     Attributes:
         values: (S, P), the weights; the trainer's own buffer.
@@ -71,8 +71,8 @@ class TrainingState:
     def record(self, loss: FloatArray, steps: int, patience: int) -> None:
         """Take in the validation loss (S,) after one more epoch.
 
-        A seed that has stalled stays at its best even if it would improve later: alone, its training
-        would have ended there.
+        A stalled seed keeps its best weights even if it would improve later: trained alone, it would have
+        stopped there.
         """
         improved = (loss < self.best_loss) & ~self.stalled(patience)
         self.epoch += 1
@@ -89,7 +89,7 @@ class TrainingState:
 
 
 def fingerprint(settings: Mapping[str, object], arrays: Sequence[FloatArray]) -> str:
-    """SHA-256 of all that fixes a training's result: a checkpoint of another one must not be gone on from.
+    """SHA-256 of everything that determines a training's result; a checkpoint with another one is refused.
 
     Args:
         settings: plain values, ready for JSON.
@@ -117,7 +117,7 @@ def write_checkpoint(path: Path, print_of: str, state: TrainingState) -> None:
         "history": state.history,
     }
     tensors = {name: tensor.detach().cpu() for name, tensor in state.tensors().items()}
-    # The library's own writing to a file hides a full disk behind an error of its own.
+    # safetensors reports a full disk as an error of its own type.
     content = save(tensors, metadata={METADATA_KEY: json.dumps(progress)})
     with written_whole(path) as part:
         part.write_bytes(content)

@@ -1,4 +1,4 @@
-"""What defines a kind of latent action model besides its training, a trained model, and its NumPy decoder."""
+"""A kind of latent action model without its training, a trained model, and its NumPy decoder."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -38,11 +38,11 @@ class Dimensions:
 
 
 class Runtime(ABC):
-    """phi of one trained seed as the control loop runs it: NumPy alone, a few microseconds."""
+    """phi of one trained seed as the control loop runs it: NumPy only, a few microseconds."""
 
     @abstractmethod
     def __init__(self, trained: "TrainedModel", seed: int) -> None:
-        """Take one seed's decoder out of a trained model; there is such a seed."""
+        """Take one seed's decoder out of a trained model. The seed exists."""
 
     @abstractmethod
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
@@ -52,7 +52,7 @@ class Runtime(ABC):
 @final
 @dataclass(frozen=True, kw_only=True)
 class ModelKind:
-    """Everything that the project knows of a kind of model, except how it is trained.
+    """Everything that the project knows about a kind of model, except how it is trained.
 
     Attributes:
         name: on disk, on the command line and in results.
@@ -62,17 +62,18 @@ class ModelKind:
         runtime: the decoder in NumPy.
         decoder: layer widths, input first, by network, of the networks that decode.
         encoder: ``projection`` onto the columns of the decoder or the ``nearest`` action that it can
-            decode (neither has weights of its own), or a network of (c, a) whose output is z
+            decode (neither has weights), or a network of (c, a) whose output is z
             (``deterministic``) or (mu, log sigma^2) (``gaussian``).
         sees_context: whether the decoder sees the context.
         rests_at_zero: whether z = 0 means rest, phi(0, c) = 0, by the model's definition, so that it must
             stay u = 0. Where it does not, u = 0 is the mean latent action of the demonstrations.
         reverses: whether it rests, and the opposite input goes back, by construction.
-        damping_m2: for models that look at the arm's tools, what a joint's motion by 1 rad counts beside
-            the square of a tool's motion by 1 m, in the metric of the tools: enough to keep motions that no
-            tool shows from being free. None for models that do not look.
-        advice: which model to try next and why, in one sentence; "" where nothing was measured.
-        description: for people who choose a model on the page; the page's own words say it of our models.
+        damping_m2: for models that look at the arm's tools, weight of a joint's motion by 1 rad in the metric
+            of the tools, relative to the square of a tool's motion by 1 m: enough that motions that no tool
+            shows have a cost. None for models that do not look.
+        advice: one sentence on which model to try next and why; "" if nothing was measured.
+        description: shown on the page to people who choose a model. For our own models the page's texts say
+            it.
     """
 
     name: str
@@ -123,15 +124,14 @@ class ModelKind:
 @final
 @dataclass(frozen=True)
 class TrainingSummary:
-    """How a training went.
+    """Summary of a training.
 
     Attributes:
         seeds: the S seeds.
         validation_episodes: indices of the episodes that decided when training stopped.
         validation_loss: (S,), loss on their pairs, in normalised units.
         best_epoch: (S,), the epoch whose weights were kept, counted from 1.
-        history: (E, S), validation loss after each epoch, NaN where it was not a number; E = 0 where
-            there were none.
+        history: (E, S), validation loss after each epoch, possibly NaN; E = 0 for models without epochs.
         collapsed: (S, d), latent dimensions that move nothing.
     """
 
@@ -146,7 +146,7 @@ class TrainingSummary:
 @final
 @dataclass(frozen=True)
 class TrainedModel:
-    """What a fit leaves behind, as plain arrays: the record that is saved, loaded and run.
+    """The result of a fit as plain arrays, which is saved, loaded and run.
 
     Attributes:
         kind: which kind of model.
@@ -192,7 +192,7 @@ class TrainedModel:
         return Normaliser(self.tensors["latent.centre"][:, None], self.tensors["latent.scale"][:, None])
 
     def check_seed_index(self, seed: int) -> None:
-        """Refuse a seed's index that this model does not have.
+        """Check that the model has this seed index.
 
         Raises:
             UserError: ``seed`` is not within 0..S-1.

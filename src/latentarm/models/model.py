@@ -55,14 +55,14 @@ ROWS_AT_ONCE: Final = 4096
 """Pairs encoded or decoded at a time, so that memory does not grow with the dataset."""
 
 AHEAD_S: Final = 0.1
-"""How far ahead those models look that do, s: as long as a short press of the stick."""
+"""How far ahead models look (those that do), s: as long as a short press of the stick."""
 
 Weights = Mapping[str, FloatArray]
 
 
 @final
 class UnfittedError(UserError, NotFittedError):
-    """A model is used before `fit`: bad input to us, and scikit-learn's own error to its tools."""
+    """A model is used before `fit`. Both a `UserError` and scikit-learn's own error."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -74,8 +74,8 @@ class LatentActionModel(BaseEstimator, ABC):
     given and returned in input units: u in [-1, 1] on each axis spans what the demonstrations used.
     Arrays are float64.
 
-    All models take the same parameters, so that they can be compared with one set of them; PCA has
-    no use for those of the networks and their training.
+    All models take the same parameters, so that they can be compared with one set of them; PCA ignores those
+    of the networks and their training.
 
     Attributes:
         latent_dim: d, size of z.
@@ -99,7 +99,7 @@ class LatentActionModel(BaseEstimator, ABC):
     """
 
     kind: ClassVar[ModelKind]
-    """What the model is apart from its training."""
+    """The kind of model this is."""
 
     looks_ahead: ClassVar[bool] = False
     """Whether the loss looks at the context that an action leads to within `AHEAD_S`."""
@@ -165,12 +165,11 @@ class LatentActionModel(BaseEstimator, ABC):
 
         Args:
             demonstrations: at least two episodes.
-            validation: indices of the episodes that neither the weights nor the normalisers are fitted
-                to; the loss on them says when to stop. Drawn by ``data_seed`` where None.
+            validation: indices of the episodes that decide when training stops; neither the weights nor the
+                normalisers are fitted to them. Drawn by ``data_seed`` where None.
             chain: the arm's kinematics, for models that look at the tools; where None, those of the
                 robot that the demonstrations name.
-            term: what is to be minimised beside the model's own loss, where inputs matter that nobody
-                demonstrated.
+            term: is minimised together with the model's own loss; for inputs that were not demonstrated.
             checkpoint: file to write the training's state to and, if it exists, to go on from. It
                 stays when the training is done; delete it once the model is saved.
             report: is told after each epoch, by models that are trained in epochs.
@@ -179,7 +178,7 @@ class LatentActionModel(BaseEstimator, ABC):
             This model.
 
         Raises:
-            UserError: a parameter makes no sense, the demonstrations have too few episodes or lack
+            UserError: a parameter is invalid, the demonstrations have too few episodes or lack
                 what the parameters ask for, the arm is needed and not known, training diverged, or
                 CUDA is asked for and absent.
 
@@ -273,7 +272,7 @@ class LatentActionModel(BaseEstimator, ABC):
 
         Args:
             folder: made if it does not exist.
-            run: further keys for ``config.json``, beside its ``model``.
+            run: further keys for ``config.json``, next to ``model``.
 
         Raises:
             UserError: the model is not fitted, or the files cannot be written.
@@ -306,7 +305,7 @@ class LatentActionModel(BaseEstimator, ABC):
         return self._fitted().summary.history
 
     def _arm(self, demonstrations: Demonstrations, chain: Chain | None) -> Chain:
-        """The arm that was given, or else that of the robot that the demonstrations name.
+        """Return the given chain, or else that of the robot that the demonstrations name.
 
         Raises:
             UserError: there is neither, or it has other joints than the demonstrations.
@@ -374,7 +373,7 @@ class LatentActionModel(BaseEstimator, ABC):
         weights = learned.weights
         latents = self._encode_rows(weights, data.context, data.action)
         centre = np.zeros_like(latents[:, 0]) if self.kind.rests_at_zero else latents.mean(axis=1)
-        # A model that searches for z does so within the input's range.
+        # A model that searches for z searches within the input's range.
         in_input_units = self.kind.encoder == "nearest"
         scale = unit_scale(latents) if in_input_units else latent_scale(latents, centre)
         rows = np.linspace(0, len(context) - 1, min(EFFECT_SAMPLES, len(context))).astype(np.int64)
@@ -407,7 +406,8 @@ class LatentActionModel(BaseEstimator, ABC):
     def _later(
         self, contexts: Normaliser | ToolContexts, context: FloatArray, action: FloatArray
     ) -> FloatArray:
-        """What is seen where actions (N, m) lead from contexts (N, c), (N, o); (N, 0) where nobody looks."""
+        """Observations (N, o) where actions (N, m) lead from contexts (N, c); (N, 0) if the model does not
+        look ahead."""
         if not self.looks_ahead:
             return context[:, :0]
         later = context.copy()
@@ -431,7 +431,7 @@ class LatentActionModel(BaseEstimator, ABC):
 def _normalisers(
     arm: Chain | None, damping_m2: float | None, context: FloatArray, action: FloatArray
 ) -> tuple[Normaliser | ToolContexts, Normaliser]:
-    """What brings contexts and actions to size; in the metric of an arm's tools where there is one."""
+    """Normalisers of contexts and actions; in the metric of an arm's tools if the model has one."""
     if arm is None or damping_m2 is None:
         return context_normaliser(context), action_normaliser(action)
     contexts = ToolContexts.fitted(arm, context, damping_m2)

@@ -24,7 +24,7 @@ kernels may round differently at other alignments; this keeps a seed's result fr
 def mlp(layers: Sequence[Layer], inputs: Tensor) -> Tensor:
     """S perceptrons with SiLU hidden units, x sigmoid(x), and a linear output.
 
-    SiLU is smooth, as a person's stick wants it, and on a CPU costs a tenth of tanh.
+    SiLU is smooth, so the arm follows the stick smoothly, and on a CPU it costs a tenth of tanh.
 
     Args:
         layers: at least one.
@@ -41,7 +41,7 @@ def mlp(layers: Sequence[Layer], inputs: Tensor) -> Tensor:
 
 
 def group_layers(tensors: Mapping[str, Tensor]) -> dict[str, list[Layer]]:
-    """Networks from tensors named ``<network>.<layer>.weight`` and ``.bias``; others are left aside."""
+    """Networks from tensors named ``<network>.<layer>.weight`` and ``.bias``; others are ignored."""
     networks: dict[str, list[Layer]] = {}
     for network in {name.partition(".")[0] for name in tensors if name.endswith(".0.weight")}:
         stems = [

@@ -1,4 +1,4 @@
-"""What all models trained by gradient share: the way into torch and back."""
+"""Base of the models trained by gradient: from NumPy to torch and back."""
 
 import json
 from abc import ABC, abstractmethod
@@ -22,7 +22,7 @@ from latentarm.models.training import Report, TrainingConfig, TrainingResult, tr
 from latentarm.types import FloatArray
 
 Start = Callable[[TrainingData, Dimensions], dict[str, FloatArray]]
-"""From the training pairs to weights to begin with, by name."""
+"""From the training pairs to initial weights by name."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -34,7 +34,7 @@ class NeuralModel(LatentActionModel, ABC):
     """
 
     start: ClassVar[Start | None] = None
-    """What is known about good weights before training; a model without it draws all of them."""
+    """Initial values of some weights; the others are drawn at random."""
 
     @abstractmethod
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
@@ -78,7 +78,7 @@ class NeuralModel(LatentActionModel, ABC):
         )
 
     def _objective(self, term: ScaledTerm | None) -> Callable[[Networks, Batch], Tensor]:
-        """The model's own loss, and the term's where there is one."""
+        """The model's own loss, plus the term's if there is one."""
         if term is None:
             return self._loss
 

@@ -1,4 +1,4 @@
-"""Small networks as the control loop runs them: one seed, NumPy alone, with scalings folded in."""
+"""Small networks as the control loop runs them: one seed, NumPy only, with scalings folded in."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -9,7 +9,7 @@ from latentarm.models.kind import TrainedModel
 from latentarm.types import FloatArray
 
 NORM_FLOOR: Final = 1e-12
-"""Added under the root of a squared column length, so that a column of zeros divides by a number."""
+"""Added to a squared column length under the root, so that a column of zeros does not divide by zero."""
 
 Layer = tuple[FloatArray, FloatArray]
 """Weight (in, out) and bias (out,)."""
@@ -52,20 +52,20 @@ def layers_of(trained: TrainedModel, seed: int, network: str = "decoder") -> lis
 
 
 def scale_output(layers: list[Layer], scale: FloatArray) -> list[Layer]:
-    """Let a network whose last layer gives normalised actions give rad/s."""
+    """Make a network whose last layer gives normalised actions give rad/s."""
     weight, bias = layers[-1]
     return [*layers[:-1], (weight * scale, bias * scale)]
 
 
 def scale_latent(layer: Layer, trained: TrainedModel, seed: int) -> Layer:
-    """Let a first layer that takes z take u instead: z = centre + scale u."""
+    """Make a first layer that takes z take u instead: z = centre + scale u."""
     weight, bias = layer
     latents = trained.latents
     return latents.scale[seed, 0][:, None] * weight, bias + latents.centre[seed, 0] @ weight
 
 
 def scale_context(layer: Layer, trained: TrainedModel) -> Layer:
-    """Let a first layer that takes a normalised context take a raw one."""
+    """Make a first layer that takes a normalised context take a raw one."""
     weight, bias = layer
     scaled = weight / trained.tensors["context.scale"][:, None]
     return scaled, bias - trained.tensors["context.centre"] @ scaled

@@ -1,4 +1,4 @@
-"""Ranges of parameters, which stand in the fields' metadata, and refusals in one sentence each."""
+"""Ranges of parameters, kept in the fields' metadata, and checks against them."""
 
 import math
 from abc import ABC, abstractmethod
@@ -26,7 +26,7 @@ LARGEST: Final = 2**31 - 1
 
 
 class Range(ABC):
-    """What a parameter may be. ``str()`` of it completes "it must be ..."."""
+    """Allowed values of a parameter. Its ``str()`` completes "it must be ..."."""
 
     @abstractmethod
     def __contains__(self, value: object) -> bool: ...
@@ -59,7 +59,7 @@ class Real(Range):
 
     Attributes:
         least: the smallest.
-        below: what it stays below.
+        below: exclusive upper bound.
         strictly: whether ``least`` itself is too small.
     """
 
@@ -81,10 +81,10 @@ class Real(Range):
 @final
 @dataclass(frozen=True)
 class Choice(Range):
-    """One of a few texts.
+    """One of a few strings.
 
     Attributes:
-        among: these.
+        among: the strings.
     """
 
     among: tuple[str, ...]
@@ -108,7 +108,7 @@ class Widths(Range):
 
 
 def check_parameters(model: "type[DataclassInstance]", parameters: Mapping[str, object]) -> None:
-    """Check a model's parameters against the ranges in its fields' metadata, whoever wrote them.
+    """Check a model's parameters against the ranges in its fields' metadata, also for models of plug-ins.
 
     Raises:
         UserError: a value has the wrong type or lies outside its range.

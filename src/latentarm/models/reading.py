@@ -1,4 +1,4 @@
-"""Reading untrusted JSON: every value is asked for with the type and size that it must have."""
+"""Reading untrusted JSON: every read names the type and size that the value must have."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -87,7 +87,7 @@ class Section:
     def array(self, key: str, shape: tuple[int | None, ...], *, gaps: bool = False) -> FloatArray:
         """The nested list of numbers under a key; None in ``shape`` allows any length.
 
-        With ``gaps``, a null is a figure that there is not, and is read as NaN.
+        With ``gaps``, null stands for a missing figure and is read as NaN.
         """
         value = self._get(key)
         try:

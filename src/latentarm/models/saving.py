@@ -1,6 +1,6 @@
-"""A trained model on disk: ``model.safetensors`` and the ``model`` key of ``config.json``. NumPy alone.
+"""A trained model on disk: ``model.safetensors`` and the ``model`` key of ``config.json``. NumPy only.
 
-What is read is believed only after it has been checked: sizes before anything is allocated, then the
+What is read is used only after it has been checked: sizes before anything is allocated, then the
 weights' SHA-256, then every tensor's name, shape, dtype and finiteness. Nothing is unpickled.
 """
 
@@ -55,7 +55,7 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
     Args:
         folder: made if it does not exist.
         trained: the model.
-        run: further keys for ``config.json`` (dataset, commit, ...), beside ``model``.
+        run: further keys for ``config.json`` (dataset, commit, ...), next to ``model``.
 
     Raises:
         UserError: the files cannot be written.
@@ -172,7 +172,7 @@ def load_model(folder: StrPath) -> "LatentActionModel":
 
 
 def _renamed(section: Section) -> Section:
-    """The section with what schema 2 called otherwise under today's names."""
+    """The section with today's names for what schema 2 called otherwise."""
     return Section(section.where, {OLD_NAMES.get(key, key): value for key, value in section.values.items()})
 
 
@@ -180,7 +180,7 @@ def read_tensors(path: Path, shapes: Mapping[str, Shape], sha256: str) -> dict[s
     """The tensors of a safetensors file, after every check that can be made on them.
 
     Args:
-        path: the file; the ``config.json`` beside it says what must be in it.
+        path: the file; the ``config.json`` in its folder says what must be in it.
         shapes: of every tensor, by name.
         sha256: of the whole file.
 

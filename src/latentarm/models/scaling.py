@@ -52,9 +52,9 @@ def context_normaliser(context: FloatArray) -> Normaliser:
 def action_normaliser(action: FloatArray) -> Normaliser:
     """One scale for all joints and no offset.
 
-    One scale keeps the loss proportional to ``‖a - a_h‖^2`` of equations 6-8 in rad/s: a scale per
-    joint would weigh each joint by how little it moves. No offset keeps zero action at zero, which
-    models with phi(0, c) = 0 stand on.
+    One scale keeps the loss proportional to ``‖a - a_h‖^2`` of equations 6-8 in rad/s: a scale per joint
+    would weigh joints more the less they move. Without an offset, zero action stays zero, which models with
+    phi(0, c) = 0 need.
 
     Args:
         action: (N, m), rad/s, not all zero.
@@ -69,11 +69,11 @@ EFFECT_SAMPLES: Final = 512
 """Training contexts, at most, in which the effect of a latent dimension is measured."""
 
 SMALLEST_SCALE: Final = 1e-9
-"""Floor under a latent dimension's range, so that a dead one divides by a number."""
+"""Least range of a latent dimension, so that a dead one does not divide by zero."""
 
 DEAD_EFFECT: Final = 0.01
-"""A dimension whose full deflection changes the action by less than this share of the demonstrated
-speed is dead: no person could steer with it."""
+"""A dimension whose full deflection changes the action by less than this share of the demonstrated speed is
+dead: nobody could steer with it."""
 
 INACTIVE_VARIANCE: Final = 1e-2
 """Variance of the posterior mean below which a variational dimension has collapsed to the prior
@@ -132,12 +132,12 @@ def effect_of_dimensions(
 
 
 def find_collapsed(effect: FloatArray, latents: FloatArray, *, gaussian: bool) -> BoolArray:
-    """Which dimensions learned nothing.
+    """Which dimensions have collapsed.
 
     Args:
         effect: (S, d), see `effect_of_dimensions`.
         latents: (S, N, d), the encoder's means on the training pairs.
-        gaussian: whether the encoder is, and may also collapse to its prior.
+        gaussian: whether the encoder is Gaussian and may also collapse to its prior.
 
     Returns:
         (S, d).

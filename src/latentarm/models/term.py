@@ -1,4 +1,4 @@
-"""Terms of the loss that speak of everything a person could do, not of demonstrated pairs alone."""
+"""Loss terms on any input a person could give, not only on demonstrated pairs."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -16,7 +16,7 @@ from latentarm.types import FloatArray
 @final
 @dataclass(frozen=True, eq=False)
 class Situation:
-    """E contexts during training and what the S decoders would make of any input there.
+    """E contexts during training, and the actions of the S decoders for any input there.
 
     Attributes:
         state: (S, E, n), rad.
@@ -32,7 +32,7 @@ class Situation:
 
 
 class LossTerm(ABC):
-    """Something to be minimised beside ``‖a - phi(z, c)‖^2``. It needs contexts, but no actions there."""
+    """A loss to minimise together with ``‖a - phi(z, c)‖^2``. It needs contexts, but no actions there."""
 
     @property
     @abstractmethod
@@ -60,7 +60,7 @@ class LossTerm(ABC):
 @final
 @dataclass(frozen=True, eq=False)
 class ScaledTerm:
-    """A term, and what the numbers that networks see and give are worth in one training.
+    """A term, with the normalisers of one training.
 
     Attributes:
         term: the term.
@@ -104,7 +104,7 @@ class ScaledTerm:
 @final
 @dataclass(frozen=True, eq=False)
 class Span:
-    """Which latent actions inputs stand for: z = centre + scale u.
+    """The latent actions that inputs stand for: z = centre + scale u.
 
     Attributes:
         centre: (S, 1, d).

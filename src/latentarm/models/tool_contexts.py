@@ -1,4 +1,4 @@
-"""What a decoder that measures motion at the tool is shown: the context, and the arm's geometry in it."""
+"""The input of a decoder that measures motion at the tool: the context, and the arm's geometry in it."""
 
 import math
 from collections.abc import Mapping
@@ -20,12 +20,13 @@ PLACE: Final = 9
 """Numbers that tell a network where a tool is: its position and the first two columns of its rotation."""
 
 ROTATION_WEIGHT_M: Final = 0.05
-"""What a turn of a tool by 1 rad counts beside a motion by 1 m. Low, so that directions of z are told apart
-by where they move the tools; not zero, so that turning a tool in place counts too."""
+"""Weight of a tool's turn by 1 rad relative to a motion by 1 m. Low, so that directions of z differ mainly in
+where they move the tools; not zero, so that turning a tool in place counts too."""
 
 
 def tool_shapes(joints: int, tools: int) -> dict[str, tuple[int, ...]]:
-    """Shapes of what a saved model keeps of an arm of n joints and k tools, by name (see `ToolContexts`)."""
+    """Shapes of the arrays that a saved model keeps for an arm of n joints and k tools, by name (see
+    `ToolContexts`)."""
     return {
         "place.centre": (PLACE * tools,),
         "place.scale": (PLACE * tools,),

@@ -1,4 +1,4 @@
-"""The one training loop: S seeds of any model in one batched fit."""
+"""The training loop: S seeds of any model in one batched fit."""
 
 import math
 from collections.abc import Callable, Generator, Mapping, Sequence
@@ -26,7 +26,7 @@ Report = Callable[[int, int, float], None]
 """Is told after each epoch: how many are done, how many there are at most, and the validation loss so far."""
 
 THREADED_WORK: Final = 40_000
-"""Hidden units computed per layer and step from which a second thread costs less than it saves."""
+"""Hidden units per layer and step above which a second thread pays off."""
 
 
 @dataclass(frozen=True)
@@ -79,13 +79,13 @@ def train(
     identity: str = "",
     report: Report | None = None,
 ) -> TrainingResult:
-    """Train S seeds together; each as it would be alone.
+    """Train S seeds together, with the same result as training each alone.
 
     Per seed, the weights with the least validation loss are kept. A seed that has stalled is left as
     it is; the loop ends when all have, or after the last epoch.
 
     Args:
-        objective: loss (S,) of the networks on a batch, to be minimised for every seed by itself.
+        objective: loss (S,) of the networks on a batch, minimised for each seed separately.
         shapes: shape (S, in, out) of each weight by name.
         noise_dim: k, standard normal numbers that the objective takes per pair.
         data: N training and H validation pairs.
@@ -95,7 +95,7 @@ def train(
         start: values that weights begin with instead of being drawn, by name, each of a shape that
             broadcasts to (S, in, out).
         checkpoint: file to go on from, if it exists, and to write to.
-        identity: what else fixes the result; a checkpoint of another identity is refused.
+        identity: whatever else determines the result; a checkpoint of another identity is refused.
         report: see `Report`; also told before the first epoch, with a loss that is infinite.
 
     Raises:
@@ -148,7 +148,8 @@ def train(
 
 @contextmanager
 def threads_for(work: int) -> Generator[None]:
-    """One thread for small steps, where handing over costs more than it saves; then as it was before.
+    """Use one thread for small steps, where a second costs more than it saves; restore the setting
+    afterwards.
 
     Args:
         work: hidden units computed per layer and step.

@@ -1,6 +1,6 @@
-"""The autoencoders apart from their training.
+"""The autoencoders without their training.
 
-In all of them the encoder psi(c, a) sees context and action; conditioning is about the decoder alone.
+In all of them the encoder psi(c, a) sees context and action; only the decoder is conditioned or not.
 """
 
 from dataclasses import replace

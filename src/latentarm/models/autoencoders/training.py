@@ -82,8 +82,8 @@ class CAE(_Deterministic):
 class CAEZero(_Deterministic):
     """cAE with a penalty on motion at zero input: ``‖a - phi(z, c)‖^2 + lambda_0 ‖phi(0, c)‖^2``.
 
-    The cAE alone is free to keep moving when the stick is let go; the penalty asks for rest there in
-    every demonstrated context.
+    The cAE alone may keep moving when the stick is released; the penalty discourages that in every
+    demonstrated context.
 
     Attributes:
         zero_weight: lambda_0.

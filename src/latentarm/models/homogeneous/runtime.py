@@ -1,4 +1,4 @@
-"""The homogeneous model apart from its training: sizes and the decoder ``v r R(c, z / r)`` in NumPy."""
+"""The homogeneous model without its training: sizes and the decoder ``v r R(c, z / r)`` in NumPy."""
 
 from typing import Final, final
 
@@ -14,7 +14,7 @@ ORDERS: Final = (3, 5, 7)
 """Odd degrees by which the model bends."""
 
 BEND_SIZE: Final = 0.3
-"""What the network's bends are multiplied by: they begin small."""
+"""Factor of the network's bends, so that they start small."""
 
 
 @final

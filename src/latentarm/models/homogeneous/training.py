@@ -20,20 +20,20 @@ from latentarm.models.torch_tool_contexts import applied, inner
 from latentarm.types import FloatArray
 
 STRAIGHT_START: Final = 8.0
-"""Size of the first guess of M_1(c), where what an untrained network adds is about 0.5: large enough to give
-every seed the same orientation everywhere, without a seam between M_1 here and -M_1 there."""
+"""Size of the first guess of M_1(c), where what an untrained network adds is about 0.5: large enough that
+every seed starts with the same orientation everywhere, without a jump between M_1 and -M_1."""
 
 BEND_START: Final = 4.0
 """The same of the bends."""
 
 HALF_TURN: Final = 64
-"""Directions that the encoder tries for d = 2: each with its opposite, so over half a turn."""
+"""Directions that the encoder tries for d = 2, over half a turn: each stands for its opposite too."""
 
 DIRECTIONS: Final = 128
 """Directions that it tries for d > 2."""
 
 REFINEMENTS: Final = 2
-"""Rounds of refinement of the best, each four times finer than the one before."""
+"""Rounds of refinement of the best direction, each four times finer than the last."""
 
 
 def principal_start(data: TrainingData, dimensions: Dimensions) -> dict[str, FloatArray]:
@@ -65,8 +65,8 @@ class Homogeneous(NeuralModel):
     The directions of a linear decoder lie in a plane, and an arm that has left the demonstrated motions
     finds none that leads back. These lie on a closed curve that leaves the plane (for d = 2, of the first,
     third, fifth and seventh harmonics of the stick's angle), so that there is nearly always a direction that
-    brings the tools closer, and more kinds of motion are had than there are axes. The price is that the
-    motion may turn several times as fast as the stick between its axes; `latentarm.metrics.turning`
+    brings the tools closer, and there are more kinds of motion than axes. The price is that between its axes
+    the motion may turn several times as fast as the stick; `latentarm.metrics.turning`
     measures how much.
 
     A network of the context gives the matrices. The encoder searches for the latent action whose action is
@@ -75,8 +75,8 @@ class Homogeneous(NeuralModel):
 
     Attributes:
         smoothness_weight: price of ``‖phi(z, c') - phi(z, c)‖^2`` between a demonstrated context and the one
-            that the demonstrated action leads to within a tenth of a second: what the opposite push would
-            not undo.
+            that the demonstrated action leads to within a tenth of a second: this is what the opposite push
+            would not undo.
     """
 
     kind: ClassVar[ModelKind] = HOMOGENEOUS
@@ -168,8 +168,9 @@ def _decoded(geometry: _Geometry, latent: Tensor) -> Tensor:
 def _nearest(geometry: _Geometry, action: Tensor) -> Tensor:
     """The latents (S, B, d) whose actions are nearest to ``action`` (S, B, m).
 
-    In each direction the best push is known, so only the direction is searched for: over a fixed set, then
-    around its best along each axis with parabolas. That is exact for d = 1 and otherwise an approximation.
+    The best push in a given direction has a closed form, so only the direction is searched for: over a fixed
+    set, then around the best of it along each axis with parabolas. That is exact for d = 1 and otherwise an
+    approximation.
     No gradient flows through the search: at a minimum over z the loss does not change with z, so its gradient
     with respect to the weights is that at fixed z (the envelope theorem).
     """
@@ -187,7 +188,7 @@ def _nearest(geometry: _Geometry, action: Tensor) -> Tensor:
         for axis in range(geometry.latent_dim):
             towards = torch.zeros_like(best)
             towards[..., axis] = 1.0
-            # Along the sphere; nowhere, where the direction is the axis itself.
+            # Along the sphere; zero where the direction is the axis itself.
             tangent = _unit(towards - best[..., axis, None] * best)
             tried = torch.stack([_unit(best + shift * spacing * tangent) for shift in (-1, 0, 1)], dim=-2)
             less, here, more = explained(tried).unbind(-1)

@@ -1,1 +1,1 @@
-"""The isometric model: as far as the input is pushed, so far the tools move, anywhere."""
+"""The isometric model: the tools move as far as the input is pushed, everywhere."""

@@ -1,4 +1,4 @@
-"""The isometric model apart from its training: sizes and the decoder ``g(r) R(c, r) z / r`` in NumPy."""
+"""The isometric model without its training: sizes and the decoder ``g(r) R(c, r) z / r`` in NumPy."""
 
 from typing import Final, final
 
@@ -13,7 +13,7 @@ from latentarm.types import FloatArray
 DAMPING_M2: Final = 1e-2
 
 BEND_SIZE: Final = 0.3
-"""What the network's bend is multiplied by: it begins small."""
+"""Factor of the network's bend, so that it starts small."""
 
 
 @final

@@ -1,4 +1,4 @@
-"""A decoder that is an isometry: as far as the input is pushed, so far the tools move, anywhere."""
+"""A decoder that is an isometry: the tools move as far as the input is pushed, everywhere."""
 
 from dataclasses import dataclass, field
 from typing import ClassVar, Final, NamedTuple, final
@@ -20,9 +20,9 @@ from latentarm.models.torch_tool_contexts import applied, inner
 from latentarm.types import FloatArray
 
 STRAIGHT_START: Final = 2.0
-"""Size of the first guess of M(c), where what an untrained network adds is about 0.5: large enough to give
-every seed the same orientation everywhere. M and -M reconstruct alike, and a network that chose between them
-by chance, here this way and there that, would have a seam between the two that no training mends."""
+"""Size of the first guess of M(c), where what an untrained network adds is about 0.5: large enough that every
+seed starts with the same orientation everywhere. M and -M reconstruct equally well, and a network that chose
+between them at random in different places would keep a jump between the two that training cannot remove."""
 
 SATURATION_START: Final = 1.0
 """First guess of kappa, before softplus."""
@@ -75,9 +75,9 @@ class Isometric(NeuralModel):
       little: they move the tools nearly at right angles.
 
     The bend lets d inputs serve demonstrations that differ in more than d ways (a fan of directions at one
-    speed); ``bend_weight`` prices it, so that it stays near zero where M(c) alone will do. What the
-    networks give are twists of the tools, lifted to the joints by the damped pseudo-inverse
-    ``G^-1 J^T W``, plus joint speeds, also for what no tool shows. The encoder searches for the latent
+    speed); ``bend_weight`` prices it, so that it stays near zero where M(c) alone will do. The networks
+    output twists of the tools, mapped to the joints by the damped pseudo-inverse ``G^-1 J^T W``, plus joint
+    speeds, which also cover motion that no tool shows. The encoder searches for the latent
     action whose action is nearest; it has no weights. All of this builds on the state-conditioned linear
     decoder (Przystupa et al., arXiv 2410.21441).
 
@@ -200,8 +200,8 @@ def _turn(radius: Tensor) -> Tensor:
 def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
     """The latents (S, B, d) whose actions are nearest to ``action`` (S, B, m).
 
-    The direction is that of least squares, so only the radius is searched for: over a grid, then around
-    its best with parabolas. That is exact for d = 1, and for d > 1 where nothing bends and the best radius
+    The direction follows from least squares, so only the radius is searched for: over a grid, then around its
+    best with parabolas. That is exact for d = 1, and for d > 1 where nothing bends and the best radius
     is below `MOST_RADIUS`; otherwise it is an approximation. No gradient flows
     through the search: at a minimum over z the loss does not change with z, so its gradient with respect
     to the weights is that at fixed z (the envelope theorem).
@@ -223,7 +223,7 @@ def _nearest(geometry: _Geometry, gain: _Gain, action: Tensor) -> Tensor:
         along = torch.stack([u * v for u, v in zip(direction, target, strict=True)]).sum(0)
         return reach.square() * _quadratic(gram, direction) - 2 * reach * along, direction
 
-    # Finer towards rest: of a slow action even a small radius can be several times too much.
+    # Finer near rest: for a slow action even a small radius can be several times too large.
     share = torch.arange(1, RADII + 1, dtype=action.dtype, device=action.device) / RADII
     grid, spacing = MOST_RADIUS * share.square(), 2 * MOST_RADIUS / RADII * share
     chosen = fit(grid.expand(*action.shape[:-1], RADII))[0].argmin(-1, keepdim=True)

@@ -1,4 +1,4 @@
-"""PCA apart from its training. It decodes as an autoencoder without hidden layers does."""
+"""PCA without its training. It decodes like an autoencoder without hidden layers."""
 
 from typing import Final
 

@@ -24,8 +24,8 @@ from latentarm.types import FloatArray
 class PCA(LatentActionModel):
     """PCA: minimises equation 6 among linear maps that see no context.
 
-    As scikit-learn has it, the actions' mean is subtracted first, so that z = 0 decodes to that mean.
-    Nothing in it is random: every seed gets the same.
+    As in scikit-learn, the actions' mean is subtracted first, so that z = 0 decodes to that mean. Nothing in
+    it is random: all seeds are equal.
     """
 
     kind: ClassVar[ModelKind] = runtime.PCA
@@ -39,7 +39,8 @@ class PCA(LatentActionModel):
         report: Report | None,
     ) -> TrainingResult:
         if term is not None:
-            raise UserError("PCA has a closed form, to which no term can be added: choose another model.")
+            raise UserError("PCA is solved in closed form, so no term can be added to its loss: choose another
+            model.")
         if len(data.action) < dimensions.latent:
             raise UserError(
                 f"{len(data.action)} context-action pairs do not span {dimensions.latent} latent dimensions:"

@@ -1,4 +1,4 @@
-"""SCL apart from its training: sizes and the decoder ``M(c) z`` in NumPy."""
+"""SCL without its training: sizes and the decoder ``M(c) z`` in NumPy."""
 
 from typing import Final, final
 

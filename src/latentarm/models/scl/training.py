@@ -20,10 +20,10 @@ from latentarm.models.scl import runtime
 class SCL(NeuralModel):
     """State-conditioned linear decoder ``phi(z, c) = M(c) z`` (Przystupa et al., arXiv 2410.21441).
 
-    A network gives d columns, which Gram-Schmidt makes orthonormal: M(c)^T M(c) = 1. So rest is rest
-    (phi(0, c) = 0), reversing z reverses the motion, and the speed grows with ‖z‖ alike everywhere,
-    by construction. The encoder is least squares through M, which for orthonormal columns is
-    ``psi(c, a) = M(c)^T a``: the best z there is, without weights of its own.
+    A network gives d columns, which Gram-Schmidt makes orthonormal: M(c)^T M(c) = 1. So, by construction, z =
+    0 is rest (phi(0, c) = 0), reversing z reverses the motion, and the speed grows with ‖z‖ equally
+    everywhere. The encoder is least squares through M, which for orthonormal columns is
+    ``psi(c, a) = M(c)^T a``: the best possible z, without weights.
     """
 
     kind: ClassVar[ModelKind] = runtime.SCL
