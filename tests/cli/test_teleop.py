@@ -22,7 +22,7 @@ def test_a_port_in_use_is_said(run):
         (["nowhere"], "nowhere is not a run"),
         (["--host", "0.0.0.0"], "name this machine's own address"),  # noqa: S104 - it is refused
         (["--host", "::"], "name this machine's own address"),
-        (["--host", "no.such.host.invalid"], "is no address of this machine"),
+        (["--host", "no.such.host.invalid"], "is not an address of this machine"),
         (["--host", "192.0.2.1"], "cannot be used"),
         (["--port", "70000"], "from 0 to 65535"),
         (["--profile", "ada"], "A profile belongs to a run"),

@@ -406,8 +406,7 @@ class LatentActionModel(BaseEstimator, ABC):
     def _later(
         self, contexts: Normaliser | ToolContexts, context: FloatArray, action: FloatArray
     ) -> FloatArray:
-        """Observations (N, o) where actions (N, m) lead from contexts (N, c); (N, 0) if the model does not
-        look ahead."""
+        """Observations (N, o) where actions (N, m) lead from contexts (N, c); (N, 0) if unused."""
         if not self.looks_ahead:
             return context[:, :0]
         later = context.copy()

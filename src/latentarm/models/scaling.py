@@ -1,4 +1,4 @@
-"""Bringing contexts and actions to the same size before a network sees them."""
+"""Normalisation of contexts and actions, and the scaling of latent actions to inputs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

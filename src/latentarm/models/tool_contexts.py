@@ -25,8 +25,7 @@ where they move the tools; not zero, so that turning a tool in place counts too.
 
 
 def tool_shapes(joints: int, tools: int) -> dict[str, tuple[int, ...]]:
-    """Shapes of the arrays that a saved model keeps for an arm of n joints and k tools, by name (see
-    `ToolContexts`)."""
+    """Shapes of a saved model's arrays for an arm of n joints and k tools, by name (see `ToolContexts`)."""
     return {
         "place.centre": (PLACE * tools,),
         "place.scale": (PLACE * tools,),

@@ -148,8 +148,7 @@ def train(
 
 @contextmanager
 def threads_for(work: int) -> Generator[None]:
-    """Use one thread for small steps, where a second costs more than it saves; restore the setting
-    afterwards.
+    """Use one thread for small steps, where a second costs more than it saves.
 
     Args:
         work: hidden units computed per layer and step.

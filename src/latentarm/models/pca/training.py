@@ -39,8 +39,7 @@ class PCA(LatentActionModel):
         report: Report | None,
     ) -> TrainingResult:
         if term is not None:
-            raise UserError("PCA is solved in closed form, so no term can be added to its loss: choose another
-            model.")
+            raise UserError("PCA is solved in closed form, so no term can be added: choose another model.")
         if len(data.action) < dimensions.latent:
             raise UserError(
                 f"{len(data.action)} context-action pairs do not span {dimensions.latent} latent dimensions:"

@@ -35,13 +35,13 @@ from latentarm.web.protocol.channel import (
 from latentarm.web.protocol.notice import Notice
 
 ENABLE_WAITS_S: Final = 0.3
-"""For how long an order to enable waits for a fresh neutral input, s."""
+"""How long an order to enable waits for a fresh neutral input, s."""
 
 NOTE_S: Final = 6.0
-"""For how long a refusal is shown instead of what the arm does, s."""
+"""How long a refusal is shown instead of the arm's state, s."""
 
 Change = ChooseProfile | ChooseRun | Reset
-"""What the loop is ended for, to go on otherwise."""
+"""Orders that end the loop so that it can start again with another setup."""
 
 _HELD_BACK: Final[dict[str, HeldBack]] = {
     "clearance": "clearance",
@@ -49,19 +49,19 @@ _HELD_BACK: Final[dict[str, HeldBack]] = {
     "workspace": "workspace",
     "joint position": "joint_position",
 }
-"""What people are told of the filters; the others work all the time."""
+"""Filters whose effect is shown to people; the others are always active."""
 
 _ORDERS_PER_TICK: Final = 4
 _LOOK_EVERY: Final = 10
 _STATISTICS_EVERY: Final = 100
 _SPARE_S: Final = 0.004
-"""What can wait is done in a tick only where this much of it is left."""
+"""Deferrable work is done in a tick only if this much of the tick is left."""
 
 
 @final
 @dataclass
 class Steering:
-    """What goes on from one drive to the next.
+    """State that is kept from one drive to the next.
 
     Attributes:
         mode: how the arm is steered.
@@ -78,9 +78,9 @@ class Steering:
 
 @final
 class Drive:
-    """Everything that the control loop's thread does with one setup, besides driving.
+    """Everything that the control loop's thread does with one setup, apart from the control loop itself.
 
-    It takes a few hundred microseconds a tick. Stops are looked at in every tick, however full the pipe of
+    It takes a few hundred microseconds a tick. Stops are checked in every tick, however full the pipe of
     orders is.
 
     Args:
@@ -91,11 +91,11 @@ class Drive:
         writer: records.
         orphaned: whether the page's server is gone.
         steering: goes on from the drive before.
-        note: what the person is told first; None for nothing.
-        observers: called after every command besides.
+        note: shown to the person first; None for nothing.
+        observers: also called after every command.
 
     Attributes:
-        change: what the loop was ended for, to go on otherwise; None where it was ended for good.
+        change: the order that ended the loop to start it again; None if it ended for good.
     """
 
     def __init__(
@@ -135,7 +135,7 @@ class Drive:
         self._choose(steering.mode, steering.axes)
 
     def run(self, ticks: int | None = None) -> Change | None:
-        """Drive until something else is to be driven, or nothing any more.
+        """Drive until something else is to be driven, or the process is to end.
 
         Args:
             ticks: to end after so many.
@@ -162,7 +162,7 @@ class Drive:
 
     def _obey(self, record: StepRecord) -> None:
         if self._channel.stop.version != self._stop_version:
-            # Whatever it says, and also while it is half-written: something was said.
+            # Whatever the slot holds, even half-written: somebody asked for a stop.
             self._stop_version = self._channel.stop.version
             reason = self._channel.stop.read()
             self._stop(Notice(code="stop_pressed") if reason is None else parse_stop(reason[1]))
@@ -190,7 +190,7 @@ class Drive:
     def _carry_out(self, order: Order, record: StepRecord) -> None:
         match order:
             case Enable(driver=driver, stops=stops):
-                # One that was pressed before the newest Stop counts for nothing, whichever arrives first.
+                # An Enable from before the newest Stop is ignored, whichever arrives first.
                 if stops == self._stop_version:
                     self._enable_driver = driver
                     self._enable_until_s = record.time_s + ENABLE_WAITS_S
@@ -208,7 +208,7 @@ class Drive:
                 self._change_to(order)
 
     def _change_to(self, change: Change) -> None:
-        """End the loop for it, where the arm stands disengaged."""
+        """End the loop for this order, if the arm is disengaged."""
         if self._step.stopped is None or not self._step.at_rest:
             self._say(Notice(code="stop_first"))
             return
@@ -256,7 +256,7 @@ class Drive:
         self._steering.ending_episode = False
 
     def _enable_if_asked(self, now_s: float) -> None:
-        """Once a fresh neutral input is there; the loop itself has the last word."""
+        """Enable once there is a fresh neutral input; the loop itself decides."""
         if now_s > self._enable_until_s:
             return
         if self._step.stopped is None:
@@ -270,7 +270,7 @@ class Drive:
                 self._loop.enable()
 
     def _look(self, record: StepRecord) -> None:
-        """What can wait: ghosts, one direction a tick, and the loop's own figures."""
+        """Deferrable work: ghosts, one direction a tick, and the loop's statistics."""
         phase = self._steering.tick % _LOOK_EVERY
         if phase < 4:
             self._ghosts.look(phase, Context(self._seen, record.belief), record.mode)

@@ -1,4 +1,4 @@
-"""What a page drives: the task, its modes, and what steers in each. Read by both processes."""
+"""What a page drives: the task, its modes and their controllers. Used by both processes."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -25,21 +25,21 @@ from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
 from latentarm.web.protocol.channel import ModeName
 
 PERIOD_S: Final = 0.01
-"""Of the control loop: 100 Hz, the most that a real arm is sent from Python."""
+"""Period of the control loop: 100 Hz, the highest rate at which a real arm is driven from Python."""
 
 BELIEF_PERIOD_S: Final = 0.1
 """How often the belief is updated, s."""
 
 INPUT_GRACE_S: Final = 0.07
-"""A person whose connection falters for no longer than this and the above finds the arm slowed down, and need
-not enable it again."""
+"""If the connection drops for no longer than `INPUT_TIMEOUT_S` plus this, the arm slows down and need not be
+enabled again."""
 
 RELEASE_FRACTION: Final = 0.8
-"""As hard as a stop: whoever lets go finds the arm at rest within 0.15 s."""
+"""As hard as a stop: after letting go the arm is at rest within 0.15 s."""
 
 MOST_JOINTS: Final = 64
 MOST_GOALS: Final = 200
-"""What the pages can be told of in every tick."""
+"""Largest sizes that fit into the report of a tick."""
 
 COMMAND_PERIODS: Final = 5.0
 """How many periods a command lasts: a shared computer may hold the loop up for 50 ms before the arm stops."""
@@ -48,7 +48,7 @@ COMMAND_PERIODS: Final = 5.0
 @final
 @dataclass(frozen=True)
 class Spec:
-    """What is to be driven, in words, so that another process can be told.
+    """What is to be driven, as plain values that can be sent to another process.
 
     Attributes:
         run: a trained run, or None for end-effector control alone at the table-top task.
@@ -59,7 +59,7 @@ class Spec:
         arm: what moves, a name of `latentarm.arms.catalogue`.
 
     Raises:
-        UserError: the seed is none, or a profile is named without a run.
+        UserError: the seed is out of range, or a profile is named without a run.
     """
 
     run: Path | None = None
@@ -106,7 +106,7 @@ class DriveSetup:
 
     @property
     def modes(self) -> tuple[ModeName, ...]:
-        """What a person may choose from; without goals nothing can be helped towards."""
+        """The modes to choose from; without goals there is no help."""
         if not self.latent_dim:
             return ("end_effector",)
         return ("latent", "assisted", "end_effector") if self.task.goals else ("latent", "end_effector")
@@ -141,14 +141,14 @@ class DriveSetup:
 
 
 def with_profile(setup: DriveSetup, profile: str | None) -> DriveSetup:
-    """The same with another person's alignment; neither the dataset nor the robot is read again.
+    """The same setup with another person's alignment; neither dataset nor robot is read again.
 
     Args:
         setup: what is driven.
         profile: whose alignment; z = u where None.
 
     Raises:
-        UserError: nothing trained is driven, or the profile or the model cannot be used.
+        UserError: no run is driven, or the profile or the model cannot be used.
     """
     spec = replace(setup.spec, profile=profile)
     if spec.run is None:
@@ -164,7 +164,7 @@ def load_setup(spec: Spec) -> DriveSetup:
     Raises:
         UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
     """
-    ARMS.find(spec.arm, "--arm")  # here it can be said where the command was typed
+    ARMS.find(spec.arm, "--arm")  # so that the error appears where the command was typed
     if spec.run is None:
         task = task_without_run()
         latent = None

@@ -1,4 +1,4 @@
-"""What each direction of the stick would do now: the way of the tool over the next second."""
+"""What each direction of the stick would do now: the tool's path over the next second."""
 
 from typing import Final, final
 
@@ -50,8 +50,8 @@ class GhostPaths:
 
     The look ahead holds the deflection and the belief, integrates what the controller and the robot's help
     want in as many steps as there are points, and keeps the default limits of joints, speed and of the planes
-    (table, walls) that the arm must not pass. It leaves out ramps, and obstacles that are not planes. It
-    shows; the safety filters decide.
+    (table, walls) that the arm must not pass. It leaves out ramps, and obstacles that are not planes. It is
+    for display only; the safety filters decide.
 
     Args:
         task: the robot, its goals and what it must keep clear of.
@@ -81,7 +81,7 @@ class GhostPaths:
 
     @property
     def newest(self) -> Ghosts | None:
-        """All four directions, or None before they were all looked along."""
+        """All four directions, or None until each has been computed once."""
         return self._whole
 
     def look(self, direction: int, context: Context, mode: int) -> None:

@@ -1,4 +1,4 @@
-"""Inputs of the person who drives, as their page sends them."""
+"""Inputs of the driver, as their page sends them."""
 
 import math
 from collections.abc import Callable
@@ -18,19 +18,19 @@ INPUT_TIMEOUT_S: Final = 0.05
 stop's."""
 
 LATCH_MAX_S: Final = 10.0
-"""For how long an input that nobody holds goes on, s."""
+"""How long a latched input continues, s."""
 
 
 @final
 class PageInputs(InputSource):
-    """The newest input in a slot, where it is the driver's and fresh.
+    """The newest input in a slot, if it is the driver's and fresh.
 
     Args:
         slot: where the server puts inputs.
         clock: the loop's.
         input_dim: axes of the controller.
         dead_zone: a smaller deflection is neutral.
-        stop: stops the arm: when a latched motion has lasted for too long, or another person begins to drive.
+        stop: stops the arm: when a latched motion has lasted too long, or another person starts to drive.
 
     Attributes:
         driver: whose inputs are taken; -1 before the first.

@@ -43,7 +43,7 @@ from latentarm.web.protocol.notice import Notice, notice_of, sentence
 T = TypeVar("T")
 
 _PRIORITY: Final = 10
-"""Of the least urgent real-time processes."""
+"""Lowest real-time priority."""
 
 
 def run_control(spec: Spec, channel: Channel, server: int) -> None:
@@ -55,7 +55,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
         server: its process id.
 
     Raises:
-        UserError: the spec names what is not to be had.
+        UserError: something that the spec names cannot be loaded.
     """
 
     def end(number: int, frame: FrameType | None) -> None:
@@ -74,7 +74,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
         writer = EpisodeWriter(spec.out, spec.journal)
         steering = Steering(setup.modes[0])
         arm = _arm(setup, clock)
-        # Nothing that is there by now is ever garbage: the collector need not look through it.
+        # Nothing loaded by now is ever garbage, so the collector need not scan it.
         gc.collect()
         gc.freeze()
         note: Notice | None = None
@@ -100,8 +100,8 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
 
 
 def _ask_for_priority() -> None:
-    """Come before ordinary processes, where the system allows it: a busy computer makes us late."""
-    with suppress(OSError, AttributeError):  # not allowed, or a system that has no such thing
+    """Run before ordinary processes, if the system allows it: a busy computer makes us late."""
+    with suppress(OSError, AttributeError):  # not allowed, or not supported by the system
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
@@ -122,7 +122,7 @@ def _other_run(spec: Spec, clock: Clock) -> tuple[DriveSetup, Arm]:
 
 
 def _loaded(load: Callable[[], T], before: T) -> tuple[T, Notice | None]:
-    """What is loaded, or what there was before and why the other cannot be used."""
+    """The new setup, or the old one and why the new one cannot be used."""
     try:
         return load(), None
     except UserError as error:

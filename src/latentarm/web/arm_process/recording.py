@@ -19,7 +19,7 @@ _MOST_WAITING: Final = 6000
 """Samples that may wait for the disk: a minute of them."""
 
 _CHECK_S: Final = 1.0
-"""How often the journal is looked after while nothing is recorded, s."""
+"""How often the journal is checked while nothing is recorded, s."""
 
 _CLOSE: Final = "close"
 
@@ -34,12 +34,11 @@ class _End:
 
 @final
 class EpisodeWriter:
-    """Writes episodes to a journal in a thread of its own; its callers never wait.
+    """Writes episodes to a journal in a separate thread, so that callers never wait.
 
-    The journal is made when the first episode begins, and another one where it was lost. An episode that the
-    disk cannot keep up with is left incomplete and so never becomes part of a dataset. One whose arm can
-    no longer be trusted to say where it is ends before that, and one that fills the journal ends there; both
-    are complete.
+    The journal is created when the first episode begins, and again if it was lost. An episode that the
+    disk cannot keep up with is left incomplete and so never becomes part of a dataset. An episode ends before
+    the arm's readings become untrustworthy, and when the journal is full; both are complete.
 
     Args:
         folder: where journals go.
@@ -66,7 +65,7 @@ class EpisodeWriter:
 
     @property
     def status(self) -> Recording | None:
-        """What is recorded; None where nothing ever was."""
+        """The recording; None if nothing was ever recorded."""
         if self._thread is None:
             return None
         return Recording(
@@ -78,10 +77,10 @@ class EpisodeWriter:
         )
 
     def begin(self, header: EpisodeHeader) -> None:
-        """Begin an episode, where none is under way."""
+        """Begin an episode, unless one is under way."""
         if self._on:
             return
-        # Before the thread begins: it may find at once that nothing can be written.
+        # Before the thread starts: it may fail to write at once.
         self._problem = None
         if self._lost:
             self._lost, self._path, self._episodes = False, self._new_path(), 0
@@ -92,10 +91,10 @@ class EpisodeWriter:
             self._thread.start()
 
     def add(self, record: StepRecord) -> None:
-        """Keep a step, where an episode is under way; one that is not to be trusted ends it."""
+        """Keep a step of the episode under way; an untrustworthy one ends it."""
         stop = record.command.stop
         untrusted = stop if stop is not None and stop.untrusted else None
-        # The reason stays until the arm is enabled again: only where it is new does it end an episode.
+        # The reason stays until the arm is enabled again; only a new one ends an episode.
         news, self._untrusted = untrusted is not self._untrusted, untrusted
         if not self._on:
             return
@@ -156,7 +155,7 @@ class EpisodeWriter:
                     return
 
     def _next(self) -> StepRecord | EpisodeHeader | _End | str | None:
-        """What comes next; None where nothing comes for a while, to look after the journal meanwhile."""
+        """The next item; None if nothing comes for a while, so that the journal can be checked."""
         try:
             return self._waiting.get(timeout=_CHECK_S)
         except Empty:
@@ -181,7 +180,7 @@ class EpisodeWriter:
             self._break_off(notice_of(error))
 
     def _new_path(self) -> Path:
-        """A journal that is not there yet, named after the time."""
+        """A path for a new journal, named after the time."""
         named = f"journal-{datetime.now():%Y%m%d-%H%M%S}"
         path = self._folder / f"{named}.sqlite"
         number = 1

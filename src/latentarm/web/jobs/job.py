@@ -1,7 +1,7 @@
-"""Slow work in a child process of its own, so that neither the page's server nor the arm waits for it.
+"""Slow work in a child process, so that neither the page's server nor the arm waits for it.
 
-The child is polite (one thread, a low priority) and dies with its parent. What the two say to each other is
-JSON of a strict schema over pipes; reading it never makes the parent wait.
+The child has one thread and a low priority, and ends with its parent. They exchange JSON of a strict schema
+over pipes; reading never makes the parent wait.
 """
 
 import multiprocessing
@@ -40,11 +40,11 @@ class _Failed(Message):
 
 @final
 class Wire:
-    """The child's end: it says what it has done, and hears what it shall do.
+    """The child's end of the pipes.
 
     Args:
-        hearing: what the parent says comes from here.
-        saying: what the parent hears goes in here.
+        hearing: messages from the parent.
+        saying: messages to the parent.
     """
 
     def __init__(self, hearing: Connection, saying: Connection) -> None:
@@ -52,7 +52,7 @@ class Wire:
         self._saying = saying
 
     def say(self, message: Message) -> None:
-        """Tell the parent.
+        """Send a message to the parent.
 
         Raises:
             SystemExit: the parent is gone.
@@ -63,7 +63,7 @@ class Wire:
             sys.exit(1)
 
     def hear(self, kind: TypeAdapter[Told]) -> Told:
-        """Wait for what the parent says next; what is no message of this kind is left out.
+        """Wait for the parent's next message; anything else is skipped.
 
         Raises:
             SystemExit: the parent is gone.
@@ -79,7 +79,7 @@ class Wire:
 
 @final
 class Job(Generic[Said]):
-    """A child process at work. Everything here returns at once, save `end`.
+    """A child process at work. Everything but `end` returns at once.
 
     A `UserError` of the work ends it and is kept as `failure`; any other error is printed to standard error,
     and `failure` says that the work broke off.
@@ -88,7 +88,7 @@ class Job(Generic[Said]):
         work: a module's function, called in the child with its `Wire` and then ``arguments``. It must not
             be of a module that loads torch when it is imported: the number of threads is set before.
         arguments: for ``work``; they are pickled by multiprocessing.
-        kind: what the child says.
+        kind: of the child's messages.
         name: what the work is called in the list of processes.
     """
 
@@ -109,29 +109,29 @@ class Job(Generic[Said]):
         self._process.start()
         child_hears.close()
         child_says.close()
-        # A thread, because a message that is half-written would make its reader wait.
+        # In a thread, because a half-written message would make its reader wait.
         self._listener = threading.Thread(target=self._listen, name=name, daemon=True)
         self._listener.start()
 
     @property
     def alive(self) -> bool:
-        """Whether it is at work, or has something to say that has not arrived yet."""
+        """Whether it is at work, or has sent something that has not arrived yet."""
         return self._listener.is_alive()
 
     @property
     def failure(self) -> Notice | None:
-        """Why it did not come to its end; None while it is at work or went well."""
+        """Why it failed; None while it is at work and if it succeeded."""
         return self._failure
 
     def heard(self) -> list[Said]:
-        """What the child has said since this was last asked, oldest first."""
+        """The child's messages since the last call, oldest first."""
         return [self._heard.popleft() for _ in range(len(self._heard))]
 
     def say(self, message: Message) -> bool:
-        """Tell the child something short.
+        """Send the child a short message.
 
         Returns:
-            Whether it was taken: not where the child has ended, or has not listened for long.
+            Whether it was accepted: not if the child has ended or has stopped reading.
         """
         try:
             self._saying.send_bytes(message.model_dump_json().encode())
@@ -140,7 +140,7 @@ class Job(Generic[Said]):
         return True
 
     def end(self) -> None:
-        """End it, by force where it takes longer than two seconds. It is no failure to be ended."""
+        """End it, by force if it takes longer than two seconds. Ending it is not a failure."""
         self._ended = True
         if self._listener.is_alive():
             self._process.terminate()
@@ -169,12 +169,12 @@ class Job(Generic[Said]):
 def _run(
     work: Callable[..., None], arguments: tuple[object, ...], hearing: Connection, saying: Connection
 ) -> None:
-    """What the child does."""
+    """Run the work in the child."""
     # Ctrl-C in a terminal reaches every process: the server then ends this one in good order.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _tidy_up)
     threading.Thread(target=_die_with_parent, daemon=True).start()
-    with suppress(OSError, AttributeError):  # a system that has no such thing
+    with suppress(OSError, AttributeError):  # not supported by the system
         os.nice(_NICENESS)
     os.environ["OMP_NUM_THREADS"] = "1"  # read by torch when it is loaded
     wire = Wire(hearing, saying)

@@ -28,7 +28,7 @@ _STILL_M: Final = 5e-4
 @final
 @dataclass(frozen=True)
 class PersonalisePlan:
-    """Who is asked about what.
+    """The person to ask, and the run to ask about.
 
     Attributes:
         run: the run's folder.
@@ -100,14 +100,14 @@ class PersonaliseJob:
 
     @property
     def under_way(self) -> bool:
-        """Whether it has not come to an end of any kind."""
+        """Whether it is still under way."""
         return self._state.phase not in ("learned", "failed")
 
     def look(self) -> Personalise:
-        """How far it is."""
+        """The state to show."""
         if not self.under_way:
             return self._state
-        alive = self._job.alive  # before what it said is read: whoever is dead says no more
+        alive = self._job.alive  # read before its messages: a child that has ended sends no more
         for said in self._job.heard():
             match said:
                 case _Asked(number=number, of=of, back=back, motion=motion):
@@ -131,15 +131,15 @@ class PersonaliseJob:
         return self._state
 
     def answer(self, question: int, u: tuple[float, ...]) -> None:
-        """Pass an answer on, if it is one to the question that is asked."""
+        """Pass an answer on, if it belongs to the current question."""
         self._reply(question, _Answer(u=u))
 
     def skip(self, question: int) -> None:
-        """Pass on that the person would not know."""
+        """Pass on that the person skips the question."""
         self._reply(question, _Instead(type="skip"))
 
     def back(self, question: int) -> None:
-        """Pass on that the person wants the question before once more."""
+        """Pass on that the person wants to go back to the previous question."""
         self._reply(question, _Instead(type="back"))
 
     def end(self) -> None:
@@ -148,7 +148,7 @@ class PersonaliseJob:
 
     def _reply(self, question: int, reply: _Told) -> None:
         asked = self._state.phase == "asking" and question == self._state.question
-        # What nobody takes is not answered: the question stays, for the person to answer once more.
+        # If the child does not accept it, the question stays for the person to answer again.
         if asked and self._job.say(reply):
             self._change(phase="thinking", motion=None, share=0.0)
 
@@ -158,7 +158,7 @@ class PersonaliseJob:
 
 @final
 class PersonOnPage(Person):
-    """Is shown motions on a page, through the parent process, and answers there.
+    """A person who sees motions on a page and answers there, through the parent process.
 
     Args:
         wire: to the parent.
@@ -174,7 +174,7 @@ class PersonOnPage(Person):
         return "person"
 
     def answer(self, question: Question) -> Reply:
-        """Wait for what the page says, for as long as it takes."""
+        """Wait for the page's answer, without a time limit."""
         motion = shown_motion(question)
         self._wire.say(
             _Asked(number=question.number, of=question.total, back=self._behind > 0, motion=motion)
@@ -224,7 +224,7 @@ def ask_and_learn(wire: Wire, plan: PersonalisePlan) -> None:
 
 
 def shown_motion(question: Question) -> ShownMotion:
-    """A question's motion for a page to show, its states straight on from the first to the last."""
+    """A question's motion for a page to show, interpolated between its first and last state."""
     motion, chain = question.motion, question.chain
     share = np.linspace(0.0, 1.0, _FRAMES)[:, None]
     states = (1.0 - share) * motion.start[0] + share * motion.end[0]

@@ -30,17 +30,17 @@ SHORTEST_S: Final = 1.0
 """An episode that moves for less than this shows nothing."""
 
 STATE_NOISE_RAD: Final = 0.01
-"""As `latentarm train` has it."""
+"""As in `latentarm train`."""
 
 _FIRST_MODELS: Final = ("cvae", "cae", "homogeneous", "pca")
-"""Those that people most likely want."""
+"""The models that people most likely want."""
 
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
 _TELL_EVERY_S: Final = 0.1
 
 
 def model_names() -> tuple[str, ...]:
-    """Names in the catalogue of models, the usual one first. No model is loaded for it."""
+    """Names in the catalogue of models, the default first. Loads no model."""
     return tuple(dict.fromkeys((*_FIRST_MODELS, *KINDS)))
 
 
@@ -126,14 +126,14 @@ class TrainingJob:
 
     @property
     def under_way(self) -> bool:
-        """Whether it has not come to an end of any kind."""
+        """Whether it is still under way."""
         return self._state.phase in ("exporting", "training")
 
     def look(self) -> Training:
-        """How far it is."""
+        """The state to show."""
         if not self.under_way:
             return self._state
-        alive = self._job.alive  # before what it said is read: whoever is dead says no more
+        alive = self._job.alive  # read before its messages: a child that has ended sends no more
         for said in self._job.heard():
             match said:
                 case _Epoch(epoch=epoch, epochs=epochs, loss=loss, seconds_left=seconds_left):
@@ -164,7 +164,7 @@ class TrainingJob:
 
 
 def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
-    """The work itself, in the child. Nothing of it stays where it fails or is ended.
+    """The work itself, in the child. If it fails or is ended, it leaves nothing behind.
 
     Episodes are written as `demonstrations.pauses` makes them: motion alone, at `RATE_HZ`.
 
@@ -195,7 +195,7 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
 
 
 def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[Notice]:
-    """Write the dataset and the run; what was warned of."""
+    """Write the dataset and the run; return the warnings."""
     # pyarrow, and then torch, which take seconds to load: in this process alone.
     from latentarm.demonstrations.dataset import write_dataset
 
@@ -225,7 +225,7 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
 
 
 def _report_to(wire: Wire) -> Callable[[int, int, float], None]:
-    """A report of each epoch that goes to the parent, ten times a second at most."""
+    """A report that sends epochs to the parent, at most ten times a second."""
     begun_s = time.monotonic()
     told_s = -math.inf
 

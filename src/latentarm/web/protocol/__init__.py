@@ -1,1 +1,1 @@
-"""What pages, server and arm process say to each other."""
+"""Messages between pages, server and arm process."""

@@ -1,7 +1,7 @@
-"""What the page's server and the control process say to each other, and the ways it goes.
+"""Messages between the page's server and the control process, and how they travel.
 
-Neither ever waits for the other. Inputs and reports are latest-wins; a stop is a slot of its own, so that it
-arrives however full the pipe of orders is. Nothing unpickles: everything is JSON of a strict schema.
+Neither ever waits for the other. Inputs and reports are latest-wins; a stop has a separate slot, so that it
+arrives however full the pipe of orders is. Nothing is unpickled: everything is JSON of a strict schema.
 """
 
 from dataclasses import dataclass
@@ -28,14 +28,14 @@ Point = tuple[float, float, float]
 
 @final
 class Given(Message):
-    """What the person who drives does.
+    """The driver's input.
 
     Attributes:
-        driver: counts the drivers: inputs of one who has handed over are none of the next one's.
+        driver: counts the drivers, so that late inputs of the previous one are ignored.
         seq: grows with every input of a driver.
         nonce: the newest that their page has seen.
         u: entries in [-1, 1].
-        latched: goes on without being held, and so for a limited time.
+        latched: continues without being held, for a limited time.
         source: with what kind of device.
     """
 
@@ -138,7 +138,7 @@ class Recording(Message):
 
 @final
 class Report(Message):
-    """What the control process says of itself, in every tick.
+    """Report of the control process in every tick.
 
     Attributes:
         nonce: for the driver to echo.
@@ -148,13 +148,13 @@ class Report(Message):
         phase: ``disengaged``, ``neutral_needed`` (the stick must be let go), ``ready`` (enabled and standing
             still), ``moving``, ``stopping``.
         note: shown for a while instead of what the arm does; None for nothing.
-        reason: why the arm may not move; None where it may.
-        held_back: why it moves slower than it is asked to; None where it does not.
+        reason: why the arm may not move; None if it may.
+        held_back: why it moves slower than asked; None if it does not.
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
         run: path of the run that is driven, as it was named; None without one.
         profile: whose alignment.
-        loading: whether something else to drive is being loaded; nothing more is said until it is there.
+        loading: whether something else is being loaded; there are no further reports until it is.
         q: (n,), joint positions as they were last read, rad.
         speed: the fastest joint's, rad/s.
         tool: the tool's position, m.
@@ -201,8 +201,8 @@ class Channel:
         given: the newest input.
         report: the newest report.
         stop: the newest reason to stop, a `Notice`; every new one stops the arm.
-        ending: raised when the control process shall bring the arm to rest and end.
-        orders: everything else; bounded, for whoever is too slow to read loses orders, not time.
+        ending: raised to make the control process bring the arm to rest and end.
+        orders: everything else; bounded, so that a slow reader loses orders and never blocks the writer.
     """
 
     given: LatestSlot
@@ -212,7 +212,7 @@ class Channel:
     orders: Connection
 
     def read_orders(self, most: int) -> list[Order]:
-        """Orders that have come, oldest first; what is none is left out.
+        """Orders that have arrived, oldest first; invalid ones are skipped.
 
         Raises:
             EOFError: the other side is gone.
@@ -240,7 +240,7 @@ def new_channel(orders: Connection) -> Channel:
 
 
 def parse_given(message: bytes) -> Given | None:
-    """An input as it lies in its slot, or None where it is none."""
+    """Parse an input from its slot; None if it is invalid."""
     try:
         return Given.model_validate_json(message)
     except ValidationError:
@@ -248,7 +248,7 @@ def parse_given(message: bytes) -> Given | None:
 
 
 def parse_stop(message: bytes) -> Notice:
-    """A reason to stop as it lies in its slot; whatever lies there is one."""
+    """Parse a reason to stop from its slot; anything there is a reason to stop."""
     try:
         return Notice.model_validate_json(message)
     except ValidationError:
@@ -256,7 +256,7 @@ def parse_stop(message: bytes) -> Notice:
 
 
 def parse_report(message: bytes) -> Report | None:
-    """A report as it lies in its slot, or None where it is none."""
+    """Parse a report from its slot; None if it is invalid."""
     try:
         return Report.model_validate_json(message)
     except ValidationError:

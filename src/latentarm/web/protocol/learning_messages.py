@@ -1,4 +1,4 @@
-"""What pages and the server say to each other of runs: training them, choosing one."""
+"""Messages between pages and the server about runs: training and choosing them."""
 
 from typing import Annotated, Literal, final
 
@@ -32,7 +32,7 @@ class Train(Message):
 
 @final
 class CancelTraining(Message):
-    """End the training under way; nothing of it stays. From the page that drives."""
+    """Cancel the training and discard it. From the page that drives."""
 
     type: Literal["cancel_training"]
 
@@ -67,10 +67,10 @@ class Training(Message):
     Attributes:
         phase: where it is.
         run: the run's name.
-        epoch: how many passes over the episodes are done.
-        epochs: how many there are at most.
+        epoch: passes over the episodes so far.
+        epochs: maximum number of passes.
         loss: validation loss so far, or null.
-        seconds_left: about how long it will take yet, or null.
+        seconds_left: estimated remaining time, or null.
         why: why it failed, or what was warned of.
     """
 

@@ -1,8 +1,8 @@
-"""What pages and the server say to each other on the socket ``/drive``: JSON in text frames.
+"""Messages between pages and the server on the socket ``/drive``: JSON in text frames.
 
-The first message is `Hello`. Whatever is not of this schema ends the connection and stops the arm. The server
+The first message is `Hello`. Anything outside this schema ends the connection and stops the arm. The server
 answers with `Welcome`, again whenever what is driven has changed, then `State` up to 50 times a second to
-the driver and 30 to watchers, and says `Refused` before it hangs up.
+the driver and 30 to watchers, and `Refused` before it closes the connection.
 """
 
 from typing import Annotated, Final, Literal, final
@@ -34,14 +34,14 @@ class Hello(Message):
 
 @final
 class DriverInput(Message):
-    """What the person does, 50 times a second while the arm is enabled, neutral too.
+    """The person's input, 50 times a second while the arm is enabled, including neutral.
 
     Attributes:
         seq: grows.
         nonce: of the newest `State` that the page has seen.
         u: entries in [-1, 1], right and up positive; axes that are not named are zero.
         source: with what.
-        latched: goes on without being held, at most `Limits.latch_max_s`.
+        latched: continues without being held, for at most `Limits.latch_max_s`.
     """
 
     type: Literal["input"]
@@ -85,14 +85,14 @@ class Profile(Message):
 
 @final
 class AskToDrive(Message):
-    """Drive where nobody does, else ask the driver to hand over."""
+    """Drive if nobody does, else ask the driver to hand over."""
 
     type: Literal["ask_to_drive"]
 
 
 @final
 class HandOver(Message):
-    """Let the page drive that has asked to."""
+    """Hand over to the page that has asked to drive."""
 
     type: Literal["hand_over"]
     to: Id
@@ -161,7 +161,7 @@ class NamedGoal(Message):
 
 @final
 class Limits(Message):
-    """What a page must know of limits."""
+    """Limits that a page must know."""
 
     latch_max_s: float
 
@@ -215,15 +215,15 @@ class State(Message):
         nonce: to be echoed by the next input.
         tick: grows.
         phase: see `latentarm.web.protocol.channel.Report`.
-        note: to be shown instead of what the arm does, or null.
-        reason: why the arm may not move, or null where it may.
-        held_back: why it moves slower than it is asked to, or null.
+        note: shown instead of the arm's state, or null.
+        reason: why the arm may not move, or null if it may.
+        held_back: why it moves slower than asked, or null.
         mode: how the arm is steered.
         axes: which pair of the end-effector's.
         profile: whose alignment.
         bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
         tool: m.
-        ghosts: where each direction would take the tool; null where nothing moved by 1 mm since the last.
+        ghosts: where each direction would take the tool; null if nothing has moved by 1 mm since the last.
         belief: over the goals, or null where there are none.
         alpha: how much the robot helps, in [0, 1].
         bound_m: how far from the likeliest goal help lets the tool be, m, to first order; or null.
@@ -267,16 +267,16 @@ class State(Message):
 
 @final
 class Refused(Message):
-    """Why the server hangs up."""
+    """Why the server closes the connection."""
 
     type: Literal["refused"] = "refused"
     notice: Notice
 
 
 def parse_message(frame: str) -> ClientMessage:
-    """A page's message.
+    """Parse a page's message.
 
     Raises:
-        ValueError: it is none (pydantic's ``ValidationError`` is one).
+        ValueError: the text is not a valid message (as pydantic's ``ValidationError``).
     """
     return _CLIENT.validate_json(frame)

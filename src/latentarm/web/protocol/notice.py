@@ -1,4 +1,4 @@
-"""What people are told, on the wire: a code and its parameters, for which each language has words."""
+"""Notices to people, as sent: a code and its parameters, which each language puts into words."""
 
 from typing import Literal, final
 
@@ -54,14 +54,14 @@ NoticeCode = Literal[
 
 
 class Message(BaseModel):
-    """Base of everything that goes between processes and pages."""
+    """Base of all messages between processes and pages."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 @final
 class Notice(Message):
-    """Something that a person is told.
+    """A notice to a person.
 
     Attributes:
         code: which text it is. ``arm_stopped`` and ``error`` carry an English sentence in their parameter
@@ -93,10 +93,10 @@ class NoticeError(UserError):
 
 
 def notice_of(error: UserError) -> Notice:
-    """What people are told of an error."""
+    """The notice for an error."""
     return error.notice if isinstance(error, NoticeError) else sentence(str(error))
 
 
 def sentence(text: str) -> Notice:
-    """A sentence that has no code."""
+    """A notice for a sentence without a code."""
     return Notice(code="error", parameters={"text": one_line(text)})

@@ -1,4 +1,4 @@
-"""What pages and the server say to each other of a person's alignment: asking, trying, keeping."""
+"""Messages between pages and the server about a person's alignment: asking, trying, keeping."""
 
 from typing import Annotated, Final, Literal, final
 
@@ -30,10 +30,10 @@ class BeginPersonalise(Message):
 
 @final
 class AnswerQuestion(Message):
-    """By which input the person would ask for the motion that is shown; from the page that drives.
+    """The input with which the person would ask for the shown motion; from the page that drives.
 
     Attributes:
-        question: of `Personalise`; an answer to another one is not heard.
+        question: of `Personalise`; an answer to another one is ignored.
         u: entries in [-1, 1], right and up positive; axes that are not named are zero.
     """
 
@@ -44,7 +44,7 @@ class AnswerQuestion(Message):
 
 @final
 class SkipQuestion(Message):
-    """The person would not know; from the page that drives."""
+    """Skip the question; from the page that drives."""
 
     type: Literal["skip_question"]
     question: QuestionId
@@ -52,7 +52,7 @@ class SkipQuestion(Message):
 
 @final
 class QuestionBefore(Message):
-    """Ask the question before once more; from the page that drives."""
+    """Go back to the previous question; from the page that drives."""
 
     type: Literal["question_before"]
     question: QuestionId
@@ -60,14 +60,14 @@ class QuestionBefore(Message):
 
 @final
 class CancelPersonalise(Message):
-    """Ask no more, and forget what was answered; from the page that drives."""
+    """Stop asking, and discard the answers; from the page that drives."""
 
     type: Literal["cancel_personalise"]
 
 
 @final
 class TryAlignment(Message):
-    """Drive with what was learned; from the page that drives, while the arm is not enabled."""
+    """Try what was learned; from the page that drives, while the arm is not enabled."""
 
     type: Literal["try_alignment"]
 
@@ -81,7 +81,7 @@ class KeepAlignment(Message):
 
 @final
 class DiscardAlignment(Message):
-    """Forget what was learned, and drive as before; from the page that drives."""
+    """Discard what was learned, and drive as before; from the page that drives."""
 
     type: Literal["discard_alignment"]
 
@@ -115,16 +115,16 @@ class ShownMotion(Message):
 
 @final
 class Personalise(Message):
-    """A person's alignment as far as it is.
+    """Progress of a person's alignment.
 
     Attributes:
         phase: ``thinking`` is between two questions.
         name: the person's.
         question: which one is asked, for answers to name.
-        number: how many answers there will be with this one.
-        of: how many there may be.
-        back: whether there is a question before.
-        motion: what is asked about; null while nothing is.
+        number: answers so far, including this one.
+        of: maximum number of answers.
+        back: whether there is a previous question.
+        motion: the motion asked about, or null.
         share: how much of the thinking or learning is done, from 0 to 1.
         answers: how many it was learned from.
         error: relative alignment error about the answers themselves, as learned.

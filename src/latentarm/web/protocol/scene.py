@@ -1,4 +1,4 @@
-"""What a page draws: the shapes of the robot's MuJoCo model, and of the place that it stands in."""
+"""What a page draws: the shapes of the robot's MuJoCo model, and of its surroundings."""
 
 import struct
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ _TYPES: Final = {
     int(mujoco.mjtGeom.mjGEOM_BOX): "box",
     int(mujoco.mjtGeom.mjGEOM_MESH): "mesh",
 }
-"""What is drawn; planes and height fields are the place's, and that is the task's."""
+"""Shapes that are drawn; planes and height fields belong to the scene, which comes from the task."""
 
 _VISIBLE_GROUPS: Final = 3
 """MuJoCo's own viewer shows the groups below this one."""

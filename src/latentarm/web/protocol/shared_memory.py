@@ -1,4 +1,4 @@
-"""Memory that two processes share without ever waiting for each other."""
+"""A lock-free latest-value slot (a seqlock) and a flag in shared memory."""
 
 import ctypes
 import struct
@@ -16,7 +16,7 @@ _TRIES: Final = 4
 
 @final
 class LatestSlot:
-    """Holds the newest message of one writer for any readers; older ones are lost, and nobody waits.
+    """A lock-free slot for the newest message of one writer; older messages are lost, and nobody waits.
 
     The version is odd while the writer is at it. A reader takes a message only if the version was the
     same before and after, and the checksum over both is right: so one that was changed while it was read,
@@ -39,7 +39,7 @@ class LatestSlot:
         return int(self._memory[0])
 
     def write(self, message: bytes) -> None:
-        """Replace the message; one process alone may do so.
+        """Replace the message; only one process may do so.
 
         Raises:
             ValueError: the message is too long for the slot.
@@ -54,7 +54,7 @@ class LatestSlot:
         self._memory[0] = self._written
 
     def read(self) -> tuple[int, bytes] | None:
-        """The newest message and its version, or None where there is none that is whole."""
+        """The newest message and its version, or None if there is no complete one."""
         view = self._view()
         for _ in range(_TRIES):
             version = self.version
@@ -78,7 +78,7 @@ def _checksum(message: bytes, version: int) -> int:
 
 @final
 class Flag:
-    """A number in shared memory that one process raises and others look at."""
+    """A counter in shared memory that one process raises and others read."""
 
     def __init__(self) -> None:
         self._memory = RawArray(ctypes.c_uint64, 1)
@@ -89,5 +89,5 @@ class Flag:
         return int(self._memory[0])
 
     def raise_(self) -> None:
-        """Count one up; one process alone may do so."""
+        """Raise it by one; only one process may do so."""
         self._memory[0] += 1

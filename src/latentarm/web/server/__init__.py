@@ -1,1 +1,1 @@
-"""The web server: who may speak to it, what it serves, and the socket that pages drive through."""
+"""The web server: access control, pages and assets, and the socket that pages drive through."""

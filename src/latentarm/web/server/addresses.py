@@ -11,7 +11,7 @@ from latentarm.errors import UserError
 from latentarm.web.arm_process.drive_setup import Spec
 
 _BACKLOG: Final = 2048
-"""Connections that the system keeps until they are accepted: a crowd of them shall not be turned away."""
+"""Backlog of connections that are not accepted yet; large, so that bursts are not refused."""
 
 _OWN_PORTS: Final = {"http": 80, "https": 443}
 
@@ -45,7 +45,7 @@ class TeleopConfig:
             raise UserError("TLS needs a certificate and its key: name both --certfile and --keyfile.")
         if _is_anywhere(self.host):
             raise UserError(
-                f"The page must know the address that people open, and {self.host} is none: name this"
+                f"The page must know the address that people open, and {self.host} is not one: name this"
                 " machine's own address or name with --host."
             )
 
@@ -75,7 +75,8 @@ def listen(config: TeleopConfig) -> socket.socket:
         )[0]
         listening = socket.socket(family, kind, protocol)
     except OSError as error:
-        raise UserError(f"{config.host} is no address of this machine: {error.strerror or error}.") from error
+        reason = error.strerror or error
+        raise UserError(f"{config.host} is not an address of this machine: {reason}.") from error
     try:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listening.bind(address)
@@ -90,7 +91,7 @@ def listen(config: TeleopConfig) -> socket.socket:
 
 
 def check_certificate(config: TeleopConfig) -> None:
-    """See that the files for TLS can be used.
+    """Check that the files for TLS can be used.
 
     Raises:
         UserError: they cannot.
@@ -101,7 +102,7 @@ def check_certificate(config: TeleopConfig) -> None:
         ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(config.certfile, config.keyfile)
     except (OSError, ssl.SSLError) as error:
         raise UserError(
-            f"{config.certfile} and {config.keyfile} are no certificate and key for TLS"
+            f"{config.certfile} and {config.keyfile} are not a certificate and key for TLS"
             f" ({error.strerror or error})."
         ) from error
 

@@ -35,7 +35,7 @@ from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
 
 _STARTED_S: Final = 0.01
-"""How often is looked whether uvicorn has started, s."""
+"""How often to check whether uvicorn has started, s."""
 
 
 def serve(
@@ -49,7 +49,7 @@ def serve(
         ready: called once with the address to open first: the page's, or a link that works once.
 
     Raises:
-        UserError: the run or profile is not to be had, the address is taken, or a file for TLS is broken.
+        UserError: the run or profile cannot be loaded, the address is taken, or a file for TLS is broken.
     """
     check_certificate(config)
     setup = load_setup(config.spec)
@@ -180,7 +180,7 @@ def gated(
 def server_config(
     app: ASGIApp, config: TeleopConfig, log_config: dict[str, Any] | None = None
 ) -> uvicorn.Config:
-    """How the application is served: everything bounded, nothing compressed, no proxy believed.
+    """Configuration of uvicorn: everything bounded, nothing compressed, no proxy trusted.
 
     Args:
         app: from `gated`.

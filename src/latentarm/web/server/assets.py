@@ -30,7 +30,7 @@ class _Asset:
 
 @final
 class Assets:
-    """Everything that a page loads besides its HTML, each under a path that names the content of all.
+    """Everything that a page loads besides its HTML, each under a path with a hash of them all.
 
     A browser may keep it for as long as it likes: another version of the program has other paths.
     """

@@ -1,4 +1,4 @@
-"""Connections to the server: a new one always gets in, and none may keep others waiting.
+"""Connections to the server: a new one is always accepted, and none may keep others waiting.
 
 uvicorn has no deadline for a request's headers, and its cap on connections counts those that say nothing
 against those that ask for something. So connections are accepted here and handed to uvicorn's HTTP protocol;
@@ -48,9 +48,9 @@ class ConnectionLimits:
         head_s: for the handshake of TLS, and again for a request's headers, s. Also how long a connection may
             wait for its next request.
         body_s: for a request's body, s.
-        stalled_s: for which a peer may take nothing of what it is sent, s.
-        closing_s: to take the last of it after the server has hung up, s.
-        look_s: how often all this is looked at, s.
+        stalled_s: how long a peer may read nothing of what it is sent, s.
+        closing_s: time to read the rest after the server has closed the connection, s.
+        look_s: how often all this is checked, s.
     """
 
     most: int = 384
@@ -95,7 +95,7 @@ class Connections:
         self._serve = serve
         self._tls = tls
         self._limits = limits
-        # The one that has waited longest comes first.
+        # Longest waiting first.
         self._open: dict[_Connection, None] = {}
         self._said_s = -_SAY_EVERY_S
 
@@ -140,7 +140,7 @@ class Connections:
                 del self._open[connection]
 
     async def _look(self) -> None:
-        """End what takes too long, and forget what is gone, until cancelled."""
+        """End connections that take too long, and drop closed ones, until cancelled."""
         while True:
             now_s = time.monotonic()
             for connection in list(self._open):

@@ -40,7 +40,7 @@ HANG_UP_WITHIN_S: Final = 1.0
 
 DRIVER_PERIOD_S: Final = 0.02
 WATCHER_PERIOD_S: Final = 0.033
-"""How often a page is sent a state, save that it hears at once when the arm sets off. The driver's is also
+"""How often a page is sent a state; the start of a motion is sent at once. The driver's is also
 what makes the next input fresh."""
 
 _PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)
@@ -48,7 +48,7 @@ _PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)
 
 
 class _ViolationError(Exception):
-    """A page has sent what it must not."""
+    """A page has sent something that it must not."""
 
 
 class _ExpiredError(Exception):
@@ -56,7 +56,7 @@ class _ExpiredError(Exception):
 
 
 async def _hang_up(socket: WebSocket, code: int, why: NoticeCode) -> None:
-    """Say why, and close; a page that takes nothing any more is not waited for."""
+    """Send the reason and close, without waiting for a page that no longer reads."""
     with suppress(RuntimeError, WebSocketDisconnect, TimeoutError):
         async with asyncio.timeout(HANG_UP_WITHIN_S):
             await socket.send_text(Refused(notice=Notice(code=why)).model_dump_json())
@@ -96,7 +96,7 @@ class DriveSocket:
             self._open -= 1
 
     def stop(self, who: str) -> None:
-        """Stop the arm, for somebody."""
+        """Stop the arm, in the name of a page."""
         self._control.stop(Notice(code="stop_pressed_by", parameters={"name": who}))
 
     async def _serve(self, socket: WebSocket) -> None:
@@ -114,7 +114,7 @@ class DriveSocket:
             self._control.stop(Notice(code="message_invalid"))
             await _hang_up(socket, 1008, "page_refused")
         except TimeoutError:
-            # It is nobody yet: a slow network or a silent stranger is no reason to stop the arm.
+            # Nobody is driving from here yet, so a slow or silent connection does not stop the arm.
             await _hang_up(socket, 1008, "no_hello")
         except _ExpiredError:
             if page is not None and self._sessions.drives(page):
@@ -131,7 +131,7 @@ class DriveSocket:
     async def _send_states(self, socket: WebSocket, page: Page) -> None:
         """States as fast as the page takes them, always the newest: nothing queues up.
 
-        Before them what is driven, and what there is in the learning; again when it has changed.
+        They are preceded by what is driven and the state of learning, and again when those change.
         """
         ghosts = GhostMemory()
         loaded = None
@@ -153,7 +153,7 @@ class DriveSocket:
                 await self._states.pause(DRIVER_PERIOD_S if drives else WATCHER_PERIOD_S)
 
     def _take(self, page: Page, message: ClientMessage) -> None:
-        """Do what a page asks for; what only the driver may ask for is not heard from others."""
+        """Carry out a page's message; orders reserved for the driver are ignored from others."""
         if isinstance(message, Hello) or not self._suits(message):
             raise _ViolationError
         if isinstance(message, PressStop):
@@ -228,7 +228,7 @@ async def _receive(socket: WebSocket) -> ClientMessage:
     """The next message.
 
     Raises:
-        _ViolationError: it is none, or one too many.
+        _ViolationError: it is invalid, or there are too many.
         _ExpiredError: the page may not be here any longer.
         WebSocketDisconnect: the page has gone.
     """

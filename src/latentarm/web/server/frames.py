@@ -71,7 +71,7 @@ class FrameMeter:
         self._left = 0
 
     def pass_on(self, data: bytes) -> tuple[bytes, bool]:
-        """What of some bytes may be passed on.
+        """Return which of some bytes may be passed on.
 
         Args:
             data: that arrived, cut anywhere.

@@ -1,4 +1,4 @@
-"""What the server knows of recordings, trainings and runs, and tells the pages."""
+"""Recordings, trainings and runs, and what pages are told of them."""
 
 import asyncio
 from pathlib import Path
@@ -18,7 +18,7 @@ from latentarm.web.server.run_check import WITHIN_S, Trial
 from latentarm.web.server.states import States
 
 LOOK_S: Final = 0.2
-"""How often the jobs and the recordings are looked at, s."""
+"""How often jobs and recordings are checked, s."""
 
 
 @final
@@ -69,7 +69,7 @@ class Learning:
             await asyncio.sleep(LOOK_S)
 
     def train(self, wish: Train) -> None:
-        """Begin a training, or say why not; while one is under way nothing is heard."""
+        """Begin a training, or say why not; ignored while one is under way."""
         if self._job is not None and self._job.under_way:
             return
         report = self._states.report
@@ -120,7 +120,7 @@ class Learning:
             await asyncio.to_thread(self._job.cancel)
 
     async def _try_run(self, name: str, run: Path) -> None:
-        """Have a run driven once a child process has loaded it; until then driving goes on as it was."""
+        """Drive a run once a child process has loaded it; until then driving continues as before."""
         trial = Trial(self._states.loaded.spec, run, name)
         try:
             self._states.say(Notice(code="checking_run", parameters={"name": name}), WITHIN_S)
@@ -161,7 +161,7 @@ class Learning:
         try:
             entries = await asyncio.to_thread(list_journal, Path(recording.journal))
         except UserError:
-            return  # it is being written: soon again
+            return  # it is being written: try again soon
         self._listed = listed
         self._recordings = tuple(
             Recorded(number=entry.number, task=entry.header.task, seconds=round(entry.duration_s, 1))

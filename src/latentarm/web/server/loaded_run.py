@@ -42,7 +42,7 @@ class LoadedRun:
         return () if self.spec.run is None else profile_names(self.spec.run)
 
     def shows(self, report: Report) -> bool:
-        """Whether a report is of what is driven here."""
+        """Whether a report is about this run."""
         return report.run == (None if self.spec.run is None else str(self.spec.run))
 
     def welcome(self, page: str) -> Welcome:

@@ -8,7 +8,7 @@ from latentarm.untrusted.terminal import one_line, visible
 _TRACEBACKS: Final = logging.Formatter()
 
 _OTHERS: Final = ("uvicorn", "uvicorn.error")
-"""Loggers of libraries; handlers of their own, which some have, are taken from them."""
+"""Loggers of libraries; their handlers, if any, are removed."""
 
 LOGGING: Final[dict[str, Any]] = {
     "version": 1,
@@ -23,8 +23,7 @@ LOGGING: Final[dict[str, Any]] = {
     },
     "formatters": {"plain": {"format": "%(levelname)s: %(message)s"}},
     "root": {"handlers": ["terminal"], "level": "WARNING"},
-    # These warn of every request for a page that does not exist, or that is not HTTP: strangers could flood
-    # the terminal.
+    # These warn of every request for a missing page or that is not HTTP: strangers could flood the terminal.
     "loggers": {name: {"level": "ERROR"} for name in _OTHERS},
 }
 """For `logging.config.dictConfig`: warnings and errors, with nothing in them that a terminal would obey."""

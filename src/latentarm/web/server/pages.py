@@ -1,4 +1,4 @@
-"""The pages: HTML made by Jinja2 from the templates in ``pages/``, once for each language."""
+"""The pages: HTML rendered by Jinja2 from the templates in ``pages/``, once per language."""
 
 import hashlib
 from collections.abc import Sequence
@@ -56,7 +56,7 @@ class ModelChoice:
     Attributes:
         name: in the catalogue of models.
         title: for people.
-        help: for whom it is, in a sentence or two.
+        help: when to use it, in a sentence or two.
     """
 
     name: str
@@ -95,7 +95,7 @@ class Pages:
         }
 
     async def answer(self, request: Request) -> Response:
-        """Serve one of `PAGES` in the language of whoever asks."""
+        """Serve one of `PAGES` in the visitor's language."""
         words = chosen_language(request.cookies.get(COOKIE, ""), request.headers.get("accept-language", ""))
         html = self._html[request.url.path, words.language]
         headers = {
@@ -110,7 +110,7 @@ class Pages:
 
 
 def _choice(model: str, words: Words) -> ModelChoice:
-    """What a model is called: by the page's words, or else as its plug-in says."""
+    """A model's name: from the page's texts, or else as its plug-in says."""
     if f"model.{model}" in words.texts:
         return ModelChoice(model, words.say(f"model.{model}"), words.say(f"model.{model}.help"))
     title, about = model, ""

@@ -33,7 +33,7 @@ STICK_AXES: Final = 2
 @final
 @dataclass(frozen=True)
 class Driven:
-    """What Personalise must know of what is driven.
+    """What Personalise must know about what is driven.
 
     Attributes:
         run: its folder, or None.
@@ -77,22 +77,22 @@ class Personalising:
 
     @property
     def standstill(self) -> Notice | None:
-        """Why the arm may not be enabled; None where it may."""
+        """Why the arm may not be enabled; None if it may."""
         if self._state is None or not self._under_way:
             return None
         return Notice(code="asking", parameters={"name": self._state.name})
 
     def look(self) -> Personalise | None:
-        """How far it is; None where there is nothing of it."""
+        """The state to show; None if there is none."""
         if self._run is not None and self._driven().run != self._run:
-            # Another run is driven: what was asked or learned is of no use for it.
+            # Another run is driven: answers and profile do not apply to it.
             self._forget()
         if self._job is not None and self._under_way:
             self._state = self._job.look()
         return self._state
 
     def take(self, message: PersonaliseMessage) -> None:
-        """Do what the page that drives asks for, or say in `look` why it cannot be done."""
+        """Carry out an order of the driver's page, or say in `look` why it cannot be done."""
         try:
             self._obey(message)
         except UserError as error:
@@ -180,7 +180,7 @@ class Personalising:
         self._job = self._run = self._state = None
 
     def _give_back(self, driven: Driven) -> None:
-        """The alignment from before the trial, and nothing of what was tried.
+        """Go back to the alignment from before the trial, and discard what was tried.
 
         Raises:
             UserError: the arm must be stopped first, or files cannot be deleted.
@@ -193,7 +193,7 @@ class Personalising:
             discard_trial(driven.run)
 
     def _forget(self) -> None:
-        """Whatever there is of it."""
+        """Its state, if any."""
         job, run = self._job, self._run
         self._job = self._run = self._state = None
         self._tried = False

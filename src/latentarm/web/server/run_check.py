@@ -1,7 +1,8 @@
 """Loading a run first in a child process, so that a broken one costs neither the arm nor the server.
 
-What a run names is read by libraries in C (Parquet, meshes), which a file made for it could keep busy for
-ever or crash. The child may: only what it has loaded within its time is then loaded by those who matter.
+What a run names is read by libraries in C (Parquet, meshes), which a malicious file could crash or keep busy
+for ever. That may happen to the child; only what it has loaded in time is then loaded by the server and the
+arm's process.
 """
 
 import asyncio
@@ -44,7 +45,7 @@ class Trial:
         self._until_s = time.monotonic() + WITHIN_S
 
     async def failure(self) -> Notice | None:
-        """Why the run cannot be driven; None where it can."""
+        """Why the run cannot be driven; None if it can."""
         while self._job.alive:
             if time.monotonic() > self._until_s:
                 await asyncio.to_thread(self._job.end)
@@ -54,7 +55,7 @@ class Trial:
         return self._job.failure
 
     def end(self) -> None:
-        """End it, wherever it stands; takes up to two seconds."""
+        """End it at any point; takes up to two seconds."""
         self._job.end()
 
 

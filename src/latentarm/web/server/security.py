@@ -1,4 +1,4 @@
-"""Who may speak to the server at all: exact hosts and origins, a cookie off the loopback, strict headers."""
+"""Access to the server: exact hosts and origins, a cookie off the loopback, strict headers."""
 
 import asyncio
 import hashlib
@@ -17,7 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 COOKIE: Final = "latentarm"
 LIFE_S: Final = 8 * 3600
-"""For how long a cookie opens the page, s."""
+"""How long a cookie is valid, s."""
 
 BODY_LIMIT: Final = 1 << 16
 """The longest body of a request, bytes."""
@@ -36,7 +36,7 @@ EXPIRED_WHY: Final = "expired"
 
 ENTRY: Final = "/enter"
 STOP: Final = "/stop"
-"""Needs no cookie: whoever reaches the page may stop the arm."""
+"""Needs no cookie: anyone who can reach the page may stop the arm."""
 
 _MOST_VISITORS: Final = 64
 _MOST_DIGITS: Final = 20
@@ -76,13 +76,13 @@ class Keys:
         self._cookies: dict[bytes, float] = {}
 
     def new_link(self) -> str:
-        """A key for the next visitor, 256 random bits; the one before is void."""
+        """A key for the next visitor, 256 random bits; the previous one becomes invalid."""
         key = secrets.token_urlsafe(32)
         self._link = _hash(key)
         return key
 
     def redeem(self, key: str) -> str | None:
-        """A cookie for a key that was not used yet, or None."""
+        """A cookie in exchange for an unused key, or None."""
         self._forget()
         if self._link is None or not hmac.compare_digest(self._link, _hash(key)):
             return None
@@ -94,7 +94,7 @@ class Keys:
         return cookie
 
     def opens_for(self, cookie: str) -> float | None:
-        """For how much longer a cookie opens the page, s; None where it is not one of ours, or too old."""
+        """How much longer a cookie is valid, s; None if it is unknown or expired."""
         self._forget()
         given = _hash(cookie)
         found: float | None = None
@@ -112,8 +112,8 @@ class Keys:
 class Gate:
     """Stands before the whole application and its socket.
 
-    It answers `STOP` itself: before anything is counted, looked up or built. What is behind it sees whole
-    requests alone.
+    It answers `STOP` itself, before anything is counted, looked up or built. The application behind it sees
+    only whole requests.
 
     Args:
         app: what is behind.
@@ -122,7 +122,7 @@ class Gate:
         keys: who may enter; None lets everybody in, for a server on the loopback.
         secure: whether the cookie is for TLS alone.
         stop: stops the arm.
-        entered: called after somebody has used up the link.
+        entered: called after the link has been used.
     """
 
     def __init__(
@@ -146,7 +146,7 @@ class Gate:
         self._requests = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Let through what may pass, answer the rest."""
+        """Pass permitted requests on and answer the others."""
         if scope["type"] == "http":
             await self._request(scope, receive, _with_headers(send))
         elif scope["type"] == "websocket":
@@ -157,7 +157,7 @@ class Gate:
     async def _request(self, scope: Scope, receive: Receive, send: Send) -> None:
         answer = self._refusal(scope, Headers(scope=scope)) or self._own_answer(scope)
         if answer is not None:
-            # What else comes on this connection, such as a body, is not waited for.
+            # Anything else on this connection, such as a body, is not awaited.
             answer.headers["connection"] = "close"
             await answer(scope, receive, send)
             return
@@ -270,7 +270,7 @@ def _with_headers(send: Send) -> Send:
 
 
 def _short(headers: Headers) -> bool:
-    """Whether a body is said to be short; one of unknown length is not."""
+    """Whether the declared length of a body is within the limit; an unknown one is not."""
     if "transfer-encoding" in headers:
         return False
     length = headers.get("content-length", "0")

@@ -1,4 +1,4 @@
-"""Who is connected, who drives, and who would like to."""
+"""Who is connected, who drives, and who asks to drive."""
 
 import secrets
 from dataclasses import dataclass
@@ -26,9 +26,8 @@ class Page:
 class Sessions:
     """At most one page drives; handing over is explicit on both sides.
 
-    The page that comes first drives. Later ones ask: they drive where nobody does, or else
-    when the driver hands over or lets others drive. `turn` counts the changes: whoever holds an older turn
-    is not listened to any more.
+    The first page drives. Later ones ask: they drive if nobody does, or else when the driver hands over or
+    lets others drive. `turn` counts the changes; inputs with an older turn are ignored.
     """
 
     def __init__(self) -> None:
@@ -62,7 +61,7 @@ class Sessions:
         return self._driver == page.id
 
     def join(self, name: str | None) -> Page | None:
-        """A new page, or None where there are too many."""
+        """A new page, or None if there are too many."""
         if len(self._pages) >= MOST:
             return None
         page = Page(
@@ -74,7 +73,7 @@ class Sessions:
         return page
 
     def leave(self, page: Page) -> bool:
-        """A page has gone.
+        """Remove a page.
 
         Returns:
             Whether it was the driver's.
@@ -88,7 +87,7 @@ class Sessions:
         return was_driver
 
     def ask(self, page: Page) -> None:
-        """A page would like to drive; who asked first is answered first."""
+        """A page asks to drive; only the first to ask is remembered."""
         if self._driver is None:
             self._give_to(page.id)
         elif self._driver != page.id and self._asking is None:

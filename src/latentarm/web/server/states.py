@@ -1,4 +1,4 @@
-"""What the pages are told of the arm: the newest report, made into one message for all."""
+"""State of the arm for the pages: the newest report, made into one message for all."""
 
 import asyncio
 import json
@@ -21,13 +21,13 @@ from latentarm.web.server.loaded_run import LoadedRun, RunList, load_reported_ru
 from latentarm.web.server.sessions import Page, Sessions
 
 POLL_S: Final = 0.0025
-"""How often the control process's slot is looked at, s."""
+"""How often the control process's slot is read, s."""
 
 SILENT_S: Final = 0.5
-"""A control process that says nothing for so long is out of order."""
+"""A control process that is silent for this long is considered broken, s."""
 
 NOTE_S: Final = 6.0
-"""For how long a refusal is shown, s."""
+"""How long a refusal is shown, s."""
 
 LOADING_S: Final = 0.2
 """How often pages hear that something is still being loaded, s."""
@@ -37,7 +37,7 @@ _SAME_M: Final = 1e-3
 
 @final
 class GhostMemory:
-    """What a page was shown last of the ghosts, so that it is told only of changes."""
+    """The ghosts that a page was last sent, so that it is sent only changes."""
 
     def __init__(self) -> None:
         self._shown: FloatArray | None = None
@@ -62,7 +62,7 @@ class States:
         run_list: knows what runs are called.
 
     Attributes:
-        standstill: why the arm may not be enabled; None where it may.
+        standstill: why the arm may not be enabled; None if it may.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class States:
         self._cache: tuple[int, dict[bool, str]] = (-1, {})
 
     async def follow(self) -> None:
-        """Look for new reports until cancelled; wakes those that wait in `after`."""
+        """Read new reports until cancelled, and wake the callers of `after`."""
         told_silence = False
         told_s = -math.inf
         while True:
@@ -120,13 +120,13 @@ class States:
         return self._number
 
     async def pause(self, span_s: float) -> None:
-        """Wait for so long, s, or only until the arm sets off: nobody shall wait to see what a press does."""
+        """Wait for this long, s, or until the arm starts to move, which is shown at once."""
         with suppress(TimeoutError):
             async with asyncio.timeout(span_s):
                 await self._set_off.wait()
 
     def say(self, note: Notice | None, for_s: float = NOTE_S) -> None:
-        """Show every page a note for so long, s, instead of what the arm does; None takes it back."""
+        """Show every page a note instead of the arm's state for this long, s; None removes it."""
         self._note = note
         self._note_until_s = time.monotonic() + for_s
 
@@ -165,7 +165,7 @@ class States:
         return f'{texts[ghosts]},"you":{json.dumps(drives)}}}'
 
     def _take(self, report: Report) -> None:
-        """Keep a report, or where it is of another run, first load that one here too."""
+        """Keep a report; if it is about another run, load that run here first."""
         if self._loaded.shows(report):
             moved = self._report is not None and _rounded(report.tool) != _rounded(self._report.tool)
             if moved and not self._moves:
@@ -187,7 +187,7 @@ class States:
             self._report = report
         except UserError as error:
             self._failed = report.run, notice_of(error)
-        except Exception as error:  # noqa: BLE001 - or pages would wait for ever; the arm cannot be enabled
+        except Exception as error:  # noqa: BLE001 - otherwise pages would wait for ever
             self._failed = (
                 report.run,
                 sentence(f"The run cannot be shown ({error!r}): choose another one."),
@@ -244,7 +244,7 @@ class States:
         return self.standstill if disengaged and self.standstill is not None else report.note
 
     def _why_away(self) -> Notice:
-        """Why the newest report says nothing of now."""
+        """Why the newest report is out of date."""
         if not self._control.alive:
             return Notice(code="arm_process_ended")
         if not self._loading:

@@ -1,1 +1,1 @@
-"""The words of the pages: one JSON file for each language."""
+"""The texts of the pages: one JSON file per language."""

@@ -1,4 +1,4 @@
-"""The words of the pages in one language, and which language a person reads.
+"""The texts of the pages in one language, and the choice of a language.
 
 A language is a file ``<code>.json`` in this folder: a flat object of keys and texts. ``{name}`` in a text
 stands for a parameter; a text that depends on the parameter ``count`` is an object of plural forms instead,
@@ -16,10 +16,10 @@ from typing import Final, final
 
 DEFAULT: Final = "en"
 COOKIE: Final = "latentarm_language"
-"""Holds the language that somebody has chosen under Settings."""
+"""Cookie that holds the language chosen under Settings."""
 
 _MOST_CHARACTERS: Final = 200
-"""Of an ``Accept-Language`` header that are read."""
+"""Characters of an ``Accept-Language`` header that are read."""
 
 _RANGE: Final = re.compile(
     r"\s*([a-z]{2,8})(?:-[a-z0-9-]*)?\s*(?:;\s*q=([01](?:\.\d{0,3})?)\s*)?", re.IGNORECASE
@@ -41,7 +41,7 @@ class Words:
 
     @property
     def name(self) -> str:
-        """What the language calls itself."""
+        """The language's own name."""
         return self.say("language.name")
 
     def say(self, key: str, parameters: Mapping[str, str | int] = MappingProxyType({})) -> str:
@@ -79,7 +79,7 @@ def chosen_language(cookie: str, accepted: str) -> Words:
         accepted: the ``Accept-Language`` header.
 
     Returns:
-        English where nothing that they read is there.
+        English if none of their languages is available.
     """
     known = languages()
     wanted = [cookie, *_wanted(accepted[:_MOST_CHARACTERS])]
