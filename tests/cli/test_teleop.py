@@ -27,11 +27,11 @@ def test_a_port_in_use_is_said(run):
         (["--port", "70000"], "from 0 to 65535"),
         (["--profile", "ada"], "A profile belongs to a run"),
         (["--certfile", "cert.pem"], "name both --certfile and --keyfile"),
-        (["--certfile", "cert.pem", "--keyfile", "key.pem"], "no certificate and key for TLS"),
+        (["--certfile", "cert.pem", "--keyfile", "key.pem"], "not a certificate and key for TLS"),
         (["--seed", "-1"], "seed"),
     ],
 )
-def test_what_can_be_mended_is_one_sentence(run, workplace, words, said):
+def test_what_the_user_can_fix_is_one_sentence(run, workplace, words, said):
     code, _, err = run("teleop", *words)
     assert code == 2
     assert said in err

@@ -1,4 +1,4 @@
-"""What the figures of all studies have in common: panels, their titles and legends, and planar arms."""
+"""Drawing for the figures of all studies: panels, titles, legends, and planar arms."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, FigureBase, SubFigure
 
 DECADES: Final = 100.0
-"""Ratio of the ends of a logarithmic axis from which powers of ten are numbers enough."""
+"""Ratio of a logarithmic axis' ends above which powers of ten are enough as labels."""
 ARM_COLOUR: Final = "#9aa3ad"
 JOINT_COLOUR: Final = "#3c434b"
 
@@ -23,13 +23,13 @@ View = tuple[tuple[float, float], tuple[float, float]]
 
 
 def stacked_parts(figure: "Figure", heights_mm: Sequence[float]) -> "list[SubFigure]":
-    """The figure cut into parts above each other, each to have panels of its own."""
+    """The figure cut into rows, each of which gets its panels."""
     parts = figure.subfigures(len(heights_mm), 1, height_ratios=heights_mm, squeeze=False)
     return list(np.ravel(parts))
 
 
 def row_of_panels(part: "FigureBase", count: int) -> "list[Axes]":
-    """So many panels beside each other that share their axes; none where there is nothing to show."""
+    """A row of panels that share their axes; empty if there is nothing to show."""
     return list(part.subplots(1, count, sharex=True, sharey=True, squeeze=False)[0]) if count else []
 
 

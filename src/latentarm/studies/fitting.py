@@ -11,11 +11,11 @@ from latentarm.models.scaling import CollapseWarning
 from latentarm.types import Demonstrations
 
 VALIDATION_SHARE: Final = 0.2
-"""Of the training demonstrations: these say which epoch was best."""
+"""Share of the training demonstrations that is for validation."""
 
 
 def validation_episodes(demonstrations: Demonstrations) -> range:
-    """The last episodes, that weights are not fitted to."""
+    """The last episodes, for validation."""
     episodes = len(demonstrations.episodes)
     return range(episodes - max(1, round(VALIDATION_SHARE * episodes)), episodes)
 

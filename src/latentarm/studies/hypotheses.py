@@ -1,6 +1,6 @@
-"""How a study states hypotheses, tests them, and says what the tests come to.
+"""Hypotheses of studies: stating them, testing them, and wording the verdicts.
 
-A hypothesis is a number of comparisons, each of which says that one series of figures is less, or greater,
+A hypothesis is a set of comparisons, each of which claims that one series of figures is less, or greater,
 than another one or than a fixed mark. Comparisons of one hypothesis in one family, such as one model's,
 are corrected together by Holm's method. The hypothesis is supported on a task where all its comparisons hold.
 """
@@ -18,7 +18,7 @@ SIDES: Final[Mapping[Direction, str]] = {"less": "below", "greater": "above"}
 SIGNS: Final[Mapping[Direction, str]] = {"less": "<", "greater": ">"}
 
 LONGEST: Final = 200
-"""Characters in which a task's verdict says what failed; where that takes more, it counts what failed."""
+"""Longest list of failures in a task's verdict; a longer one is replaced by a count."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +84,7 @@ class Comparison:
 
     @property
     def holds(self) -> bool:
-        """Whether this speaks for the hypothesis. What could not be tested does not."""
+        """Whether this supports the hypothesis. What could not be tested does not."""
         significant = self.p_holm is not None and self.p_holm < LEVEL
         return significant and (not self.must_be_apart or bool(self.apart))
 
@@ -143,7 +143,7 @@ def verdicts(comparisons: Sequence[Comparison]) -> list[Verdict]:
 
 
 def comparison_table(comparisons: Sequence[Comparison]) -> str:
-    """Every test as a Markdown table; columns that say nothing are left out."""
+    """Every test as a Markdown table; empty columns are left out."""
     columns: dict[str, Callable[[Comparison], str]] = {
         "": lambda one: one.hypothesis,
         "task": lambda one: look_of(one.task).label,
@@ -176,7 +176,7 @@ def _against(one: Comparison) -> str:
 
 
 def _said(tests: Sequence[Comparison], several_measures: bool) -> str:
-    """``supported``, or what failed; where that takes too many words, how much did."""
+    """``supported``, or what failed; if that is too long, how many tests failed."""
     failing = [one for one in tests if not one.holds]
     if not failing:
         return "supported"

@@ -1,4 +1,4 @@
-"""How a study's ``results.md`` is written: a Jinja template beside the study, filled in."""
+"""A study's ``results.md``, rendered from the Jinja template in its package."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path

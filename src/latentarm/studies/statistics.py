@@ -59,7 +59,7 @@ def compare_means(values: FloatArray, reference: FloatArray, direction: Directio
     if not spreads(values) and not spreads(reference):
         return Statistic("none: no spread on either side")
     if not spreads(values):
-        # The reference is the sample then, and the question is turned round.
+        # The reference is the sample then, and the direction is reversed.
         asked: Direction = "greater" if direction == "less" else "less"
         turned = one_sample(reference, float(values.mean()), asked)
         return replace(turned, t=None if turned.t is None else -turned.t)

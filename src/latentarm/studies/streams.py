@@ -1,4 +1,4 @@
-"""Streams of randomness: each use has one of its own, so that none hangs on another's draws."""
+"""Streams of randomness: one per use, so that none depends on another's draws."""
 
 import numpy as np
 
@@ -15,10 +15,10 @@ def sequence(seed: int, task: str, *use: int) -> np.random.SeedSequence:
 
 
 def integer(source: np.random.SeedSequence) -> int:
-    """A seed for those who take whole numbers; there is room above it for those of many models."""
+    """A seed for code that takes integers, with room above it for the seeds of many models."""
     return int(source.generate_state(1)[0]) >> 2
 
 
 def generator(seed: int, task: str, *use: int) -> np.random.Generator:
-    """A source of randomness of its own for one use, see `sequence`."""
+    """A generator for one use, see `sequence`."""
     return np.random.default_rng(sequence(seed, task, *use))

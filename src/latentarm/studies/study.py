@@ -1,4 +1,4 @@
-"""What a study is, what it is asked for, and how one is run."""
+"""Studies: their definition, a request for one, and the runner."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -86,7 +86,7 @@ class Grid:
         self.took_s = 0.0
 
     def say(self, sentence: str) -> None:
-        """Tell the person how far the study is, on standard error."""
+        """Report progress on standard error."""
         self._console.print(sentence)
 
     def run(
@@ -120,7 +120,7 @@ class Grid:
 
 @dataclass(frozen=True)
 class Report:
-    """What came of a study.
+    """The results of a study.
 
     Attributes:
         rows: for ``results.json``.
@@ -128,7 +128,7 @@ class Report:
         figures: PNGs by name, without suffix.
         tests: of the hypotheses.
         documents: further JSON files by name.
-        timings: how long parts took, s; beside the time of the grids.
+        timings: how long parts took, s, apart from the grids.
         tables: the study at a glance, for a terminal.
     """
 
@@ -154,7 +154,7 @@ class Study(Generic[Preset, Measured]):
         measure: runs the study's grids.
         report: makes rows, page, figures and documents of what was measured.
         figures: names of all figures that it may draw.
-        documents: names of all JSON files that it may write beside `ALWAYS_MADE`.
+        documents: names of all JSON files that it may write in addition to `ALWAYS_MADE`.
         depends_on: what else the figures depend on, for ``config.json``.
     """
 
@@ -211,7 +211,7 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
 
 
 def again(study: Study[Preset, Any], request: Request[Preset]) -> str:
-    """The command that does the same again."""
+    """The command that repeats the study."""
     task = f" --task {request.tasks[0]}" if len(request.tasks) == 1 else ""
     return f"latentarm {study.command} --preset {request.preset.name}{task} --seed {request.seed}"
 

@@ -36,7 +36,7 @@ def test_the_page_has_every_part(tmp_path, tasks):
         *(["Planar, 5 joints"] if "planar_two_cups" in tasks else []),
         "Panda, 7 joints",
         "Reconstruction",
-        "What the entropy is made of",
+        "Ablations of the entropy",
         "How to read the tables",
         "Tests of the hypotheses",
     ]
@@ -52,7 +52,7 @@ def test_the_page_has_every_part(tmp_path, tasks):
 
 def test_a_page_without_ablation(tmp_path):
     page = report_of(tmp_path, PRESETS["smoke"], tuple(TASKS)).page
-    assert "What the entropy is made of" not in page
+    assert "Ablations of the entropy" not in page
     assert "over all drives" in page
 
 

@@ -47,7 +47,7 @@ class CellResult:
         cell: what was asked for.
         errors: condition -> (R,), relative error of each run on the held-out motions; (1,) where nothing is
             learned.
-        encoded: the error of the encoder's own choice, see `Scene.encoded`.
+        encoded: the error of the encoder's choice, see `Scene.encoded`.
         learn_s: condition -> how long all its runs took in one fit, s.
     """
 
@@ -58,10 +58,10 @@ class CellResult:
 
 
 def measure_cell(cell: Cell) -> CellResult:
-    """Ask, learn all runs of a condition in one fit, judge.
+    """Ask, learn all runs of a condition in one fit, and measure the errors.
 
-    The errors are the same to the last bit in whatever process this runs. Motions are drawn alike for all
-    models and noises, so that these differ in nothing else.
+    The errors are the same to the last bit in every process. All models and noises get the same motions, so
+    that nothing else differs.
 
     Raises:
         UserError: the preset's sizes leave nothing to ask or to learn.

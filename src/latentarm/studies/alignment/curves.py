@@ -68,10 +68,10 @@ class CurveResult:
 
 
 def measure_curve(cell: CurveCell) -> CurveResult:
-    """Ask one question after another, and judge what would be learned from so many answers.
+    """Ask one question after another, and measure what is learned from each number of answers.
 
-    The errors are the same to the last bit in whatever process this runs. Every run has candidates of its
-    own; what is said of each does not hang on when it is asked.
+    The errors are the same to the last bit in every process. Every run has different candidates; the answer
+    to each does not depend on when it is asked.
 
     Raises:
         UserError: the preset's sizes leave nothing to ask or to learn.

@@ -1,9 +1,9 @@
-"""Drives to the goals of the demo's table by a simulated person who expects other things of their stick.
+"""Drives to the goals of the demo's table by a simulated person whose stick does not do what they expect.
 
-The person answers the questions of `latentarm align` by their expectation, and drives by it: at each decision
-they choose as equation 24 has it, with the motion that they expect in place of the decoder's. The same person
-drives in every condition but one: whoever `KNOWS` the arm foresees exactly what z = u does, like the
-simulated operator of the demo. That is what this decoder comes to with nothing left to learn.
+The person answers the questions of `latentarm align` by their expectation and drives by it: at each decision
+they choose by equation 24, with the motion that they expect in place of the decoder's. The same person drives
+in every condition but one: in `KNOWS` the person predicts exactly what z = u does, like the simulated
+operator of the demo. That is the best this decoder can do.
 """
 
 from collections.abc import Mapping
@@ -110,8 +110,8 @@ def measure_drives(cell: DriveCell) -> DrivesResult:
 def drive_all(cell: DriveCell, learned: Learned, condition: str) -> tuple[Driven, ...]:
     """All drives of one condition of `DRIVEN`; models take turns.
 
-    Starts and the simulated person's chances hang on the seed of the study, the goal and the drive's number
-    alone.
+    Starts and the simulated person's random choices depend only on the study's seed, the goal and the drive's
+    number.
     """
     sizes, task = cell.preset.drives, TableTop()
     setups = [_setup(task, learned, seed, condition, sizes.limit_s) for seed in range(sizes.seeds)]

@@ -1,7 +1,7 @@
-"""What is driven with: the demo's models, and alignments of each with one simulated person.
+"""The demo's models, and alignments of each with one simulated person, for the drives.
 
-The person expects each axis of the stick to move the tool along a direction of its own. The two directions
-are those along which the demonstrated tool moves most (sideways, and forward and down), on a stick that is
+The person expects each axis of the stick to move the tool along one direction. The two directions are those
+along which the demonstrated tool moves most (sideways, and forward and down), on a stick that is
 turned by `TURN_RAD` and mirrored.
 """
 
@@ -44,13 +44,13 @@ from latentarm.types import Demonstrations, FloatArray
 TASK: Final = "table_top"
 
 TURN_RAD: Final = pi / 3
-"""How far the stick is turned, before it is mirrored: far enough that no axis does what it is expected to."""
+"""How far the stick is turned before it is mirrored: far enough that no axis does what the person expects."""
 
 HELD_OUT: Final = 0.2
-"""Share of the demonstrations that train no model, as in the demo."""
+"""Share of the demonstrations that are held out, as in the demo."""
 
 EVERY: Final = 10**9
-"""More motions than there are."""
+"""More than the number of motions."""
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,7 @@ def _alignments(
     motions, unlabelled = shown(training, "state", person.chain, drawing)
     scene = Scene(model, seed_index, person.chain, motions, unlabelled, asking, unwatched)
     count = cell.preset.drives.answers
-    # Never enough before all are asked, so that every model has as many answers.
+    # Asking never stops early, so that every model has the same number of answers.
     stopping = StoppingRule(share=0.0, patience=count)
     answers = ask(scene, SimulatedPerson(person, _unheard), count, _unheard, stopping)
     few = {
@@ -189,4 +189,4 @@ def _generator(cell: DriveCell, *use: int) -> np.random.Generator:
 
 
 def _unheard(text: str) -> None:
-    """A simulated person's words, that nobody reads."""
+    """Discards what the simulated person says."""

@@ -117,7 +117,7 @@ WORDS: Final = {
     NO_ALIGN: "z = u",
     WITHOUT_PRIORS: "learned from the answers alone",
     ALL_PRIORS: "learned from the same answers and all priors",
-    HELPED: "the same, and the arm helps towards the goals that it believes in, as in the demo",
+    HELPED: "the same, with help towards the likely goals, as in the demo",
     IDEAL: "learned from many more answers",
     KNOWS: "z = u and a person of equation 24 who knows exactly what each input does: the demo's operator",
 }
@@ -130,7 +130,7 @@ MISSED: Final = "the others end off, along and across (mm)"
 def drive_parts(
     results: Sequence[DrivesResult], tests: Sequence[Comparison]
 ) -> dict[str, dict[str, str | list[str]]]:
-    """Per kind of model the table, what the tests come to in a sentence each, and the tests."""
+    """For each kind of model: the table, one sentence per test result, and the tests."""
     parts: dict[str, dict[str, str | list[str]]] = {}
     for result in results:
         of_model = [one for one in tests if one.model == result.cell.model]
@@ -189,7 +189,7 @@ def _mean_and_sd(values: FloatArray) -> str:
 
 
 def _said(tests: Sequence[Comparison]) -> list[str]:
-    """What the tests of one model come to, in a sentence each."""
+    """The results of one model's tests, one sentence each."""
     words = {REACHED: "reaches more goals than", TIME: "is faster than"}
     return [
         f"{ALL_PRIORS} {words[one.measure]} {one.against}: "

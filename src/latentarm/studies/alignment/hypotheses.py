@@ -1,11 +1,11 @@
 """Tests of the paper's three hypotheses of section 8.3, and of targets of our own, on the errors of all runs.
 
 H1: with abundant labelled data the alignment model learns the preference. Read as: Ideal Align has a lower
-error than No Align and than Manual Align. What the paper adds, that this holds of alignments that are learned
-from few answers too, is tested of All Priors.
+error than No Align and than Manual Align. The paper adds that this also holds for alignments learned from few
+answers; that is tested for All Priors.
 
 H2: with priors, far fewer answers do. Read as: with the same few answers, each single prior and all of them
-have a lower error than No Priors; and All Priors comes near to Ideal Align: its error is below `NEAR` times
+have a lower error than No Priors; and All Priors comes close to Ideal Align: its error is below `NEAR` times
 that.
 
 H3: all priors together are better than one of them. Read as: All Priors has a lower error than each.
@@ -36,7 +36,7 @@ from latentarm.studies.statistics import compare_means
 from latentarm.types import FloatArray
 
 NEAR: Final = 1.25
-"""How many times the error of Ideal Align counts as near to it."""
+"""Up to this many times the error of Ideal Align counts as close to it."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,9 @@ class Claim:
 
     Attributes:
         hypothesis: ``H1``, ``H2`` or ``H3``.
-        condition: which should have less.
-        against: than which.
-        times: of the other's error.
+        condition: the one that should have the lower error.
+        against: the one it is compared with.
+        times: factor on the other's error.
     """
 
     hypothesis: str
@@ -89,7 +89,7 @@ def _test(claim: Claim, result: CellResult) -> Comparison:
 
 
 SINGLE_SHARE: Final = 0.6
-"""Of the error of No Priors, that a single prior should be below; the paper says "twice as well"."""
+"""A single prior should stay below this share of the error of No Priors; the paper says "twice as well"."""
 
 PAPER_MODEL: Final = "cae"
 """The model of the paper's study."""
@@ -124,7 +124,7 @@ class Target:
 
 
 def targets(results: Sequence[CellResult], curves: Sequence[CurveResult]) -> list[Target]:
-    """Every target that the results allow to judge, model by model."""
+    """Every target that the results can decide, model by model."""
     found: list[Target] = []
     for model in dict.fromkeys(result.cell.model for result in results):
         of_model = [result for result in results if result.cell.model == model]

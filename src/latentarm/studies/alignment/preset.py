@@ -12,7 +12,7 @@ from latentarm.alignment.training import QUICK
 
 @dataclass(frozen=True)
 class Curves:
-    """How error falls with the number of answers.
+    """Sizes of the learning curves.
 
     Attributes:
         models: whose decoders.
@@ -35,11 +35,11 @@ class Curves:
 
 @dataclass(frozen=True)
 class Drives:
-    """Drives to the goals of the demo's table by a simulated person with an expectation of their own.
+    """Drives to the goals of the demo's table by a simulated person with their own expectation.
 
     Attributes:
         models: kinds that are driven with.
-        seeds: models of each kind; they take turns.
+        seeds: models of each kind, used in turn.
         episodes: demonstrations, of which a fifth trains no model: alignments are judged on it.
         epochs: passes over the training pairs, at most.
         answers: that an alignment is learned from, asked for as `latentarm align` does.
@@ -62,8 +62,8 @@ class Preset:
 
     Attributes:
         name: what it is called on the command line.
-        episodes: demonstrations that train the decoder and that questions are about; a fifth of them is not
-            fitted to and says which epoch was best.
+        episodes: demonstrations that train the decoder and that questions are about; a fifth of them is for
+            validation and decides which epoch is best.
         test_episodes: further ones, that alignments are judged on.
         epochs: passes over the training pairs, at most.
         batch_size: pairs per step.
@@ -72,9 +72,9 @@ class Preset:
         noises: coefficients of variation of the answers.
         answers: that each alignment is learned from; 10 in the paper.
         ideal_answers: of Ideal Align; 1000 in the paper.
-        unlabelled: contexts in which the priors shall hold; 1000 in the paper.
+        unlabelled: contexts in which the priors are to hold; 1000 in the paper.
         test_motions: held-out motions that the error is averaged over.
-        runs: alignments of each kind, each with answers of its own; 10 in the paper.
+        runs: alignments of each kind, each with different answers; 10 in the paper.
         steps: of Adam, for each alignment.
         ideal_steps: the same for Ideal Align.
         curves: how error falls with the number of answers.
@@ -152,16 +152,16 @@ SINGLE_PRIORS: Final[Mapping[str, Priors]] = {
     "Reversible": replace(NO_PRIORS, reversible=Priors().reversible),
     "Consistent": replace(NO_PRIORS, consistent=Priors().consistent),
 }
-"""One prior at a time, with the weight that it has among all."""
+"""One prior at a time, with its weight from All Priors."""
 
 LEARNED: Final[Mapping[str, Priors]] = {WITHOUT_PRIORS: NO_PRIORS, **SINGLE_PRIORS, ALL_PRIORS: Priors()}
-"""Networks that are learned from a few answers, and the priors of each; all as `latentarm align` has them."""
+"""Networks that are learned from a few answers, and the priors of each, as in `latentarm align`."""
 
 FEW_ANSWERS: Final = (MANUAL, *LEARNED)
-"""All that are given the same few answers."""
+"""The conditions that get the same few answers."""
 
 CONDITIONS: Final = (NO_ALIGN, *FEW_ANSWERS, IDEAL)
-"""All, as tables and figures order them."""
+"""All conditions, in the order of tables and figures."""
 
 
 def under(condition: str, noise: float) -> str:

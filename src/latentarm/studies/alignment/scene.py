@@ -128,13 +128,13 @@ ALL: Final = 10**9
 @final
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What alignments are learned in and judged by.
+    """What alignments are learned and judged with.
 
     Attributes:
         learned: the decoder.
         chain: the arm.
         preference: what the simulated person means.
-        shown: motions of the training demonstrations that a person can tell from standing still.
+        shown: motions of the training demonstrations that are visibly not rest.
         unlabelled: (M, c), contexts of the training demonstrations.
         test: held-out motions, and what is meant by them without noise.
     """
@@ -157,7 +157,7 @@ class Scene:
         return self.model.decoder()
 
     def ask(self, count: int, noise: float, stream: Stream, answers: Stream, run: int) -> Answers:
-        """What one run's person says of motions drawn at random.
+        """One person's answers about motions drawn at random.
 
         Args:
             count: answers; all motions where there are fewer.
@@ -185,8 +185,8 @@ class Scene:
     def encoded(self) -> float:
         """The relative error with the latent action that the encoder would choose, which knows the motion.
 
-        The encoder looks for the nearest action in the joints and not for the nearest place of the tool, so
-        that an alignment may come out below it.
+        The encoder looks for the nearest joint action and not for the nearest tool position, so an alignment
+        may have a lower error.
         """
         motions = self.test.motions
         z = self.model.encode(motions.context, motions.action)[0]

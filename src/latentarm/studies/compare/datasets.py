@@ -1,4 +1,4 @@
-"""The datasets that are compared on, and their folds."""
+"""The datasets of the comparison, and their folds."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class Dataset:
 
     @property
     def left(self) -> int:
-        """Episodes that every fold leaves, at least."""
+        """Least number of episodes outside a fold."""
         return min(len(fold.others) for fold in self.folds)
 
 
@@ -39,7 +39,7 @@ def read_datasets(paths: Sequence[Path], folds: int, seed: int) -> list[Dataset]
     """Read datasets of one robot and cut each into folds.
 
     Args:
-        paths: their folders, all with names of their own.
+        paths: their folders, all with different names.
         folds: of each.
         seed: of the comparison.
 

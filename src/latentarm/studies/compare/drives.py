@@ -1,8 +1,8 @@
 """Simulated drives along held-out episodes: latent actions of two models, and mode switching.
 
 The loop is that of `latentarm drive` on held-out episodes, with its safety filters; the simulated operator
-is the same for all controllers. One step ahead, as in equation 24, they get stuck within a few waypoints of
-latent actions, so here they plan up to 4 s ahead where one step leads no nearer.
+is the same for all controllers. Looking one step ahead, as in equation 24, it gets stuck within a few
+waypoints of latent actions, so here it plans up to 4 s ahead when no single step leads nearer.
 """
 
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ from latentarm.tasks.replay import Replay, routes_of
 from latentarm.types import Row
 
 BESIDE: Final = "cvae"
-"""The model of the paper's user studies, which is driven beside ours."""
+"""The model of the paper's user studies, which is driven as well as ours."""
 
 MODES: Final = "end_effector"
 """Mode switching, as rows name it."""
@@ -63,7 +63,7 @@ class DriveCell:
 
 @dataclass(frozen=True, eq=False)
 class DriveResult:
-    """What came of it.
+    """The result of a drive.
 
     Attributes:
         dataset: its name.
@@ -102,7 +102,7 @@ def drive_cells(
     Args:
         datasets: what was compared on.
         results: of the cells that have all of a fold's demonstrations.
-        ours: the model that is driven beside `BESIDE`, where these were compared.
+        ours: the model that is driven as well as `BESIDE`, if both were compared.
         noise_rad: of which models.
         drives: folds, and episodes of each, at most; None for all.
         limit_s: a drive that lasts longer has failed, s.
@@ -126,7 +126,7 @@ def drive_cells(
 
 
 def measure_drive_cell(cell: DriveCell) -> DriveResult:
-    """Drive once; the start and the operator's randomness hang on the episode, not on the controller."""
+    """Drive once; the start and the operator's randomness depend on the episode, not on the controller."""
     with threadpool_limits(limits=1):
         began = perf_counter()
         robot = load_recorded_robot(cell.dataset.demonstrations)

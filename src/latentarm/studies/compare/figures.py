@@ -158,7 +158,7 @@ def _draw_fewer(
     measure: str,
     scale: float,
 ) -> None:
-    """A line per model and noise; series stand a little apart, for their bars not to hide each other."""
+    """A line per model and noise; series are offset a little, so that their bars do not hide each other."""
     models = list(dict.fromkeys(row.model or "" for row in rows))
     for place, model in enumerate(models):
         look = look_of(model)

@@ -19,7 +19,7 @@ from latentarm.studies.compare.preset import Preset
 from latentarm.types import Demonstrations, FloatArray
 
 JUMPY: Final = 95.0
-"""The percentile of turning that is reported beside the mean."""
+"""The percentile of turning that is reported with the mean."""
 
 MEASURED: Final = (
     "error_percent_of_pca",
@@ -122,5 +122,5 @@ def _turning(model: LatentActionModel, contexts: FloatArray, robot: Robot) -> di
 
 
 def without_planning(preset: Preset) -> Preset:
-    """The same sizes, with nothing asked of the operator who plans."""
+    """The same sizes without the operator who plans."""
     return replace(preset, planned_pairs=0)

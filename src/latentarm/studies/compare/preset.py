@@ -9,7 +9,7 @@ from latentarm.models.catalogue import KINDS
 from latentarm.runs.checks import check_count
 
 OURS: Final = "homogeneous"
-"""The model that is held against the targets where none is named."""
+"""The model that is judged against the targets by default."""
 
 REFERENCE: Final = "cae"
 """The model that the targets are relative to."""
@@ -82,7 +82,7 @@ PRESETS: Final[dict[str, Preset]] = {
 
 
 class Stream(IntEnum):
-    """What randomness is for: each use has a stream of its own, the same for every model and noise."""
+    """Streams of randomness: one per use, the same for every model and noise."""
 
     FOLDS = 0
     NETWORKS = 1

@@ -16,7 +16,7 @@ OVER_FOLDS: Final = "over folds"
 
 
 def condition(noise_rad: float, *further: str) -> str:
-    """How rows name a noise and what else was special."""
+    """How rows name a noise and further conditions."""
     return ", ".join([f"noise {noise_rad:g} rad", *further])
 
 
@@ -94,7 +94,7 @@ def _stacked(cells: Sequence[CellResult]) -> dict[str, FloatArray]:
 
 
 def _mean(values: FloatArray, axis: int) -> FloatArray:
-    """Mean of what has a figure; NaN where nothing has."""
+    """Mean without missing figures; NaN if all are missing."""
     known = np.isfinite(values)
     count = known.sum(axis=axis)
     total = np.where(known, values, 0.0).sum(axis=axis)

@@ -110,7 +110,7 @@ def compare_study(
 
 
 def _check(asked: Asked) -> None:
-    """Refuse names and noises that make no sense.
+    """Check names and noises.
 
     Raises:
         UserError: as `compare_study` says.
@@ -119,7 +119,7 @@ def _check(asked: Asked) -> None:
     for name in (*asked.preset.models, asked.ours):
         if name not in MODELS:
             raise UserError(f"There is no model {name!r}: choose from {', '.join(MODELS)}.")
-        MODELS[name]  # refused now if it does not load
+        MODELS[name]  # fails here if it does not load
     for noise_rad in asked.preset.noises_rad:
         if not (math.isfinite(noise_rad) and noise_rad >= 0):
             raise UserError(f"The noise is {noise_rad:g} rad; it must be a finite number, zero or more.")
@@ -262,7 +262,7 @@ def _timings(results: Sequence[CellResult], drives: Sequence[DriveResult]) -> di
 
 
 def _command(asked: Asked) -> str:
-    """The words that do it again."""
+    """The command that repeats it."""
     preset, usual = asked.preset, PRESETS[asked.preset.name]
     words = ["latentarm compare --demonstrations", *(str(path) for path in asked.demonstrations)]
     if preset.name != "paper":

@@ -1,4 +1,4 @@
-"""What a model for real arms is held against, beside the cAE."""
+"""Targets for a model for real arms, relative to the cAE."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ Means = Mapping[str, float]
 
 @dataclass(frozen=True)
 class Target:
-    """One thing that is asked of a model.
+    """One target of a model.
 
     Attributes:
         name: what is asked, in words.
@@ -23,7 +23,7 @@ class Target:
         met: of our means and the reference's.
         scale: by which figures are multiplied to be shown.
         unit: in which they are shown.
-        relative: whether the reference's figure counts, so that it is shown too.
+        relative: whether it depends on the reference's figure, which is then shown too.
     """
 
     name: str
@@ -36,7 +36,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What came of one target.
+    """The result of one target.
 
     Attributes:
         target: its name.
@@ -105,7 +105,7 @@ def verdicts(
         noises_rad: rad.
 
     Returns:
-        Target by target; none where `ours` or the reference was not compared.
+        Target by target; empty if `ours` or the reference was not compared.
     """
     found: list[Verdict] = []
     for target in TARGETS:

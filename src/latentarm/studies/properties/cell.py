@@ -28,11 +28,11 @@ from latentarm.tasks.planar.reach import ReachRegion
 from latentarm.types import Demonstrations, FloatArray
 
 BASELINE: Final = "pca"
-"""What others are measured against. Nothing in it is random, so it is fitted once, not once per seed."""
+"""The baseline. Nothing in it is random, so it is fitted once, not once per seed."""
 
 
 class Stream(IntEnum):
-    """What randomness is for: each use has a stream of its own, so that none hangs on another's draws."""
+    """Streams of randomness: one per use, so that none depends on another's draws."""
 
     TRAINING = 0
     TEST = 1
@@ -108,7 +108,7 @@ def _measure(cell: Cell) -> CellResult:
 
     pairs = recorded_pairs(test, cell.noise_rad, _generator(cell, Stream.TEST_NOISE))
     chosen = select_episodes(training, range(validation_episodes(training).start))
-    # Of these only the actions count, so no noise is drawn.
+    # Only the actions of these are used, so no noise is drawn.
     fitted = recorded_pairs(chosen, 0.0, _generator(cell, Stream.TRAINING_NOISE))
     decoders = [model.decoder(seed) for seed in range(model.seeds)]
     figures = accuracy_figures(model, decoders, fitted, pairs)

@@ -1,4 +1,4 @@
-"""Figures over the models: the paper beside ours, controllability, noise."""
+"""Figures over the models: the paper's next to ours, controllability, noise."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Point(NamedTuple):
-    """One model's figure, beside the paper's.
+    """One model's figure, with the paper's.
 
     Attributes:
         mean: over seeds.
@@ -51,7 +51,7 @@ def in_mm(lengths: Mapping[str, Point]) -> dict[str, Point]:
 BELOW: Final = 0.25
 """How far the paper's figure stands below ours, so that no SD is taken for the other."""
 DECADES: Final = 50.0
-"""Ratio of the ends of a logarithmic axis from which powers of ten are numbers enough."""
+"""Ratio of a logarithmic axis' ends above which powers of ten are enough as labels."""
 PAPER_SIGN: Final = "($\\diamond$: the paper)"
 
 
@@ -303,7 +303,7 @@ def noise_figure(rows: Sequence[Row], tasks: Sequence[str], noises_rad: Sequence
 def _draw_sweep(
     axes: "Axes", rows: Sequence[Row], task: str, measure: str, noises_rad: Sequence[float]
 ) -> None:
-    """One line per model; series stand a little apart, for their bars not to hide each other."""
+    """One line per model; series are offset a little, so that their bars do not hide each other."""
     sweep = [points(rows, task, measure, condition(noise)) for noise in noises_rad]
     models = list(dict.fromkeys(model for figures in sweep for model in figures))
     for index, model in enumerate(models):

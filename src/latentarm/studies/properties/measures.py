@@ -136,7 +136,8 @@ def control_figures(
         goals: from `start_goal_pairs`.
 
     Returns:
-        Measure -> (S,), and the distance at the start, (1,), which is no model's doing. Percentages are NaN
+        Measure -> (S,), and the distance at the start, (1,), which does not depend on the model. Percentages
+        are NaN
         where PCA's distance is below `RESOLUTION_M`.
     """
 
@@ -177,12 +178,12 @@ def start_goal_pairs(
 def reach_figures(
     motion: ReachRegion, decoders: Sequence[DecodesActions], count: int, rng: np.random.Generator
 ) -> dict[str, FloatArray]:
-    """How near to goals in the region drives end, how far they go, and how crooked their way is.
+    """Final distances to goals in the region, path lengths, and how crooked the paths are.
 
     Args:
         motion: the task.
         decoders: S decoders.
-        count: goals, each with a start of its own.
+        count: goals, each with a different start.
         rng: picks starts, postures and goals.
 
     Returns:

@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 
 
 CONDITIONED: Final = ("cvae", OURS)
-"""The models whose latent action is looked at from near: the one that the paper draws, and ours."""
+"""The models whose latent action is shown in detail: the one that the paper draws, and ours."""
 
 CONTRASTED: Final = ("vae", *CONDITIONED)
-"""The models whose motions are set side by side; the paper contrasts the first two."""
+"""The models whose motions are shown side by side; the paper contrasts the first two."""
 
 EPISODES: Final = 12
 STREAM: Final = 81
-"""Keeps the states that are drawn apart from those of the study: no model was trained on them."""
+"""Separates the drawn states from those of the study: no model was trained on them."""
 
 Decoders = Mapping[str, DecodesActions]
 """One decoder per model, of the first seed, trained without noise."""

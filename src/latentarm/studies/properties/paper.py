@@ -1,7 +1,8 @@
 """What the paper prints in section 8.1, as data.
 
 Percentages, R^2 and angles are comparable with ours as they stand. For lengths the paper states no unit and
-no size of arm, so ours in metres are set beside them only as ratios: percent of PCA's, percent of the VAE's.
+no size of arm, so ours in metres are compared with them only as ratios: percent of PCA's, percent of the
+VAE's.
 """
 
 from collections.abc import Mapping, Sequence
@@ -78,14 +79,14 @@ PAPER: Final[Mapping[Key, Printed]] = {
     **_percent_of("final_distance", RATIO_OF, ratio_name("final_distance")),
     **_percent_of("path_length", RATIO_OF, ratio_name("path_length")),
 }
-"""Figures that ours can be set beside, in our units."""
+"""The paper's figures that ours can be compared with, in our units."""
 
 MODELS_OF_THE_PAPER: Final = tuple(dict.fromkeys(model for _, model, _ in PAPER))
 """The models that the paper compares, in its order."""
 
 
 def with_paper(rows: Sequence[Row]) -> list[Row]:
-    """The rows of a study, the paper's figures beside those that can be compared.
+    """The rows of a study, with the paper's figures where they can be compared.
 
     Args:
         rows: of any tasks, models and conditions; only those without a condition are the paper's setting.

@@ -11,9 +11,9 @@ class Preset:
     Attributes:
         name: what it is called on the command line.
         episodes: demonstrations to train on, of 100 pairs each; the paper trains on 10000 pairs. A fifth of
-            them is not fitted to: it says which epoch was best.
+            them is for validation and decides which epoch is best.
         test_episodes: further demonstrations, that figures are taken on (drives into the goal region have
-            starts and goals of their own).
+            separate starts and goals).
         seeds: models of each kind; the paper's figures are over 10.
         epochs: passes over the training pairs, at most.
         batch_size: pairs per step.

@@ -1,4 +1,4 @@
-"""The study's tables in Markdown: ours beside the paper's, and the noise sweep."""
+"""The study's tables in Markdown: ours next to the paper's, and the noise sweep."""
 
 from collections.abc import Iterable
 from typing import Final
@@ -12,7 +12,7 @@ from latentarm.studies.properties.paper import LENGTHS, MODELS_OF_THE_PAPER, rat
 from latentarm.types import Row
 
 OURS: Final = "isometric"
-"""The model that is held against the best of the paper's."""
+"""The model that is compared with the best of the paper's."""
 
 UNIT_NOT_STATED: Final = "†"
 """Marks a length of the paper, whose unit it does not state."""
@@ -21,12 +21,12 @@ EQUAL: Final = 1e-9
 """Difference of two means, in the larger of them, below which they are equal but for rounding."""
 
 SAME_THING: Final = frozenset({"noise_free_error_percent_of_pca", "controllability_percent_of_pca"})
-"""Measures that, without noise, say again what another one says: they do not count twice."""
+"""Measures that are redundant without noise, and so are not counted twice."""
 
 DISTANCES: Final = frozenset({"controllability_m", "final_distance"})
 
 NOT_JUDGED: Final = frozenset({"path_length", ratio_name("path_length"), ratio_name("final_distance")})
-"""Measures that say nothing alone, for an arm that stops early has a short path, or that say it again."""
+"""Measures that are redundant or mean nothing alone: an arm that stops early has a short path."""
 
 Cells = dict[tuple[str, str], Row]
 """Rows by measure and model."""

@@ -32,14 +32,14 @@ METHODS: Final[dict[str, Arbitration]] = {WITHOUT_HELP: NO_HELP, WITH_HELP: HELP
 """The paper's conditions, and how much the robot helps in each."""
 
 ROWS: Final = 100
-"""Drives at a time: few enough for a processor's caches, many enough for NumPy's calls."""
+"""Drives per batch: few enough for the processor's caches, many enough to amortise NumPy's calls."""
 
 TASKS: Final = {make().name: make for make in TWO_CUPS.values()}
 """Two cups before each arm, by the task's name."""
 
 
 class Stream(IntEnum):
-    """What randomness is for: each use has a stream of its own, so that none hangs on another's draws."""
+    """Streams of randomness: one per use, so that none depends on another's draws."""
 
     TRAINING = 0
     TEST = 1
@@ -75,7 +75,7 @@ class Cell:
     Attributes:
         task: a name of `TASKS`.
         model: a name of `MODELS`.
-        entropy: how it is trained beside its own loss, or None for its own loss alone.
+        entropy: term that is added to the model's own loss, or None for that alone.
         variant: what an ablation calls it; None in the study proper.
         methods: names of `METHODS` that it is driven by.
         people: who drives.
@@ -100,7 +100,7 @@ class Cell:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What one kind of person came to by one method.
+    """Results of one kind of person with one method.
 
     Attributes:
         method: a name of `METHODS`.
@@ -244,7 +244,7 @@ def _together(cell: Cell) -> list[list[Person]]:
 def _outcomes(
     cell: Cell, task: TwoCups, scene: Scene, model: LatentActionModel, method: str, people: Sequence[Person]
 ) -> list[Outcome]:
-    """What people who drive in one go come to."""
+    """Results of people who drive in one batch."""
     target = np.arange(cell.drives) % len(scene.goals)
     of_seeds: list[tuple[dict[str, FloatArray], FloatArray, FloatArray]] = []
     for seed in range(cell.seeds):
@@ -280,7 +280,7 @@ def _outcomes(
 
 
 def _chances(cell: Cell, seed: int, person: Person) -> FloatArray:
-    """What one person's drives with one seed choose by, (P, T), whoever else drives."""
+    """Random numbers (P, T) for one person's drives with one seed, independent of who else drives."""
     chances = _generator(cell, Stream.CHANCES, seed, int.from_bytes(person.label.encode()))
     return chances.random((cell.drives, steps_of(person)))
 

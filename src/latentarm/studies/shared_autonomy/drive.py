@@ -4,8 +4,8 @@ What the paper leaves open is chosen here once, the same for every model and eve
 
 - A step of ``s' = s + a dt`` is 0.1 s. People decide anew at every step, but look 0.5 s ahead: over 0.1 s
   an input moves the tool a few millimetres, and even beta = 1000 could not tell good inputs from bad ones.
-- People choose among 21 inputs, evenly spaced in [-1, 1]. One of them is 0: whoever lets go stands still, and
-  the robot does not help (`FixedAlpha` fades out below ‖u‖ = 0.3).
+- People choose among 21 inputs, evenly spaced in [-1, 1]. One of them is 0: a person who lets go stops the
+  arm, and the robot does not help (`FixedAlpha` fades out below ‖u‖ = 0.3).
 - alpha = 0.5, the paper's own example: person and robot count alike. Help is ``k Σ b(g) (g - s)``, k = 1/s.
 - The robot takes people to be Boltzmann-rational with 5/rad². Along a demonstration its belief is then 0.8
   after one second, 0.97 after two and 0.99 at the goal: open while the arm reaches, certain when it begins to
@@ -38,7 +38,7 @@ INPUTS: Final = np.linspace(-1.0, 1.0, 21)[:, None]
 """(K, 1), what a person may press."""
 
 REST: Final = len(INPUTS) // 2
-"""Which of them is letting go."""
+"""Index of the input that lets go."""
 
 GAIN_PER_S: Final = 1.0
 HELP: Final = FixedAlpha(0.5)
@@ -50,7 +50,7 @@ RULE: Final = partial(BoltzmannBelief, beta=5.0, horizon_s=0.5, floor=0.01)
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What is driven, and to where.
+    """The arm, and the goals it is driven to.
 
     Attributes:
         chain: the arm's kinematics.

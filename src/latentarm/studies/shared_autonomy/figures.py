@@ -36,10 +36,10 @@ WEIGHTS_MM: Final = 58.0
 TASK_MM: Final = 74.0
 
 NUDGE: Final = 0.015
-"""How far methods stand from each other, in the width of what is drawn, so that no bar hides another."""
+"""Offset between methods as a share of the axis' width, so that no bar hides another."""
 
 WEIGHT_NUDGE: Final = 0.08
-"""The same of arms, in the distance of two weights."""
+"""The same for arms, as a share of the distance between two weights."""
 
 EXPERTISE_MEASURES: Final = {"final_state_error": "final state error", "time_s": "time to the goal (s)"}
 COURSES: Final = {"error": "state error", "belief": "belief in the true goal"}

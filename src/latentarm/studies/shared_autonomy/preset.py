@@ -44,7 +44,7 @@ class Preset:
 
     Attributes:
         name: what it is called on the command line.
-        demonstrations: to train on; a fifth of them is not fitted to and says which epoch was best.
+        demonstrations: to train on; a fifth of them is for validation and decides which epoch is best.
         test_demonstrations: further ones, that reconstruction is measured on.
         seeds: models of each kind.
         drives: drives with each of them and each person, half of them to each cup.
@@ -90,7 +90,7 @@ class Preset:
 
     @property
     def latest_change(self) -> Person:
-        """Whoever changes their mind last."""
+        """The person who changes their mind last."""
         return changing(max(self.changes_s))
 
     @property
@@ -101,7 +101,7 @@ class Preset:
 
     @property
     def drawn_people(self) -> tuple[Person, ...]:
-        """Whose course over time is drawn."""
+        """The people whose drives are drawn over time."""
         learners = (learner(name, slope) for name, slope in self.learners.items())
         return (*learners, *(changing(after_s) for after_s in self.drawn_changes_s))
 

@@ -46,7 +46,7 @@ def figures(results: Sequence[CellResult]) -> list[Figure]:
 
 
 def rows_of(found: Iterable[Figure]) -> list[Row]:
-    """One row per figure, the paper's beside it where it prints one; mean and SD are over `Interval.over`."""
+    """One row per figure, with the paper's if it prints one; mean and SD are over `Interval.over`."""
     rows: list[Row] = []
     for figure in found:
         over = figure.interval
