@@ -93,7 +93,7 @@ def test_episodes_that_are_too_short_are_named_in_a_sentence_and_nothing_is_left
     assert failed.phase == "failed"
     (why,) = failed.why
     assert why.code == "episodes_too_short"
-    assert "in 2 of the 3 chosen episodes" in why.text
+    assert "Only 2 of the 3 chosen episodes" in why.text
     assert not list(tmp_path.glob("*/waving"))
 
 

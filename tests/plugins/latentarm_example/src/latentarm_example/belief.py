@@ -1,7 +1,5 @@
 """A belief by nearness: a goal is likely where the action leads nearer to it."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from latentarm.assistance.belief import Belief
@@ -13,15 +11,6 @@ PER_RAD = 8.0
 
 class NearnessBelief(Belief):
     """Compares what an action alone would change over one period."""
-
-    def __init__(
-        self,
-        goals: FloatArray | Sequence[FloatArray],
-        period_s: float = 0.05,
-        prior: FloatArray | None = None,
-        floor: float = 0.01,
-    ) -> None:
-        super().__init__(goals, period_s, period_s, prior, floor)
 
     def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:
         before = self.goals - state[..., None, :]
