@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from latentarm.metrics.looks import look_of
 from latentarm.robots.robot import Robot
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, legend_below, tidy
 from latentarm.types import FloatArray
@@ -31,6 +33,23 @@ def stacked_parts(figure: "Figure", heights_mm: Sequence[float]) -> "list[SubFig
 def row_of_panels(part: "FigureBase", count: int) -> "list[Axes]":
     """A row of panels that share their axes; empty if there is nothing to show."""
     return list(part.subplots(1, count, sharex=True, sharey=True, squeeze=False)[0]) if count else []
+
+
+def draw_series(
+    axes: "Axes", name: str, places: ArrayLike, means: ArrayLike, reach: ArrayLike, **style: float
+) -> None:
+    """Means (K,) with bars of a reach (K,) or (2, K), as a line that looks as its name does everywhere."""
+    look = look_of(name)
+    axes.errorbar(
+        places,
+        means,
+        yerr=reach,
+        color=look.colour,
+        marker=look.marker,
+        linestyle=look.dash,
+        label=look.label,
+        **{"markersize": 3.6, "linewidth": 1.1, "elinewidth": 0.8, **style},
+    )
 
 
 def title(axes: "Axes", text: str, letter: str = "") -> None:

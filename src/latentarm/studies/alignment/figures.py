@@ -13,7 +13,7 @@ from latentarm.studies.alignment.drives import DRIVEN, Driven, DrivesResult
 from latentarm.studies.alignment.hypotheses import RANDOM_ANSWERS
 from latentarm.studies.alignment.preset import CONDITIONS
 from latentarm.studies.alignment.rows import ENCODED
-from latentarm.studies.drawing import name_series, plain_ticks, title
+from latentarm.studies.drawing import draw_series, name_series, plain_ticks, title
 from latentarm.studies.statistics import bootstrap_interval, reach_of_interval
 from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, legend_below, new_figure, tidy
 from latentarm.tasks.table_top import TableTop
@@ -148,18 +148,15 @@ def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
     for index, choice in enumerate(CHOICES):
         errors = curve.errors[choice]
         means = [float(values.mean()) for values in errors.values()]
-        look = look_of(choice)
-        axes.errorbar(
+        draw_series(
+            axes,
+            choice,
             [count + (index - 1) * NUDGE for count in errors],
             means,
-            yerr=np.transpose([reach_of_interval(values) for values in errors.values()]),
-            color=look.colour,
-            marker=look.marker,
-            linestyle=look.dash,
+            np.transpose([reach_of_interval(values) for values in errors.values()]),
             markersize=3.2,
             linewidth=1.0,
             elinewidth=0.6,
-            label=look.label,
             zorder=3 + index,
         )
     if RANDOM_ANSWERS in curve.errors[AT_RANDOM]:

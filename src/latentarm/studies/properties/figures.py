@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import format_figure
-from latentarm.studies.drawing import name_series, title
+from latentarm.studies.drawing import draw_series, name_series, title
 from latentarm.studies.properties.cell import condition
 from latentarm.studies.properties.tables import OURS
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
@@ -307,20 +307,15 @@ def _draw_sweep(
     sweep = [points(rows, task, measure, condition(noise)) for noise in noises_rad]
     models = list(dict.fromkeys(model for figures in sweep for model in figures))
     for index, model in enumerate(models):
-        look = look_of(model)
         shift = 0.03 * (index - (len(models) - 1) / 2)
         known = [(place, figures[model]) for place, figures in enumerate(sweep) if model in figures]
-        axes.errorbar(
+        draw_series(
+            axes,
+            model,
             [place + shift for place, _ in known],
             [figure.mean for _, figure in known],
-            yerr=[figure.sd for _, figure in known],
-            color=look.colour,
-            marker=look.marker,
-            linestyle=look.dash,
+            [figure.sd for _, figure in known],
             markersize=4.5,
-            linewidth=1.1,
-            elinewidth=0.8,
-            label=look.label,
         )
     # An SD that reaches zero leaves the panel at its foot.
     axes.set_yscale("log", nonpositive="clip")

@@ -9,7 +9,7 @@ from latentarm.metrics.looks import look_of
 from latentarm.simulation.arm_figure import draw_arm as draw_solid_arm
 from latentarm.simulation.arm_figure import frame
 from latentarm.simulation.drive_figures import GOAL_COLOURS, GOAL_MARKERS
-from latentarm.studies.drawing import arm_line, name_series, plane, title
+from latentarm.studies.drawing import arm_line, draw_series, name_series, plane, title
 from latentarm.studies.drawing import draw_arm as draw_planar_arm
 from latentarm.studies.shared_autonomy.ablations import weight_label
 from latentarm.studies.shared_autonomy.cell import METHODS, CellResult, Outcome
@@ -302,21 +302,9 @@ def _draw_changes(axes: "Axes", outcomes: Outcomes, preset: Preset) -> None:
 def _draw_series(
     axes: "Axes", name: str, places: FloatArray, found: Sequence[Interval], zorder: float = 2.0
 ) -> None:
-    """Means with their intervals as a line that looks as its name does everywhere."""
-    look = look_of(name)
-    axes.errorbar(
-        places,
-        [one.mean for one in found],
-        yerr=[one.half_width for one in found],
-        color=look.colour,
-        marker=look.marker,
-        linestyle=look.dash,
-        markersize=3.6,
-        linewidth=1.1,
-        elinewidth=0.8,
-        label=look.label,
-        zorder=zorder,
-    )
+    """Means with their intervals."""
+    means, widths = [one.mean for one in found], [one.half_width for one in found]
+    draw_series(axes, name, places, means, widths, zorder=zorder)
 
 
 def _figure(height_mm: float, name: str, *, wide: bool = True) -> "Drawing":
