@@ -4,8 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.assistance.action import assistive_action
-from latentarm.assistance.blending import blend
+from latentarm.assistance.blending import assistive_action, blend
 
 GOALS = np.array([[1.0, 0.0, 0.5], [-1.0, 2.0, 0.0]])
 states = hnp.arrays(float, 3, elements=st.floats(-3, 3))

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.assistance.alternatives import alternatives, at_one_speed
+from latentarm.assistance.belief import alternatives, at_one_speed
 
 vectors = st.integers(1, 6).flatmap(lambda d: hnp.arrays(float, d, elements=st.floats(-1, 1)))
 

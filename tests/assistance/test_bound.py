@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from latentarm.assistance import bound
-from latentarm.assistance.action import assistive_action
-from latentarm.assistance.blending import blend
+from latentarm.assistance.blending import assistive_action, blend
 from latentarm.assistance.bound import furthest, known_help, weighted
 from latentarm.errors import UserError
 

@@ -9,9 +9,8 @@ import pytest
 from latentarm.arms.contract import Arm
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import Clock, MonotonicClock, SimulatedClock
-from latentarm.control.deadlines import DeadlineLog
 from latentarm.control.input_port import InputSource
-from latentarm.control.loop import ControlLoop
+from latentarm.control.loop import ControlLoop, DeadlineLog
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.errors import UserError

@@ -14,11 +14,11 @@ from latentarm.assistance.blending import FixedAlpha, Unprompted
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.bound import radius
 from latentarm.assistance.catalogue import BELIEFS
-from latentarm.control.choices import Choices, full_deflections
 from latentarm.control.export import export_journal
 from latentarm.control.journal import read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.shared_autonomy import Choices, full_deflections
 from latentarm.control.step import Step
 from latentarm.types import Context, Goal, Input
 

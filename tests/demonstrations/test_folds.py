@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.demonstrations.folds import make_folds
+from latentarm.demonstrations.split import make_folds
 from latentarm.errors import UserError
 
 

@@ -16,8 +16,7 @@ from latentarm.errors import UserError
 from latentarm.operators.preference import ToolAxes
 from latentarm.robots.planar import planar
 from latentarm.runs.person import Question
-from latentarm.simulation.asking import PersonAtTerminal, SimulatedPerson
-from latentarm.simulation.motion_text import CELLS, draw, moved, said
+from latentarm.simulation.asking import CELLS, PersonAtTerminal, SimulatedPerson, draw, moved, said
 from latentarm.simulation.stick_line import parse, read_line
 from latentarm.types import Pose
 

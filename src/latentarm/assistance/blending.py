@@ -1,4 +1,4 @@
-"""Blending of the person's action and the robot's (equations 2 and 10)."""
+"""The robot's action (equation 3), and its blending with the person's (equations 2 and 10)."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -171,3 +171,22 @@ def _check_share(name: str, value: float) -> None:
 def _check_full_at(full_at: float) -> None:
     if not 0 < full_at <= 1:
         raise UserError(f"The input at which help is full must be in (0, 1], not {full_at}.")
+
+
+def assistive_action(
+    state: FloatArray, belief: FloatArray, goals: FloatArray, gain_per_s: float = 1.0
+) -> FloatArray:
+    """``a_r = k Σ_g b(g) (g - s)`` (equation 3): towards the goals, each by how likely it is.
+
+    The paper's ``g - s`` is a displacement; the gain k makes it a velocity.
+
+    Args:
+        state: (..., n), rad.
+        belief: (..., G), probabilities.
+        goals: (G, n), configurations, rad.
+        gain_per_s: k, 1/s.
+
+    Returns:
+        (..., n), rad/s.
+    """
+    return gain_per_s * (belief @ goals - state * belief.sum(axis=-1, keepdims=True))

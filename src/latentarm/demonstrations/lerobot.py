@@ -4,8 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from latentarm.demonstrations.info import ACTION, OLDER_VERSIONS, STATE, Info, read_info
-from latentarm.demonstrations.layout_v2 import read_episodes_v2
-from latentarm.demonstrations.reader import read_episodes
+from latentarm.demonstrations.reader import read_episodes, read_episodes_v2
 from latentarm.demonstrations.source import ActionKind, SourceData
 from latentarm.types import Demonstrations
 

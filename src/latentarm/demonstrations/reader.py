@@ -1,8 +1,12 @@
-"""Reading the LeRobotDataset v3.0 layout, by any writer: only the rows that its totals cover."""
+"""Reading LeRobotDatasets by any writer.
+
+Of the v3.0 layout only the rows that its totals cover are read. The v2.0 and v2.1 layouts have a Parquet file
+for each episode and a list of the episodes in JSON lines.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import pyarrow as pa
@@ -11,7 +15,9 @@ from latentarm.demonstrations.info import ACTION, DATA_PATTERN, STATE, Info
 from latentarm.demonstrations.tables import TASK_COLUMN, Table, float_column, integer_column, read_table
 from latentarm.errors import UserError
 from latentarm.types import Episode, FloatArray, Provenance
+from latentarm.untrusted.documents import MOST_BYTES, parse_object
 from latentarm.untrusted.memory import bounded_memory
+from latentarm.untrusted.opening import read_bytes
 
 
 def read_tasks(root: Path) -> list[str]:
@@ -142,3 +148,48 @@ def _episode(columns: dict[str, FloatArray], task: str, provenance: Provenance |
         extras=columns,
         provenance=provenance,
     )
+
+
+V2_EPISODES_PATH: Final = Path("meta/episodes.jsonl")
+V2_DATA_PATTERN: Final = "data/chunk-{chunk:03d}/episode_{episode:06d}.parquet"
+
+
+def read_episodes_v2(root: Path, info: Info) -> tuple[Episode, ...]:
+    """Every episode with all its float features.
+
+    Args:
+        root: the dataset's folder.
+        info: what its ``meta/info.json`` says.
+
+    Raises:
+        UserError: a file is missing, damaged or too large, or an episode is not all there.
+    """
+    path = root / V2_EPISODES_PATH
+    lines = read_bytes(path, MOST_BYTES).splitlines()
+    if len(lines) != info.episodes:
+        raise UserError(f"{path} is damaged: it lists {len(lines)} episodes and not {info.episodes}.")
+    size = sum(file.lstat().st_size for file in root.glob("data/*/*.parquet"))
+    with bounded_memory(str(root), size):
+        return _read_v2(root, info, lines)
+
+
+def _read_v2(root: Path, info: Info, lines: list[bytes]) -> tuple[Episode, ...]:
+    path = root / V2_EPISODES_PATH
+    episodes: list[Episode] = []
+    for number, line in enumerate(lines):
+        length, task = _v2_entry(parse_object(line, f"{path}, line {number + 1},"), number, path)
+        if not 0 < length <= info.frames:
+            raise UserError(f"{path} is damaged: episode {number} cannot have {length} samples.")
+        name = V2_DATA_PATTERN.format(chunk=number // info.chunk_files, episode=number)
+        episodes += read_file(root / name, info, number, [length], [task])
+    if sum(len(episode.timestamp) for episode in episodes) != info.frames:
+        raise UserError(f"{path} is damaged: its episodes do not hold {info.frames} samples.")
+    return tuple(episodes)
+
+
+def _v2_entry(entry: dict[str, Any], number: int, path: Path) -> tuple[int, str]:
+    """Length and task of an episode."""
+    length, tasks = entry.get("length"), entry.get("tasks")
+    if entry.get("episode_index") != number or not isinstance(length, int) or not isinstance(tasks, list):
+        raise UserError(f"{path} is damaged: line {number + 1} does not describe episode {number}.")
+    return length, "; ".join(str(task) for task in tasks)

@@ -1,13 +1,14 @@
-"""Robots by name."""
+"""Robots by name, those of the MuJoCo Menagerie included where `mujoco-menagerie` is installed."""
 
+import importlib
 from collections.abc import Callable
 from os import fspath
 from pathlib import Path
+from typing import Any
 
 from latentarm.errors import UserError
 from latentarm.robots.assemble import restate
 from latentarm.robots.end_effector import AmbiguousEndEffectorError
-from latentarm.robots.menagerie import menagerie_file
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
@@ -85,3 +86,33 @@ def _load(name_or_path: str, end_effector: str | None) -> Robot:
         f"There is no robot named {name_or_path!r}: use one of {', '.join(ROBOTS)}, or the path of an"
         " MJCF or URDF file."
     )
+
+
+def menagerie_file(name: str) -> Path | None:
+    """The MJCF file of a Menagerie robot, from the package's cache or downloaded into it.
+
+    Args:
+        name: a name in the Menagerie, such as "kinova_gen3".
+
+    Returns:
+        The file, or None where the package is not installed or has no such robot.
+
+    Raises:
+        UserError: the robot is neither in the cache nor can it be downloaded.
+    """
+    try:
+        menagerie: Any = importlib.import_module("mujoco_menagerie")
+    except ModuleNotFoundError:
+        return None
+    if name not in menagerie.names():
+        return None
+    robot = menagerie.get(name)
+    try:
+        # No progress on standard output, which may be a JSON document.
+        folder = robot.path(progress=None)
+    except (menagerie.MenagerieError, OSError) as error:
+        raise UserError(
+            f"Robot {name!r} is not in MuJoCo Menagerie's cache and cannot be downloaded"
+            f" ({' '.join(str(error).split())}): go online once, or give the path of a model file."
+        ) from error
+    return Path(folder) / robot.entry(robot.default_model).file

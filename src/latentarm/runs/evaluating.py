@@ -12,8 +12,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.annotation import prepared
-from latentarm.demonstrations.folds import make_folds
-from latentarm.demonstrations.split import select_episodes
+from latentarm.demonstrations.split import make_folds, select_episodes
 from latentarm.errors import UserError
 from latentarm.metrics.effects import axis_effects, axis_grid
 from latentarm.metrics.evaluation import (

@@ -7,8 +7,7 @@ import numpy as np
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
-from latentarm.tasks.task import Task
-from latentarm.tasks.tolerance import within
+from latentarm.tasks.task import Task, within
 from latentarm.types import Demonstrations, FloatArray, Goal, Pose
 
 SPREAD = 0.5

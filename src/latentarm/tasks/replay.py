@@ -10,8 +10,7 @@ from latentarm.kinematics.rotations import angle_between
 from latentarm.kinematics.stillness import moving_range
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
-from latentarm.tasks.task import Task
-from latentarm.tasks.tolerance import within
+from latentarm.tasks.task import Task, within
 from latentarm.types import Demonstrations, FloatArray, Goal, Pose
 
 WAYPOINT_SPACING = 0.25

@@ -11,8 +11,7 @@ from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import Hand, demonstrate, demonstrations_of
 from latentarm.tasks.inverse_kinematics import solve
-from latentarm.tasks.task import Task
-from latentarm.tasks.tolerance import within
+from latentarm.tasks.task import Task, within
 from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Pose
 
 TABLE_HEIGHT = 0.0

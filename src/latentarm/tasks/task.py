@@ -1,4 +1,4 @@
-"""What every task says about itself."""
+"""What every task says about itself, and when a pose counts as reached."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -8,6 +8,7 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Obstacle
+from latentarm.kinematics.rotations import angle_between
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, FloatArray, Goal, Pose
 
@@ -102,3 +103,18 @@ def check_not_done(task: Task, start: FloatArray, waypoints: Sequence[Pose]) -> 
             f"The task {task.name} is done before it begins: {task.robot.chain.tools[0].name} of"
             f" {task.robot.name} starts where it is to go. Choose another end-effector or task."
         )
+
+
+REACHED_DISTANCE = 0.03
+"""A waypoint is reached within this distance, m, ..."""
+
+REACHED_ANGLE = np.deg2rad(20.0)
+"""... and this angle, rad."""
+
+
+def within(pose: Pose, waypoint: Pose) -> bool:
+    """Whether one pose is within `REACHED_DISTANCE` and `REACHED_ANGLE` of another."""
+    distance = np.linalg.norm(pose.position - waypoint.position)
+    return bool(
+        distance <= REACHED_DISTANCE and angle_between(pose.rotation, waypoint.rotation) <= REACHED_ANGLE
+    )

@@ -36,8 +36,7 @@ from latentarm.studies.study import Request
 from latentarm.style import save_figure
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.table_top import TableTop
-from latentarm.tasks.task import Task
-from latentarm.tasks.tolerance import within
+from latentarm.tasks.task import Task, within
 from latentarm.types import Goal, Pose
 
 PANDA = load_robot("panda")

@@ -9,7 +9,7 @@ from latentarm.assistance.distance import DistanceBelief
 from latentarm.studies.shared_autonomy import drive as drives
 from latentarm.studies.shared_autonomy.drive import HELP, INPUTS, NO_HELP, REST, STEP_S, drive, steps_of
 from latentarm.studies.shared_autonomy.measures import certificates, measure, state_error, true_belief
-from latentarm.studies.shared_autonomy.people import changing, learner, of_fixed_expertise
+from latentarm.studies.shared_autonomy.preset import changing, learner, of_fixed_expertise
 
 PERFECT = replace(of_fixed_expertise(1.0), beta=np.inf)
 

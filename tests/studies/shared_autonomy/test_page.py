@@ -6,9 +6,8 @@ import pytest
 
 from latentarm.studies.shared_autonomy.ablations import LETTER
 from latentarm.studies.shared_autonomy.cell import METHODS, TASKS
-from latentarm.studies.shared_autonomy.paper import EXTRA_TIME
 from latentarm.studies.shared_autonomy.preset import PRESETS
-from latentarm.studies.shared_autonomy.rows import Figure, figures, rows_of
+from latentarm.studies.shared_autonomy.rows import EXTRA_TIME, Figure, figures, rows_of
 from latentarm.studies.shared_autonomy.study import STUDY
 from latentarm.studies.shared_autonomy.tables import Tables, summary_tables
 from latentarm.studies.study import Request

@@ -36,7 +36,7 @@ from latentarm.studies.study import Grid, Report, Request, Study, again
 from latentarm.tasks.pouring.tasks import AT_BOWL_M, BOWL_M, POURING_TASKS
 from latentarm.tasks.pouring.tool_path import RATE_HZ, SPEED_M_S, TURN_RAD_S
 from latentarm.tasks.table_top import TableTop
-from latentarm.tasks.tolerance import REACHED_ANGLE, REACHED_DISTANCE
+from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from latentarm.demonstrations.folds import Fold
-from latentarm.demonstrations.split import select_episodes
+from latentarm.demonstrations.split import Fold, select_episodes
 from latentarm.models.kind import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.catalogue import load_recorded_robot

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from latentarm.demonstrations.dataset import read_dataset
-from latentarm.demonstrations.folds import Fold, make_folds
+from latentarm.demonstrations.split import Fold, make_folds
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.studies.compare.preset import Stream

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from latentarm.demonstrations.folds import FEW, MANY
+from latentarm.demonstrations.split import FEW, MANY
 from latentarm.errors import UserError
 from latentarm.metrics.measures import label_of
 from latentarm.metrics.undone import NEAR_M

@@ -19,8 +19,7 @@ from latentarm.models.model import LatentActionModel
 from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.shared_autonomy.drive import HELP, NO_HELP, RULE, STEP_S, Scene, drive, steps_of
 from latentarm.studies.shared_autonomy.measures import measure, state_error, true_belief
-from latentarm.studies.shared_autonomy.people import Person
-from latentarm.studies.shared_autonomy.preset import Preset
+from latentarm.studies.shared_autonomy.preset import Person, Preset
 from latentarm.studies.streams import integer, sequence
 from latentarm.tasks.two_cups import TWO_CUPS, TwoCups
 from latentarm.types import Demonstrations, FloatArray, Pairs

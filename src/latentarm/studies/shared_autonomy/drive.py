@@ -20,16 +20,15 @@ from typing import Final
 import numpy as np
 import torch
 
-from latentarm.assistance.action import assistive_action
 from latentarm.assistance.belief import Belief
-from latentarm.assistance.blending import Arbitration, FixedAlpha, blend
+from latentarm.assistance.blending import Arbitration, FixedAlpha, assistive_action, blend
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.entropy import entropy_over_goals, goal_probabilities, goal_progress
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.torch_chain import TorchChain
 from latentarm.metrics.contract import DecodesActions
 from latentarm.operators.rationality import boltzmann
-from latentarm.studies.shared_autonomy.people import Person
+from latentarm.studies.shared_autonomy.preset import Person
 from latentarm.types import FloatArray, IntArray
 
 STEP_S: Final = 0.1

@@ -15,10 +15,8 @@ from latentarm.studies.shared_autonomy.ablations import weight_label
 from latentarm.studies.shared_autonomy.cell import METHODS, CellResult, Outcome
 from latentarm.studies.shared_autonomy.drive import STEP_S
 from latentarm.studies.shared_autonomy.intervals import Interval, band, interval
-from latentarm.studies.shared_autonomy.paper import MODEL
-from latentarm.studies.shared_autonomy.people import changing, learner, of_fixed_expertise
-from latentarm.studies.shared_autonomy.preset import Ablation, Preset
-from latentarm.studies.shared_autonomy.rows import RECONSTRUCTION, Figure
+from latentarm.studies.shared_autonomy.preset import Ablation, Preset, changing, learner, of_fixed_expertise
+from latentarm.studies.shared_autonomy.rows import MODEL, RECONSTRUCTION, Figure
 from latentarm.style import FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
 from latentarm.tasks.two_cups import BEARING_RAD, Place, PlanarTwoCups, TwoCups
 from latentarm.types import FloatArray

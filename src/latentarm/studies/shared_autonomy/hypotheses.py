@@ -23,8 +23,7 @@ from latentarm.studies.hypotheses import Comparison, corrected
 from latentarm.studies.shared_autonomy.cell import WITH_ENTROPY, WITH_HELP, WITHOUT_HELP, CellResult
 from latentarm.studies.shared_autonomy.intervals import interval
 from latentarm.studies.shared_autonomy.measures import ARRIVED
-from latentarm.studies.shared_autonomy.people import Person, learner, of_fixed_expertise
-from latentarm.studies.shared_autonomy.preset import Preset
+from latentarm.studies.shared_autonomy.preset import Person, Preset, learner, of_fixed_expertise
 from latentarm.studies.statistics import Direction, paired
 from latentarm.types import FloatArray
 

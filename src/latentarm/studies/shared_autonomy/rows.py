@@ -1,13 +1,39 @@
-"""From what cells measured to the study's rows."""
+"""From what cells measured to the study's rows, with what the paper prints in section 8.2.
+
+It prints two figures: how much more time LA takes than LA+SA on the Franka Emika, a Panda. All its other
+results are curves without printed numbers.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 from latentarm.metrics.measures import unit_of
 from latentarm.studies.shared_autonomy.cell import WITH_HELP, WITHOUT_HELP, CellResult, Outcome
 from latentarm.studies.shared_autonomy.intervals import Interval, interval
-from latentarm.studies.shared_autonomy.paper import EXTRA_TIME, with_paper
 from latentarm.types import FloatArray, Row
+
+EXTRA_TIME: Final = "extra_time_percent"
+"""The measure: how much more time LA takes to reach the goal than LA+SA."""
+
+MODEL: Final = "cae"
+"""The model of the paper's study; equation 16, with lambda_1 above 0, is the cVAE's."""
+
+PAPER: Final = {
+    ("panda_two_cups", MODEL, EXTRA_TIME, "beta 75"): 45.0,
+    ("panda_two_cups", MODEL, EXTRA_TIME, "beta 1000"): 30.0,
+}
+"""By task, model, measure and condition, %."""
+
+
+def with_paper(rows: Sequence[Row]) -> list[Row]:
+    """The same rows, with the paper's figure in those that have one."""
+    return [replace(row, paper_mean=PAPER.get(_place(row))) for row in rows]
+
+
+def _place(row: Row) -> tuple[str, str, str, str]:
+    return row.task or "", row.model or "", row.measure, row.condition or ""
+
 
 STUDY: Final = "shared_autonomy"
 

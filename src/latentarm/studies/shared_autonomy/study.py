@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from latentarm.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm.studies.page import render_page
-from latentarm.studies.shared_autonomy import drive, people
+from latentarm.studies.shared_autonomy import drive
+from latentarm.studies.shared_autonomy import preset as people
 from latentarm.studies.shared_autonomy.ablations import variants
 from latentarm.studies.shared_autonomy.cell import (
     TASKS,
@@ -28,10 +29,9 @@ from latentarm.studies.shared_autonomy.figures import (
 from latentarm.studies.shared_autonomy.hypotheses import MEASURE, REACHED, TRAPPED, compare_methods
 from latentarm.studies.shared_autonomy.intervals import FEWEST_SEEDS, band
 from latentarm.studies.shared_autonomy.measures import ARRIVED
-from latentarm.studies.shared_autonomy.paper import MODEL
 from latentarm.studies.shared_autonomy.preset import PRESETS, Preset
+from latentarm.studies.shared_autonomy.rows import MODEL, Figure, figures, rows_of
 from latentarm.studies.shared_autonomy.rows import STUDY as NAME
-from latentarm.studies.shared_autonomy.rows import Figure, figures, rows_of
 from latentarm.studies.shared_autonomy.tables import Tables, summary_tables
 from latentarm.studies.statistics import LEVEL
 from latentarm.studies.study import Grid, Report, Request, Study, again

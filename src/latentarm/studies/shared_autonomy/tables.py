@@ -13,9 +13,8 @@ from latentarm.studies.page import markdown_table
 from latentarm.studies.shared_autonomy.ablations import variants
 from latentarm.studies.shared_autonomy.cell import METHODS
 from latentarm.studies.shared_autonomy.hypotheses import MEASURE
-from latentarm.studies.shared_autonomy.paper import EXTRA_TIME, MODEL, PAPER
 from latentarm.studies.shared_autonomy.preset import Preset
-from latentarm.studies.shared_autonomy.rows import RECONSTRUCTION, Figure
+from latentarm.studies.shared_autonomy.rows import EXTRA_TIME, MODEL, PAPER, RECONSTRUCTION, Figure
 from latentarm.types import Row
 
 

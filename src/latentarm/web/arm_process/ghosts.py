@@ -4,8 +4,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.assistance.action import assistive_action
-from latentarm.assistance.blending import Arbitration, blend
+from latentarm.assistance.blending import Arbitration, assistive_action, blend
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.kinematics.obstacles import HalfSpace
