@@ -97,7 +97,9 @@ def test_a_name_that_could_not_be_typed_or_shown_is_left_out(install, catalogue,
 
 
 def test_what_a_file_names_is_looked_up_and_never_imported(install, catalogue):
-    with pytest.raises(UserError, match=r"config\.json names the number 'os:system', which is none of ours"):
+    with pytest.raises(
+        UserError, match=r"config\.json names the number 'os:system', which is not one of ours"
+    ):
         catalogue.find("os:system", "config.json")
     with pytest.raises(UserError, match=r"distribution theirs-dist.*pip install theirs-dist"):
         catalogue.find("theirs", "config.json", origin="theirs-dist")

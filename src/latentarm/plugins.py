@@ -111,7 +111,7 @@ class Catalogue(Mapping[str, T], Generic[T]):
                 f"{where} names the {self._noun} '{name}' of the distribution {origin}, which is not"
                 f" installed here: install it (pip install {origin})."
             )
-        raise UserError(f"{where} names the {self._noun} '{name}', which is none of {', '.join(self)}.")
+        raise UserError(f"{where} names the {self._noun} '{name}', which is not one of {', '.join(self)}.")
 
     def usable(self) -> dict[str, T]:
         """Everything that loads, by name. Warns of each plug-in that does not.

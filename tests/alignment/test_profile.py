@@ -129,7 +129,7 @@ def test_damaged_files_are_refused(run):
 @pytest.mark.parametrize("name", ["", ".", "..", "a/b", "../ada", "-x", "a b", "x" * 65, "ada\n"])
 def test_a_name_that_is_no_folders_is_refused(run, name):
     for use in (load_profile, new_profile_folder, profile_folder):
-        with pytest.raises(UserError, match="no name for a profile"):
+        with pytest.raises(UserError, match="is not a profile name"):
             use(run, name)
 
 

@@ -40,7 +40,7 @@ def test_the_default_is_in_the_catalogue():
 
 
 def test_an_unknown_arm_is_refused(the_panda):
-    with pytest.raises(UserError, match="--arm names the arm 'wooden', which is none of kinematic"):
+    with pytest.raises(UserError, match="--arm names the arm 'wooden', which is not one of kinematic"):
         make_arm("wooden", the_panda, the_panda.home)
 
 

@@ -208,7 +208,7 @@ def test_a_model_whose_plug_in_is_missing_says_what_to_install(folder):
 @pytest.mark.parametrize("kind", ["os:system", "latentarm.models.pca.runtime:PCA", "../pca", ""])
 def test_a_config_cannot_name_what_is_imported(folder, kind):
     change_config(folder, lambda model: model.update(kind=kind, distribution="--index-url=x"))
-    with pytest.raises(UserError, match="which is none of pca, ae, vae"):
+    with pytest.raises(UserError, match="which is not one of pca, ae, vae"):
         load_model(folder)
 
 

@@ -181,7 +181,7 @@ def begin(name="ada"):
 def test_a_name_that_is_none_begins_nothing(desk, name):
     state = desk.take(begin(name))
     assert state.phase == "failed"
-    assert "no name for a profile" in state.why.text
+    assert "is not a profile name" in state.why.text
     assert desk.personalising.standstill is None
 
 

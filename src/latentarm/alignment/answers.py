@@ -73,7 +73,7 @@ class Answers:
         u: (N, d), each entry in [-1, 1].
 
     Raises:
-        UserError: sizes do not fit each other, or an input is none.
+        UserError: sizes do not match, or an input is invalid.
     """
 
     motions: Motions

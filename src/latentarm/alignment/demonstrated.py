@@ -18,7 +18,7 @@ CANDIDATES: Final = 100
 """Motions that may be asked about."""
 
 UNLABELLED: Final = 1000
-"""Contexts in which the priors shall hold."""
+"""Contexts in which the priors are to hold."""
 
 
 def demonstrated_motions(

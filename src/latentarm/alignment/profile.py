@@ -75,7 +75,7 @@ def profile_folder(run: Path, name: str) -> Path:
         UserError: the name is not one for a folder.
     """
     if not NAMED.fullmatch(name):
-        raise UserError(f"{name!r} is no name for a profile: use letters, digits, - and _, 64 at most.")
+        raise UserError(f"{name!r} is not a profile name: use letters, digits, - and _, 64 at most.")
     return run / FOLDER / name
 
 
@@ -161,7 +161,7 @@ def load_profile(run: Path, name: str) -> Profile:
     """Read and check a person's profile of a run.
 
     Raises:
-        UserError: there is none of that name, its files are broken or foreign, or it was learned for another
+        UserError: there is no such profile, its files are broken or foreign, or it was learned for another
             model.
     """
     folder = trial_folder(run) if name == TRIAL else profile_folder(run, name)

@@ -147,7 +147,7 @@ class GoalEntropy(LossTerm):
         }
 
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:
-        """Contexts (CONTEXTS, c) as ``where`` has it; see `LossTerm.contexts`."""
+        """Contexts (CONTEXTS, c) as ``where`` says; see `LossTerm.contexts`."""
         one, other, believing = demonstrated[rng.integers(0, len(demonstrated), (3, CONTEXTS))]
         share = rng.uniform(size=(CONTEXTS, 1))
         state, belief = one[:, :joints], one[:, joints:]

@@ -162,7 +162,7 @@ def write_options(folder: Path, name: str, **resolved: object) -> None:
 
 
 def _plain(value: object) -> object:
-    """A value as YAML has it."""
+    """A value as YAML represents it."""
     if isinstance(value, Path):
         return str(value)
     if isinstance(value, tuple):

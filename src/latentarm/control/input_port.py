@@ -37,7 +37,7 @@ class InputSource(ABC):
 class InputPort(InputSource):
     """Accepts inputs from any thread and judges their freshness by the loop's clock alone.
 
-    The loop's side issues nonces. Whoever sends inputs echoes the newest nonce that it has seen, with a
+    The loop's side issues nonces. The sender of inputs echoes the newest nonce that it has seen, with a
     sequence number that grows. A message that was delayed in either direction is thus detected without
     trusting the sender's clock. At most one input is kept. A press of the
     mode switch is not lost when a later input replaces it before the loop has looked.

@@ -44,7 +44,7 @@ class DeadlineLog:
 
     Args:
         period_s: the loop's period, s.
-        window: figures are over the last so many ticks (counts are over all).
+        window: number of recent ticks that figures are over (counts are over all).
     """
 
     def __init__(self, period_s: float, window: int = 65536) -> None:
@@ -158,7 +158,7 @@ class ControlLoop:
         return self._log.statistics()
 
     def run(self, ticks: int | None = None) -> DeadlineStatistics:
-        """Run for so many ticks, or until `finish`; then bring the arm to rest.
+        """Run for a number of ticks, or until `finish`; then bring the arm to rest.
 
         Args:
             ticks: how many, or None for no end.

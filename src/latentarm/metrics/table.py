@@ -29,12 +29,12 @@ def format_figure(mean: float | None, sd: float | None) -> str:
 
 
 def _places(value: float, digits: int) -> int:
-    """Decimal places that show ``value`` to so many digits."""
+    """Decimal places that show ``value`` to this many digits."""
     return digits - 1 - math.floor(math.log10(abs(value))) if value else 0
 
 
 def _rounded(value: float, places: int) -> str:
-    """The value to so many decimal places; far from one, in powers of ten."""
+    """The value to this many decimal places; far from one, in powers of ten."""
     if places > 6 or places < -6:
         return f"{value:.2g}"
     return f"{round(value, places):.{max(places, 0)}f}"

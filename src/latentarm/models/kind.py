@@ -150,7 +150,7 @@ class TrainedModel:
 
     Attributes:
         kind: which kind of model.
-        parameters: what the model was constructed with, as JSON has it.
+        parameters: what the model was constructed with, as JSON values.
         dimensions: its sizes.
         tensors: float64 arrays by name, as `ModelKind.tensor_shapes` lists them.
         summary: how the training went.

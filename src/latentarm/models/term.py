@@ -37,7 +37,7 @@ class LossTerm(ABC):
     @property
     @abstractmethod
     def settings(self) -> Mapping[str, object]:
-        """All that the term depends on, as JSON has it: a checkpoint of other settings is refused."""
+        """All that the term depends on, as JSON values: a checkpoint of other settings is refused."""
 
     @abstractmethod
     def contexts(self, demonstrated: FloatArray, joints: int, rng: np.random.Generator) -> FloatArray:

@@ -176,7 +176,7 @@ class ToolContexts:
             context: (..., c).
 
         Returns:
-            (..., c + 9 k + 12 k n), laid out as `ToolSizes` has it.
+            (..., c + 9 k + 12 k n), laid out as in `ToolSizes`.
         """
         sizes = self.sizes
         places, jacobian = _places(self.chain, context[..., : sizes.joints])

@@ -35,7 +35,7 @@ class TorchToolContexts:
         self._tools = [TorchChain(contexts.chain, tool).to(dtype) for tool in range(contexts.sizes.tools)]
 
     def __call__(self, context: Tensor) -> Tensor:
-        """Observe contexts (..., c): (..., c + 9 k + 12 k n), laid out as `ToolSizes` has it."""
+        """Observe contexts (..., c): (..., c + 9 k + 12 k n), laid out as in `ToolSizes`."""
         state = context[..., : self._joints]
         places: list[Tensor] = []
         jacobians: list[Tensor] = []

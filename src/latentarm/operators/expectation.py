@@ -28,7 +28,7 @@ class Expectation:
         speed_m_s: of the tool at a full push along one axis, m/s.
 
     Raises:
-        UserError: the directions are none, or the speed is not positive.
+        UserError: the directions are invalid, or the speed is not positive.
     """
 
     chain: Chain

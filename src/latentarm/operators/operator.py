@@ -1,4 +1,4 @@
-"""Whoever gives inputs."""
+"""Operators, who give inputs."""
 
 from abc import ABC, abstractmethod
 

@@ -34,7 +34,7 @@ class PlanningConfig:
     """How far ahead the simulated person plans.
 
     Attributes:
-        pieces: a plan has so many at most; in each the input is held.
+        pieces: maximum number in a plan; the input is constant in each.
         piece_s: length of a piece, s.
         steps: of the imagined motion in a piece.
         iterations: iterations of plan optimisation.

@@ -129,7 +129,7 @@ def _dask_cluster(address: str) -> Generator["Client"]:
 
 
 def _available(jobs: int) -> int:
-    """How many processes the active backend has for so many jobs."""
+    """How many processes the active backend has for a number of jobs."""
     return cast(int, joblib.effective_n_jobs(jobs))
 
 

@@ -41,7 +41,7 @@ class Question:
 
 
 class Person(ABC):
-    """Whoever answers."""
+    """A person who answers questions."""
 
     @property
     @abstractmethod

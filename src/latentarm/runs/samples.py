@@ -50,7 +50,7 @@ class Samples:
 
     Attributes:
         motions: that a person may be asked about; None where no demonstration moves for long enough.
-        unlabelled: (M, c), contexts in which the priors of an alignment shall hold.
+        unlabelled: (M, c), contexts in which the priors of an alignment are to hold.
         probe: held-out samples for `latentarm evaluate`; None where nothing moves in the held-out episodes.
     """
 

@@ -169,7 +169,7 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
     assert found(page) == []
     page.get_by_label("Your name").fill("my self")
     begin.click()
-    expect(page.get_by_role("alert")).to_contain_text("no name for a profile")
+    expect(page.get_by_role("alert")).to_contain_text("is not a profile name")
     page.get_by_label("Your name").fill("ada")
     page.get_by_label("Maximum number of motions").select_option(str(QUESTIONS))
     begin.click()

@@ -46,7 +46,7 @@ class Asked:
     Attributes:
         demonstrations: folders of native datasets, all of one robot.
         preset: models, noises, folds and all sizes.
-        ours: the model that is held against the targets.
+        ours: the model that is judged against the targets.
         seed: of everything random.
         datasets: that the folders hold, with their folds.
     """
@@ -81,7 +81,7 @@ def compare_study(
     Args:
         demonstrations: folders of native datasets, all of one robot.
         preset: models, noises, folds and all sizes.
-        ours: the model that is held against the targets.
+        ours: the model that is judged against the targets.
         seed: of everything random.
 
     Raises:

@@ -11,7 +11,7 @@ from latentarm.types import FloatArray
 CONFIDENCE: Final = 0.95
 
 FEWEST_SEEDS: Final = 3
-"""From so many on, seeds are the units; of fewer, no spread can be told, and drives are."""
+"""From this many on, seeds are the units; with fewer there is no spread to estimate, so drives are."""
 
 
 @dataclass(frozen=True)

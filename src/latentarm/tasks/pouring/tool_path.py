@@ -100,7 +100,7 @@ def wander_from(
 def follow(chain: Chain, start: FloatArray, paths: Sequence[ToolPath]) -> list[FloatArray]:
     """States of an arm whose hand goes along paths, the joints by the shortest way.
 
-    Resolved motion rate control (Whitney 1969), at each step towards where the hand shall be next.
+    Resolved motion rate control (Whitney 1969), at each step towards the hand's next pose.
 
     Args:
         chain: the arm.

@@ -22,7 +22,7 @@ import { attachRecording } from "./recording.js";
 
 /** @import {Drawing} from "../views/drawing.js" */
 
-/** Words beside the views change no more often than this, ms. */
+/** Words next to the views change no more often than this, ms. */
 const WORDS_MS = 250;
 
 /** @type {Drawing | null} */

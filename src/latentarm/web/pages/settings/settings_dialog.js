@@ -9,7 +9,7 @@ import { NO_PROFILE } from "./settings.js";
 
 const seconds = (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 1) });
 
-/** What stands beside a slider. @type {Record<string, (value: number) => string>} */
+/** The text next to a slider. @type {Record<string, (value: number) => string>} */
 const TEXTS = { sensitivity: sayPercent, deadZone: sayPercent, stepS: seconds, dwellS: seconds };
 
 /**

@@ -1,4 +1,4 @@
-/** Light or dark: as the system has it, until somebody chooses. */
+/** Light or dark: follows the system until the person chooses. */
 
 /**
  * @param {HTMLElement} button

@@ -1,4 +1,4 @@
-/** Small texts that stay beside points of the scene, in both views. */
+/** Small texts that stay next to points of the scene, in both views. */
 
 /** @import * as THREE from "three" */
 /** @import {Views} from "./views.js" */

@@ -44,7 +44,7 @@ function shortened(path, share) {
 }
 
 /**
- * The list beside the views: the same in words.
+ * The list next to the views: the same in words.
  *
  * @param {HTMLElement} list
  */

@@ -3,7 +3,7 @@
 import { THREE } from "../three/index.js";
 
 const FOV_DEG = 32;
-/** Room around the outermost points: the arm is thick, and labels stand beside goals. */
+/** Room around the outermost points: the arm is thick, and labels are next to goals. */
 const MARGIN_M = 0.13;
 /** So many more frames that had to wait than frames that were drawn, and the drawing gets coarser. */
 const MOST_HELD = 40;
