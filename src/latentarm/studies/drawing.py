@@ -36,7 +36,16 @@ def row_of_panels(part: "FigureBase", count: int) -> "list[Axes]":
 
 
 def draw_series(
-    axes: "Axes", name: str, places: ArrayLike, means: ArrayLike, reach: ArrayLike, **style: float
+    axes: "Axes",
+    name: str,
+    places: ArrayLike,
+    means: ArrayLike,
+    reach: ArrayLike,
+    *,
+    markersize: float = 3.6,
+    linewidth: float = 1.1,
+    elinewidth: float = 0.8,
+    zorder: float = 2.0,
 ) -> None:
     """Means (K,) with bars of a reach (K,) or (2, K), as a line that looks as its name does everywhere."""
     look = look_of(name)
@@ -48,7 +57,10 @@ def draw_series(
         marker=look.marker,
         linestyle=look.dash,
         label=look.label,
-        **{"markersize": 3.6, "linewidth": 1.1, "elinewidth": 0.8, **style},
+        markersize=markersize,
+        linewidth=linewidth,
+        elinewidth=elinewidth,
+        zorder=zorder,
     )
 
 
