@@ -111,7 +111,7 @@ def test_a_job_that_dies_says_so(job):
     job._job._process.kill()
     failed = ended(job)
     assert failed.phase == "failed"
-    assert failed.why.text.endswith("try it again.")
+    assert failed.why.text.endswith("try again.")
     assert failed.motion is None
 
 
