@@ -178,7 +178,7 @@ def test_a_person_is_asked_and_the_arm_does_what_they_mean(
 
     stands = arm.tool
     motion = question(page, arm, 1)
-    expect(page.get_by_role("status")).to_contain_text("ada is being asked")
+    expect(page.get_by_role("status")).to_contain_text("ada is answering questions")
     for panel in ("Buttons", "Switch", "Stick"):
         page.get_by_role("radio", name=panel).check()
         assert found(page) == []
