@@ -103,7 +103,7 @@ def test_what_a_file_names_is_looked_up_and_never_imported(install, catalogue):
         catalogue.find("os:system", "config.json")
     with pytest.raises(UserError, match=r"distribution theirs-dist.*pip install theirs-dist"):
         catalogue.find("theirs", "config.json", origin="theirs-dist")
-    with pytest.raises(UserError, match="none of ours"):
+    with pytest.raises(UserError, match="not one of ours"):
         catalogue.find("theirs", "config.json", origin="--index-url=elsewhere")
     install("theirs-dist", {"theirs": "theirs_dist:VALUE"}, "VALUE = 2.5")
     sys.modules.pop("theirs_dist", None)

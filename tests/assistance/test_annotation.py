@@ -71,7 +71,7 @@ def test_a_step_worked_by_hand():
     expected = np.array(likelihood) / sum(likelihood)
     annotated = annotate(
         demonstrations(states, goals, rate_hz),
-        lambda goals, period_s: BoltzmannBelief(goals, beta, horizon_s, period_s),
+        lambda goals, period_s: BoltzmannBelief(goals, beta, horizon_s, period_s=period_s),
     )
     np.testing.assert_allclose(annotated.episodes[0].extras["belief"], [[0.5, 0.5], expected], rtol=1e-12)
 

@@ -96,7 +96,7 @@ def test_a_person_answers_in_lines(run: Run, trained: Path, monkeypatch: pytest.
     code, out, err = run(*ALIGN, "--answers", 3)
     assert code == 0, err
     assert "simulated" not in out
-    for said in ("no number", "from -1 to 1", "1 of 2 numbers"):
+    for said in ("not a number", "from -1 to 1", "1 of 2 numbers"):
         assert said in out
     # One was skipped, and asked anew with another motion.
     assert [out.count(f"Question {number} of") for number in (1, 2, 3)] == [1, 2, 1]

@@ -87,7 +87,7 @@ def test_drives_are_told_from_measurements_and_called_simulated(done: tuple[list
     driven = {row.model for row in rows if row.condition == "noise 0 rad, driven"}
     assert driven == {"cae", "end_effector"}
     page = (out / "results.md").read_text()
-    assert "A **simulated** operator drives" in page
+    assert "A **simulated** operator follows" in page
     assert "![Error against reversal and reach](pareto.png)" in page
 
 
