@@ -74,7 +74,7 @@ class Fold:
     def validation(self) -> tuple[int, ...]:
         """Validation episodes, which stop the training early.
 
-        With fewer than `FEW` there are none to spare, and training stops when its own loss stops falling.
+        With fewer than `FEW`, no episodes are set aside, and training stops when its own loss stops falling.
         """
         if len(self.others) < FEW:
             return self.others

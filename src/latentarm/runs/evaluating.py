@@ -189,7 +189,7 @@ class _Measured:
         figures: measured.
         probe: on what.
         starts: (N, c), contexts from which the effects of the axes are drawn.
-        path: (T, n), an episode to draw behind them, rad; None where there is none.
+        path: (T, n), an episode to draw behind them, rad, or None.
     """
 
     figures: Figures

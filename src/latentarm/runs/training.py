@@ -219,7 +219,7 @@ def _term(config: TrainConfig, demonstrations: Demonstrations, chain: Chain | No
 
 
 def _routes(robot: Robot, held_out: Demonstrations) -> tuple[FloatArray, ...] | None:
-    """The ways of the held-out episodes; None where there are none, or more than a document should hold."""
+    """Routes of the held-out episodes; None without held-out episodes or if they are too large to store."""
     try:
         routes = routes_of(robot, held_out)
     except UserError:

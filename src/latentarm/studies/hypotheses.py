@@ -31,7 +31,7 @@ class Comparison:
         task: name of the task.
         model: name of the model.
         measure: what is compared.
-        where: under which further condition, such as a person or a noise; empty where there is none.
+        where: further condition, such as the person or the noise level; empty if not needed.
         subject: what should be less or greater: a model, a method or a condition.
         against: than what; None for a fixed mark.
         direction: whether the subject should have less or more.
@@ -41,7 +41,7 @@ class Comparison:
         half_width_against: of its 95 % interval; 0 for a mark.
         n: figures of the subject.
         n_against: figures of the other; 1 for a mark.
-        test: ``Welch``, ``one-sample``, ``paired t``, ``McNemar``, or why there is none.
+        test: ``Welch``, ``one-sample``, ``paired t``, ``McNemar``, or the reason no test was run.
         t: its statistic, or None; below 0 where the subject has less.
         dof: degrees of freedom, or None.
         p: one-sided, before correction, or None.
@@ -75,7 +75,7 @@ class Comparison:
 
     @property
     def apart(self) -> bool | None:
-        """Whether the intervals lie apart in the direction of the hypothesis; None where there are none."""
+        """Whether the intervals lie apart in the direction of the hypothesis; None without intervals."""
         if None in (self.mean, self.mean_against, self.half_width, self.half_width_against):
             return None
         away = (self.mean_against or 0.0) - (self.mean or 0.0)

@@ -33,7 +33,7 @@ class Statistic:
     """A one-sided test of two means.
 
     Attributes:
-        test: ``Welch``, ``one-sample``, or why there is none.
+        test: ``Welch``, ``one-sample``, or the reason no test was run.
         t: its statistic, or None; below 0 where there is less than of the reference.
         dof: degrees of freedom, or None.
         p: one-sided, or None.

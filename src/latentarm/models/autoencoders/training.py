@@ -105,7 +105,7 @@ class VAE(_Variational):
     """Variational autoencoder: ``‖a - phi(z)‖^2 + lambda KL[N(mu, sigma) ‖ N(0, 1)]`` (equation 7).
 
     Attributes:
-        kl_weight: lambda. Below 1, as in the paper, lest the latent space collapse.
+        kl_weight: lambda. Below 1, as in the paper, to keep the latent space from collapsing.
     """
 
     kind: ClassVar[ModelKind] = runtime.VAE
@@ -117,7 +117,7 @@ class CVAE(_Variational):
     """Conditioned variational autoencoder (equation 8): ``‖a - phi(z, c)‖^2 + lambda KL``.
 
     Attributes:
-        kl_weight: lambda. Below 1, as in the paper, lest the latent space collapse.
+        kl_weight: lambda. Below 1, as in the paper, to keep the latent space from collapsing.
     """
 
     kind: ClassVar[ModelKind] = runtime.CVAE

@@ -83,7 +83,7 @@ class Personalising:
         return Notice(code="asking", parameters={"name": self._state.name})
 
     def look(self) -> Personalise | None:
-        """The state to show; None if there is none."""
+        """The state to show, or None if nothing is running."""
         if self._run is not None and self._driven().run != self._run:
             # Another run is driven: answers and profile do not apply to it.
             self._forget()
