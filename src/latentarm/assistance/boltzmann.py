@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import Unpack, final
 
+import numpy as np
+
 from latentarm.assistance.belief import Belief, BeliefOptions, log_choice, not_negative
 from latentarm.types import FloatArray
 
@@ -43,7 +45,9 @@ class BoltzmannBelief(Belief):
 
     def log_likelihood(self, state: FloatArray, actions: FloatArray) -> FloatArray:
         """``log P(u | s, g)`` of one decision; see `Belief.log_likelihood`."""
-        reached = state[..., None, :] + self.horizon_s * actions
-        away = self.goals - reached[..., None, :]
-        distance = (away * away).sum(axis=-1)
+        # D(g, s + a tau) - D(g, s) = ‖a tau‖² - 2 a tau · (g - s): a product of matrices for all goals at
+        # once, and D(g, s) itself cancels.
+        way = self.horizon_s * actions
+        away = self.goals - state[..., None, :]
+        distance = np.vecdot(way, way)[..., None] - 2.0 * (way @ away.mT)
         return log_choice(self.beta * (distance[..., :1, :] - distance))
