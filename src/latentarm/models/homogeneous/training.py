@@ -16,7 +16,6 @@ from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.objectives import reconstruction_error
 from latentarm.models.parameters import RANGE, Real
 from latentarm.models.tool_contexts import PLACE, ToolSizes
-from latentarm.models.torch_tool_contexts import applied, inner
 from latentarm.types import FloatArray
 
 STRAIGHT_START: Final = 8.0
@@ -101,67 +100,91 @@ class Homogeneous(NeuralModel):
 
 
 class _Geometry(NamedTuple):
-    """The decoder in each context.
+    """The decoder in each context, with the B pairs last: arithmetic on many small matrices is fast only so.
+
+    Each column comes twice: as joint velocities, and in coordinates in which the metric is the identity,
+    ``(J_w a, sqrt(damping) a)``, of w = 6 k + m entries.
 
     Attributes:
-        columns: (S, B, m, (1 + orders) d), M_1(c), M_3(c), ... side by side.
-        twists: (S, B, 6 k, (1 + orders) d), the tools' weighted twists along them.
+        straight: d of (S, m, B), the orthonormal columns of M_1(c).
+        straight_white: d of (S, w, B), the same in those coordinates.
+        bend: (S, orders d, m, B), what the network gives for M_3(c), M_5(c), ...
+        bend_white: (S, orders d, w, B).
+        along: d of (S, orders d, B), the part of the bends along each straight column, to be taken out.
     """
 
-    columns: Tensor
-    twists: Tensor
+    straight: list[Tensor]
+    straight_white: list[Tensor]
+    bend: Tensor
+    bend_white: Tensor
+    along: list[Tensor]
 
-    @property
-    def latent_dim(self) -> int:
-        """Size of z, d."""
-        return self.columns.shape[-1] // (1 + len(ORDERS))
+    def led(self, degrees: Tensor) -> tuple[Tensor, Tensor]:
+        """The columns weighted with `_odd_degrees` (S, q, B) of directions, added: (S, m, B), (S, w, B)."""
+        first, bent = degrees.split([len(self.straight), self.bend.shape[1]], dim=1)
+        bent = BEND_SIZE * bent
+        action, white = (self.bend * bent[:, :, None]).sum(1), (self.bend_white * bent[:, :, None]).sum(1)
+        columns = zip(self.straight, self.straight_white, self.along, first.split(1, dim=1), strict=True)
+        for column, column_white, along, entry in columns:
+            share = entry - (along * bent).sum(1, keepdim=True)
+            action, white = action + share * column, white + share * column_white
+        return action, white
+
+    def columns(self) -> Tensor:
+        """M_1(c), M_3(c), ... side by side, (S, q, m, B)."""
+        bend = self.bend
+        for column, along in zip(self.straight, self.along, strict=True):
+            bend = bend - along[:, :, None] * column[:, None]
+        return torch.cat([torch.stack(self.straight, dim=1), BEND_SIZE * bend], dim=1)
 
 
 def _geometry(networks: Networks, context: Tensor, joints: int) -> _Geometry:
-    """The matrices in contexts observed by `ToolContexts`, (S, B, ...)."""
+    """The matrices in contexts (S, B, ...) observed by `ToolContexts`."""
     contexts = networks["decoder"][0][0].shape[-2]
     sizes = ToolSizes(contexts, joints, (context.shape[-1] - contexts) // (PLACE + 2 * 6 * joints))
+    raw = mlp(networks["decoder"], context[..., :contexts])
+    latent = raw.shape[-1] // joints // (1 + len(ORDERS))
     jacobian = context[..., sizes.jacobian].unflatten(-1, (sizes.twists, joints))
-    columns = mlp(networks["decoder"], context[..., :contexts]).unflatten(-1, (-1, joints)).mT
-    twists = jacobian @ columns
-    latent = columns.shape[-1] // (1 + len(ORDERS))
+    damping = np.sqrt(DAMPING_M2) * torch.eye(joints, dtype=raw.dtype, device=raw.device)
+    whiten = torch.cat([jacobian.mT, damping.expand(*raw.shape[:2], -1, -1)], dim=-1)
+    white = (raw.unflatten(-1, (-1, joints)) @ whiten).flatten(-2)
+    parts = [latent, latent * len(ORDERS)]
+    first, bend = _pairs_last(raw, joints).split(parts, dim=1)
+    first_white, bend_white = _pairs_last(white, whiten.shape[-1]).split(parts, dim=1)
     straight: list[Tensor] = []
-    straight_twist: list[Tensor] = []
-    bend, bend_twist = BEND_SIZE * columns[..., latent:], BEND_SIZE * twists[..., latent:]
-    for axis in range(latent):
-        column, twist = columns[..., axis], twists[..., axis]
-        for other, other_twist in zip(straight, straight_twist, strict=True):
-            along = inner(column, twist, other, other_twist, DAMPING_M2)
-            column, twist = column - along * other, twist - along * other_twist
-        size = (inner(column, twist, column, twist, DAMPING_M2) + NORM_FLOOR).rsqrt()
-        column, twist = column * size, twist * size
-        along = (twist[..., None] * bend_twist).sum(-2, keepdim=True)
-        along = along + DAMPING_M2 * (column[..., None] * bend).sum(-2, keepdim=True)
-        bend, bend_twist = bend - column[..., None] * along, bend_twist - twist[..., None] * along
-        straight.append(column)
-        straight_twist.append(twist)
-    return _Geometry(
-        torch.cat([torch.stack(straight, dim=-1), bend], dim=-1),
-        torch.cat([torch.stack(straight_twist, dim=-1), bend_twist], dim=-1),
-    )
+    straight_white: list[Tensor] = []
+    for column, column_white in zip(first.unbind(1), first_white.unbind(1), strict=True):
+        for other, other_white in zip(straight, straight_white, strict=True):
+            overlap = (column_white * other_white).sum(1, keepdim=True)
+            column, column_white = column - overlap * other, column_white - overlap * other_white
+        size = (column_white.square().sum(1, keepdim=True) + NORM_FLOOR).rsqrt()
+        straight.append(size * column)
+        straight_white.append(size * column_white)
+    along = [(column[:, None] * bend_white).sum(2) for column in straight_white]
+    return _Geometry(straight, straight_white, bend, bend_white, along)
+
+
+def _pairs_last(rows: Tensor, width: int) -> Tensor:
+    """(S, B, q width) to (S, q, width, B)."""
+    return rows.mT.contiguous().unflatten(1, (-1, width))
 
 
 def _odd_degrees(direction: Tensor) -> Tensor:
-    """As `latentarm.models.homogeneous.runtime.odd_degrees`, in torch."""
+    """As `latentarm.models.homogeneous.runtime.odd_degrees`, in torch, of directions (S, d, ...)."""
     twice = 4 * direction.square() - 2
     before, degree, parts = direction, direction, [direction]
     for _ in ORDERS:
         before, degree = degree, twice * degree - before
         parts.append(degree)
-    return torch.cat(parts, dim=-1)
+    return torch.cat(parts, dim=1)
 
 
 def _decoded(geometry: _Geometry, latent: Tensor) -> Tensor:
     """Phi of latents (S, B, d): (S, B, m)."""
-    radius = torch.linalg.vector_norm(latent, dim=-1, keepdim=True)
-    degrees = _odd_degrees(latent / radius.clamp_min(NORM_FLOOR))
-    led, twist = applied(geometry.columns, degrees), applied(geometry.twists, degrees)
-    return radius * led * (inner(led, twist, led, twist, DAMPING_M2) + NORM_FLOOR).rsqrt()
+    pushed = latent.mT
+    radius = torch.linalg.vector_norm(pushed, dim=1, keepdim=True)
+    action, white = geometry.led(_odd_degrees(pushed / radius.clamp_min(NORM_FLOOR)))
+    return (radius * (white.square().sum(1, keepdim=True) + NORM_FLOOR).rsqrt() * action).mT
 
 
 @torch.no_grad()
@@ -174,39 +197,66 @@ def _nearest(geometry: _Geometry, action: Tensor) -> Tensor:
     No gradient flows through the search: at a minimum over z the loss does not change with z, so its gradient
     with respect to the weights is that at fixed z (the envelope theorem).
     """
-    fixed = _directions(geometry.latent_dim).to(action)
-    spacing = np.pi / HALF_TURN
-
-    def explained(direction: Tensor) -> Tensor:
-        """How much of ‖a‖^2 the best push explains, (S, B, K), in directions (K, d) or (S, B, K, d)."""
-        led = geometry.columns @ _odd_degrees(direction).mT
-        along = (led * action[..., None]).sum(-2)
-        return along.square() / (led.square().sum(-2) + NORM_FLOOR)
-
-    best = fixed[explained(fixed).argmax(-1)]
-    for _ in range(REFINEMENTS if geometry.latent_dim > 1 else 0):
-        for axis in range(geometry.latent_dim):
-            towards = torch.zeros_like(best)
-            towards[..., axis] = 1.0
+    columns, target = geometry.columns(), action.mT
+    latent_dim, spacing = len(geometry.straight), np.pi / HALF_TURN
+    best = _best_fixed(columns, target, latent_dim)
+    for _ in range(REFINEMENTS if latent_dim > 1 else 0):
+        for axis in range(latent_dim):
             # Along the sphere; zero where the direction is the axis itself.
-            tangent = _unit(towards - best[..., axis, None] * best)
-            tried = torch.stack([_unit(best + shift * spacing * tangent) for shift in (-1, 0, 1)], dim=-2)
-            less, here, more = explained(tried).unbind(-1)
+            tangent = best * -best[:, axis : axis + 1]
+            tangent[:, axis] += 1.0
+            tangent = _unit(tangent)
+            step = spacing * tangent
+            shrink = (1 + step.square().sum(1, keepdim=True)).rsqrt()
+            tried = torch.stack([(best - step) * shrink, best, (best + step) * shrink], dim=2)
+            less, here, more = _explained(columns, target, tried).unbind(1)
             curvature = 2 * here - less - more
-            vertex = torch.where(curvature > 0, 0.5 * (more - less) / curvature.clamp_min(NORM_FLOOR), 0.0)
-            best = _unit(best + (spacing * vertex.clamp(-1, 1))[..., None] * tangent)
+            vertex = 0.5 * (more - less) / curvature.clamp_min(NORM_FLOOR)
+            vertex = torch.where(curvature > 0, vertex.clamp(-1, 1), 0.0)
+            best = _unit(torch.addcmul(best, vertex[:, None], step))
         spacing /= 4
-    degrees = _odd_degrees(best)
-    led, twist = applied(geometry.columns, degrees), applied(geometry.twists, degrees)
-    size = (inner(led, twist, led, twist, DAMPING_M2) + NORM_FLOOR).sqrt()
-    push = (led * action).sum(-1, keepdim=True) * size / (led.square().sum(-1, keepdim=True) + NORM_FLOOR)
-    return push * best
+    led, white = geometry.led(_odd_degrees(best))
+    size = (white.square().sum(1, keepdim=True) + NORM_FLOOR).sqrt()
+    push = (led * target).sum(1, keepdim=True) * size / (led.square().sum(1, keepdim=True) + NORM_FLOOR)
+    return (push * best).mT
+
+
+def _explained(columns: Tensor, target: Tensor, direction: Tensor) -> Tensor:
+    """How much of ‖a‖^2 the best push explains, (S, K, B).
+
+    Args:
+        columns: (S, q, m, B).
+        target: actions, (S, m, B).
+        direction: K for each, (S, d, K, B).
+    """
+    led = (columns[:, :, :, None] * _odd_degrees(direction)[:, :, None]).sum(1)
+    return (led * target[:, :, None]).sum(1).square() / (led.square().sum(1) + NORM_FLOOR)
+
+
+def _best_fixed(columns: Tensor, target: Tensor, latent_dim: int) -> Tensor:
+    """The directions (S, d, B) among `_directions` that explain most.
+
+    `_explained` of all of them, ``(a^T C e)^2 / ‖C e‖^2``, from ``C^T C`` and ``C^T a`` alone.
+
+    Args:
+        columns: (S, q, m, B).
+        target: actions, (S, m, B).
+        latent_dim: d.
+    """
+    every = torch.cat([columns, target[:, None]], dim=1).permute(0, 3, 1, 2).contiguous()
+    gram = every @ every.mT
+    fixed = _directions(latent_dim).to(target)
+    degrees = _odd_degrees(fixed.mT[None])[0]
+    products = (degrees[:, None] * degrees).flatten(0, 1)
+    along = gram[..., -1, :-1] @ degrees
+    size = gram[..., :-1, :-1].flatten(-2) @ products
+    return fixed[(along.square() / (size + NORM_FLOOR)).max(-1).indices].mT
 
 
 def _unit(vectors: Tensor) -> Tensor:
-    """Vectors (..., d) brought to length 1; those that are nearly zero become zero."""
-    length = torch.linalg.vector_norm(vectors, dim=-1, keepdim=True)
-    return torch.where(length > 1e-6, vectors / length.clamp_min(NORM_FLOOR), torch.zeros_like(vectors))
+    """Vectors (S, d, B) brought to length 1; those that are nearly zero become zero."""
+    length = torch.linalg.vector_norm(vectors, dim=1, keepdim=True)
+    return torch.where(length > 1e-6, vectors / length.clamp_min(NORM_FLOOR), 0.0)
 
 
 def _directions(latent_dim: int) -> Tensor:
