@@ -8,6 +8,7 @@ import torch
 
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.models.catalogue import MODELS
+from latentarm.models.flow.training import LEAST_VARIANCE
 from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
 from latentarm.models.scaling import find_collapsed
 
@@ -54,6 +55,9 @@ def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
     unseen = {  # prices of what is not to be seen from outside
         "isometric": {"bend_weight": 0.0},
         "homogeneous": {"smoothness_weight": 0.0},
+        "odd_cae": {"smoothness_weight": 0.0},
+        "cae_jacobian": {"jacobian_weight": 0.0},
+        "cvae_jacobian": {"jacobian_weight": 0.0},
     }
     model = MODELS[name](seeds=2, epochs=3, hidden=(8,), window=2, **unseen.get(name, {})).fit(demonstrations)
     pairs = make_pairs(demonstrations, 2, 0.0, "state", np.random.default_rng(0))
@@ -66,7 +70,7 @@ def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
         return np.square((wanted - given) / speed).sum(-1).mean(-1)
 
     loss = error(action, model.decode(model.encode(context, action), context))
-    if name in ("vae", "cvae"):
+    if name in ("vae", "cvae", "cvae_jacobian"):
         seen = np.concatenate(
             [(context - tensors["context.centre"]) / tensors["context.scale"], action / speed], -1
         )
@@ -80,6 +84,13 @@ def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
     if name == "cae_zero":
         at_rest = model.decode(np.zeros((len(context), 2)), context)
         loss = loss + model.zero_weight * error(0.0, at_rest)
+    if name == "cae_reversal":
+        z = model.encode(context, action)
+        loss = loss + model.reversal_weight * error(model.decode(z, context), -model.decode(-z, context))
+    if name == "flow":
+        z = (model.encode(context, action) * tensors["latent.scale"][:, None]) ** 2
+        variance = np.exp(2 * (tensors["prior.0.weight"] + tensors["prior.0.bias"])) + LEAST_VARIANCE
+        loss = loss + model.noise**2 * (z / variance + np.log(variance)).sum(-1).mean(-1)
     np.testing.assert_allclose(model.validation_loss_, loss, rtol=1e-4)
 
 

@@ -40,6 +40,27 @@ def mlp(layers: Sequence[Layer], inputs: Tensor) -> Tensor:
     return torch.baddbmm(bias, values, weight)
 
 
+def mlp_along(layers: Sequence[Layer], inputs: Tensor, direction: Tensor) -> tuple[Tensor, Tensor]:
+    """As `mlp`, with the derivative of its output along a direction of its input (forward mode).
+
+    Args:
+        layers: at least one.
+        inputs: (S, B, in).
+        direction: (S, B, in).
+
+    Returns:
+        Output and derivative, (S, B, out) each.
+    """
+    *hidden, (weight, bias) = layers
+    values, slope = inputs, direction
+    for hidden_weight, hidden_bias in hidden:
+        before = torch.baddbmm(hidden_bias, values, hidden_weight)
+        gate = torch.sigmoid(before)
+        values = before * gate
+        slope = torch.bmm(slope, hidden_weight) * (gate + values * (1 - gate))
+    return torch.baddbmm(bias, values, weight), torch.bmm(slope, weight)
+
+
 def group_layers(tensors: Mapping[str, Tensor]) -> dict[str, list[Layer]]:
     """Networks from tensors named ``<network>.<layer>.weight`` and ``.bias``; others are ignored."""
     networks: dict[str, list[Layer]] = {}

@@ -64,7 +64,8 @@ def _latent_sizes(dimensions: Dimensions) -> dict[str, Shape]:
     return {"decoder": (dimensions.latent, *dimensions.hidden, dimensions.action)}
 
 
-def _conditioned_sizes(dimensions: Dimensions) -> dict[str, Shape]:
+def conditioned_sizes(dimensions: Dimensions) -> dict[str, Shape]:
+    """Layer widths of a decoder that takes (z, c)."""
     seen = dimensions.latent + dimensions.context
     return {"decoder": (seen, *dimensions.hidden, dimensions.action)}
 
@@ -98,7 +99,7 @@ CAE: Final = ModelKind(
     look=Look("cAE", "#0072B2", "o", "-"),
     estimator=f"{_TRAINING}:CAE",
     runtime=ConditionedDecoder,
-    decoder=_conditioned_sizes,
+    decoder=conditioned_sizes,
     encoder="deterministic",
     advice=_MOVES.format(name="cae"),
 )
@@ -118,4 +119,27 @@ CAE_ZERO: Final = replace(
     rests_at_zero=True,
     advice="The cae_zero nearly rests but need not go back when the stick is pressed back; for both by"
     " construction try --model homogeneous, or the plainer --model scl.",
+)
+CAE_REVERSAL: Final = replace(
+    CAE,
+    name="cae_reversal",
+    look=Look("cAE, reversal penalty", "#332288", "<", (0.0, (5.0, 1.0, 1.0, 1.0))),
+    estimator=f"{_TRAINING}:CAEReversal",
+    rests_at_zero=True,
+    advice="The cae_reversal nearly rests and nearly goes back when the stick is pressed back; for both by"
+    " construction try --model odd_cae or --model homogeneous.",
+)
+CAE_JACOBIAN: Final = replace(
+    CAE,
+    name="cae_jacobian",
+    look=Look("cAE, Jacobian penalty", "#44AA99", "p", "-."),
+    estimator=f"{_TRAINING}:CAEJacobian",
+    advice=_MOVES.format(name="cae_jacobian"),
+)
+CVAE_JACOBIAN: Final = replace(
+    CVAE,
+    name="cvae_jacobian",
+    look=Look("cVAE, Jacobian penalty", "#117733", ">", "-."),
+    estimator=f"{_TRAINING}:CVAEJacobian",
+    advice=_MOVES.format(name="cvae_jacobian"),
 )

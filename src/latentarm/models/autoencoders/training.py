@@ -1,4 +1,4 @@
-"""Training of AE (equation 6 of the paper), VAE (7), cAE and cVAE (8), and of cAE with a penalty."""
+"""Training of AE (equation 6 of the paper), VAE (7), cAE and cVAE (8), and of these two with a penalty."""
 
 from abc import ABC
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from torch import Tensor
 from latentarm.models.autoencoders import runtime
 from latentarm.models.batches import Batch
 from latentarm.models.kind import ModelKind
-from latentarm.models.networks import Networks, mlp
+from latentarm.models.networks import Networks, mlp, mlp_along
 from latentarm.models.neural import NeuralModel
 from latentarm.models.objectives import kl_divergence, reconstruction_error, sample_latent
 from latentarm.models.parameters import RANGE, Real
@@ -45,11 +45,15 @@ class _Variational(_Autoencoder, ABC):
 
     kl_weight: float = field(default=0.01, metadata={RANGE: Real()})
 
-    def _loss(self, networks: Networks, batch: Batch) -> Tensor:
+    def _drawn(self, networks: Networks, batch: Batch) -> tuple[Tensor, Tensor]:
+        """Latent actions (S, B, d) drawn from the encoder, and what their distribution costs, (S,)."""
         mean, log_variance = self._encoded(networks, batch.context, batch.action).chunk(2, dim=-1)
-        latent = sample_latent(mean, log_variance, batch.noise)
-        error = reconstruction_error(batch.action, self._action(networks, latent, batch.context))
-        return error + self.kl_weight * kl_divergence(mean, log_variance)
+        divergence = self.kl_weight * kl_divergence(mean, log_variance)
+        return sample_latent(mean, log_variance, batch.noise), divergence
+
+    def _bound(self, networks: Networks, batch: Batch) -> Tensor:
+        latent, divergence = self._drawn(networks, batch)
+        return divergence + reconstruction_error(batch.action, self._action(networks, latent, batch.context))
 
     def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
         return self._encoded(networks, context, action).chunk(2, dim=-1)[0]
@@ -110,6 +114,9 @@ class VAE(_Variational):
 
     kind: ClassVar[ModelKind] = runtime.VAE
 
+    def _loss(self, networks: Networks, batch: Batch) -> Tensor:
+        return self._bound(networks, batch)
+
 
 @final
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -121,3 +128,91 @@ class CVAE(_Variational):
     """
 
     kind: ClassVar[ModelKind] = runtime.CVAE
+
+    def _loss(self, networks: Networks, batch: Batch) -> Tensor:
+        return self._bound(networks, batch)
+
+
+@final
+@dataclass(kw_only=True, eq=False, repr=False)
+class CAEReversal(_Deterministic):
+    """cAE with a penalty on motion that the opposite input does not undo.
+
+    ``‖a - phi(z, c)‖^2 + lambda_r ‖phi(z, c) + phi(-z, c)‖^2``: the penalty is zero where phi is odd in z. Of
+    the two ways to an odd decoder in Przystupa et al. (2024, arXiv 2410.21406) this is the soft one, a
+    regulariser on an end-to-end decoder; `SCN` is the other. Our source for the paper is its abstract and
+    what reviews of it say, so the form of the penalty is ours.
+
+    Attributes:
+        reversal_weight: lambda_r.
+    """
+
+    kind: ClassVar[ModelKind] = runtime.CAE_REVERSAL
+    reversal_weight: float = field(default=1.0, metadata={RANGE: Real()})
+
+    def _loss(self, networks: Networks, batch: Batch) -> Tensor:
+        latent = self._latent(networks, batch.context, batch.action)
+        both = torch.cat([batch.context, batch.context], dim=1)
+        action, back = self._action(networks, torch.cat([latent, -latent], dim=1), both).chunk(2, dim=1)
+        error = reconstruction_error(batch.action, action)
+        return error + self.reversal_weight * reconstruction_error(action, -back)
+
+
+def _smooth_error(networks: Networks, latent: Tensor, batch: Batch, weight: float) -> Tensor:
+    """``‖a - phi(z, c)‖^2 + lambda_J ‖d phi / d s‖_F^2``, (S,); the norm is estimated.
+
+    Each pair is asked for one column of the Jacobian, in turn by its place in the batch: over the shuffles
+    of training, the mean of its square times n is the squared Frobenius norm. This is the estimator of
+    Hoffman et al. (Robust Learning with Jacobian Regularization, 2019, arXiv 1908.02729) with axes of the
+    input for its random directions of the output.
+    """
+    pairs, joints = batch.action.shape[1:]
+    seen = torch.cat([latent, batch.context], dim=-1)
+    along = torch.zeros_like(seen)
+    rows = torch.arange(pairs, device=seen.device)
+    along[:, rows, latent.shape[-1] + rows % joints] = 1.0
+    action, slope = mlp_along(networks["decoder"], seen, along)
+    change = joints * slope.square().sum(dim=(1, 2)) / pairs
+    return reconstruction_error(batch.action, action) + weight * change
+
+
+@final
+@dataclass(kw_only=True, eq=False, repr=False)
+class CAEJacobian(_Deterministic):
+    """cAE with a penalty on how fast the decoder changes with the state.
+
+    ``‖a - phi(z, c)‖^2 + lambda_J ‖d phi(z, c) / d s‖_F^2``, both in normalised units. The same push then
+    means nearly the same motion nearby: consistency. It also covers the part of reversal that comes from
+    the change of phi along a motion, in all directions and not only the demonstrated one; the part that
+    comes from phi being uneven in z remains. A penalty on d phi / d z would say nothing: the encoder
+    can make z larger and the derivative smaller at no cost. The contractive autoencoder (Rifai et al.,
+    ICML 2011) penalises the encoder's Jacobian instead, which a person never uses.
+
+    Attributes:
+        jacobian_weight: lambda_J.
+    """
+
+    kind: ClassVar[ModelKind] = runtime.CAE_JACOBIAN
+    jacobian_weight: float = field(default=0.1, metadata={RANGE: Real()})
+
+    def _loss(self, networks: Networks, batch: Batch) -> Tensor:
+        latent = self._latent(networks, batch.context, batch.action)
+        return _smooth_error(networks, latent, batch, self.jacobian_weight)
+
+
+@final
+@dataclass(kw_only=True, eq=False, repr=False)
+class CVAEJacobian(_Variational):
+    """cVAE with the penalty of `CAEJacobian`: ``‖a - phi(z, c)‖^2 + lambda KL + lambda_J ‖d phi / d s‖_F^2``.
+
+    Attributes:
+        kl_weight: lambda. Below 1, as in the paper, to keep the latent space from collapsing.
+        jacobian_weight: lambda_J.
+    """
+
+    kind: ClassVar[ModelKind] = runtime.CVAE_JACOBIAN
+    jacobian_weight: float = field(default=0.1, metadata={RANGE: Real()})
+
+    def _loss(self, networks: Networks, batch: Batch) -> Tensor:
+        latent, divergence = self._drawn(networks, batch)
+        return divergence + _smooth_error(networks, latent, batch, self.jacobian_weight)
