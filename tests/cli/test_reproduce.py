@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from latentarm.models.catalogue import MODELS
 from latentarm.studies.properties.preset import PRESETS, Preset
 from latentarm.studies.shared_autonomy.cell import TASKS
 from latentarm.studies.shared_autonomy.study import STUDY as SHARED_AUTONOMY
@@ -36,7 +35,7 @@ def test_the_properties_for_people(run: Run, workplace: Path, monkeypatch: pytes
     assert code == 0
     assert "reach, simulated" in out
     assert "reproduced/properties/results.md" in out
-    assert f"{len(MODELS)} cells" in err
+    assert f"{len(TINY.models)} cells" in err
     assert rows_in(Path("reproduced/properties/results.json"))
 
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from latentarm.metrics.measures import MEASURES
-from latentarm.models.catalogue import MODELS
 from latentarm.studies.properties.cell import Cell, measure_cell
 from latentarm.studies.properties.preset import Preset
 from latentarm.tasks.planar.catalogue import MOTIONS
@@ -57,7 +56,7 @@ def test_every_task_has_its_measures_one_figure_a_seed(task):
             assert np.isfinite(values).all()
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", TINY.models)
 def test_every_model_can_be_measured(model):
     result = measure_cell(cell("circle", model))
     assert result.decoder.kind == model

@@ -1,7 +1,17 @@
 """How large the study is."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
+
+from latentarm.models.catalogue import KINDS
+
+LEFT_OUT: Final = frozenset({"cae_reversal", "cae_jacobian", "cvae_jacobian", "scn", "flow"})
+"""Variants for recorded demonstrations, which `compare` measures; the study has the paper's models, those
+that rest and reverse by construction, and those of plug-ins."""
+
+
+def _models() -> tuple[str, ...]:
+    return tuple(name for name in KINDS.usable() if name not in LEFT_OUT)
 
 
 @dataclass(frozen=True)
@@ -10,6 +20,7 @@ class Preset:
 
     Attributes:
         name: what it is called on the command line.
+        models: names in the catalogue of models; by default all that load but `LEFT_OUT`.
         episodes: demonstrations to train on, of 100 pairs each; the paper trains on 10000 pairs. A fifth of
             them is for validation and decides which epoch is best.
         test_episodes: further demonstrations, that figures are taken on (drives into the goal region have
@@ -28,6 +39,7 @@ class Preset:
     """
 
     name: str
+    models: tuple[str, ...] = field(default_factory=_models)
     episodes: int = 100
     test_episodes: int = 20
     seeds: int = 10

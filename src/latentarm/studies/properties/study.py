@@ -6,7 +6,6 @@ from itertools import product
 from typing import TYPE_CHECKING, Final
 
 from latentarm.metrics.summary import Subject, summarise
-from latentarm.models.catalogue import KINDS
 from latentarm.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm.studies.page import render_page
 from latentarm.studies.properties.cell import Cell, CellResult, condition, measure_cell
@@ -36,7 +35,7 @@ def _measure(request: Request[Preset], grid: Grid) -> list[CellResult]:
     # Without noise most is measured: these take longest, and begin first.
     cells = [
         Cell(task, model, noise_rad, request.preset, request.seed)
-        for noise_rad, task, model in product(request.preset.noises_rad, request.tasks, KINDS.usable())
+        for noise_rad, task, model in product(request.preset.noises_rad, request.tasks, request.preset.models)
     ]
     return grid.run("Models on tasks under noise", measure_cell, cells, _label)
 
