@@ -13,8 +13,8 @@ from latentarm.demonstrations.pairs import make_pairs
 from latentarm.models.batches import Batch
 from latentarm.models.homogeneous.runtime import DAMPING_M2, ORDERS, odd_degrees
 from latentarm.models.homogeneous.training import Homogeneous
-from latentarm.models.model import AHEAD_S
 from latentarm.models.networks import group_layers
+from latentarm.models.prepared import AHEAD_S
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M
 from latentarm.robots.planar import planar
 

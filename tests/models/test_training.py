@@ -295,3 +295,15 @@ def _first(episode, samples):
         "timestamp": episode.timestamp[:samples],
         "extras": {name: values[:samples] for name, values in episode.extras.items()},
     }
+
+
+@pytest.mark.parametrize("name", ["cvae", "homogeneous"])  # noise; a start and a look ahead
+def test_seeds_with_demonstrations_of_their_own_learn_what_each_learns_alone(name, demonstrations, samples):
+    context, z = samples
+    shown = [demonstrations, replace(demonstrations, episodes=demonstrations.episodes[::-1])]
+    together = MODELS[name](seeds=2, seed=7, **SMALL).fit_each(shown, validation=[0])
+    for seed, (one, own) in enumerate(zip(together, shown, strict=True), 7):
+        alone = MODELS[name](seeds=1, seed=seed, **SMALL).fit(own, validation=[0])
+        np.testing.assert_allclose(one.decode(z, context), alone.decode(z, context), rtol=0, atol=1e-9)
+    with pytest.raises(UserError, match="1 data sets for 2 seeds"):
+        MODELS[name](seeds=2, **SMALL).fit_each(shown[:1])

@@ -1,7 +1,7 @@
 """Batches for the training loop, shuffled for each seed separately."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Final, NamedTuple, final
 
 import numpy as np
@@ -41,7 +41,7 @@ class Batch(NamedTuple):
 
 @dataclass(frozen=True)
 class TrainingData:
-    """Normalised pairs, the same for every seed.
+    """Normalised pairs, the same for every seed; or with a leading axis (S, ...), each seed's own.
 
     Attributes:
         context: (N, c), training pairs.
@@ -61,6 +61,20 @@ class TrainingData:
     elsewhere: FloatArray
     later: FloatArray
     validation_later: FloatArray
+
+    @property
+    def own(self) -> bool:
+        """Whether each seed has its own pairs."""
+        return self.context.ndim == 3
+
+    def of_seed(self, index: int) -> "TrainingData":
+        """One seed's pairs, where each has its own."""
+        return TrainingData(*(getattr(self, entry.name)[index] for entry in fields(self)))
+
+
+def _rows(values: Tensor) -> Tensor:
+    """Rows (N, k) as they are, and those of S seeds (S, N, k) one seed after the other."""
+    return values.flatten(0, -2)
 
 
 def seed_generator(seed: int, stream: int) -> torch.Generator:
@@ -89,17 +103,17 @@ class Batches:
             return torch.from_numpy(values).float().to(device)
 
         self._seeds, self._noise_dim, self._device = tuple(seeds), noise_dim, device
-        self._context, self._action = tensor(data.context), tensor(data.action)
-        self._pairs = len(data.context)
-        self._elsewhere, self._later = tensor(data.elsewhere), tensor(data.later)
-        self._rows = min(ELSEWHERE, len(data.elsewhere))
+        self._context, self._action = _rows(tensor(data.context)), _rows(tensor(data.action))
+        self._elsewhere, self._later = _rows(tensor(data.elsewhere)), _rows(tensor(data.later))
+        self._own, self._pairs, self._places = data.own, data.context.shape[-2], data.elsewhere.shape[-2]
+        self._rows = min(ELSEWHERE, self._places)
         self.size = max(1, min(batch_size, self._pairs // FEWEST_STEPS))
-        many, validation = len(seeds), len(data.validation_context)
+        many, validation = len(seeds), data.validation_context.shape[-2]
         self.validation = Batch(
             context=tensor(data.validation_context).expand(many, -1, -1).contiguous(),
             action=tensor(data.validation_action).expand(many, -1, -1).contiguous(),
             noise=torch.zeros(many, validation, noise_dim, device=device),
-            elsewhere=self._elsewhere[:ELSEWHERE_JUDGED].expand(many, -1, -1).contiguous(),
+            elsewhere=tensor(data.elsewhere)[..., :ELSEWHERE_JUDGED, :].expand(many, -1, -1).contiguous(),
             later=tensor(data.validation_later).expand(many, -1, -1).contiguous(),
         )
 
@@ -117,9 +131,11 @@ class Batches:
             )
             noise[:, index] = torch.randn(steps, size, self._noise_dim, generator=generator)
             if self._rows:
-                places[:, index] = torch.randint(
-                    len(self._elsewhere), (steps, self._rows), generator=generator
-                )
+                places[:, index] = torch.randint(self._places, (steps, self._rows), generator=generator)
+        if self._own:
+            # Each seed's rows follow those of the seed before it.
+            seed = torch.arange(many)[:, None]
+            order, places = order + seed * self._pairs, places + seed * self._places
         order, noise = order.to(self._device).view(steps, many * size), noise.to(self._device)
         width = self._elsewhere.shape[-1]
         places = places.to(self._device).view(steps, many * self._rows)

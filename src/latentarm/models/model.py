@@ -31,13 +31,11 @@ from latentarm.models.parameters import (
     check_rows,
     check_validation,
 )
+from latentarm.models.prepared import Preparation, Prepared, prepare
 from latentarm.models.saving import write_model
 from latentarm.models.scaling import (
     EFFECT_SAMPLES,
     CollapseWarning,
-    Normaliser,
-    action_normaliser,
-    context_normaliser,
     describe_collapse,
     effect_of_dimensions,
     find_collapsed,
@@ -45,17 +43,13 @@ from latentarm.models.scaling import (
     unit_scale,
 )
 from latentarm.models.term import LossTerm, ScaledTerm
-from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.torch_decoder import TorchDecoder
 from latentarm.models.training import Report, TrainingResult
 from latentarm.robots.catalogue import load_recorded_robot
-from latentarm.types import BoolArray, Demonstrations, FloatArray, Pairs, StrPath
+from latentarm.types import BoolArray, Demonstrations, FloatArray, StrPath
 
 ROWS_AT_ONCE: Final = 4096
 """Pairs encoded or decoded at a time, so that memory does not grow with the dataset."""
-
-AHEAD_S: Final = 0.1
-"""How far ahead models look (those that do), s: as long as a short press of the stick."""
 
 Weights = Mapping[str, FloatArray]
 
@@ -185,21 +179,10 @@ class LatentActionModel(BaseEstimator, ABC):
         Warns:
             CollapseWarning: a latent dimension moves nothing; ``collapsed_`` says which.
         """
-        check_parameters(type(self), self.get_params(deep=False))
-        if validation is None:
-            rng = np.random.default_rng([self.data_seed, 0])
-            validation = [
-                int(index) for index in split_episodes(demonstrations, self.validation_fraction, rng)[1]
-            ]
-        check_validation(validation, len(demonstrations.episodes))
-        rng = np.random.default_rng([self.data_seed, 1])
-        pairs = make_pairs(
-            demonstrations, self.window, self.state_noise_rad, self.context, rng, actions=self.actions
-        )
-        arm = self._arm(demonstrations, chain) if self.kind.sees_tools else None
-        chosen = tuple(int(index) for index in validation)
+        prepared = self._prepared(demonstrations, validation, chain, term)
         saved = None if checkpoint is None else Path(checkpoint)
-        self.trained_ = self._fit_pairs(pairs, chosen, arm, term, saved, report)
+        learned = self._learn(prepared.data, self._dimensions(prepared), prepared.term, saved, report)
+        self.trained_ = self._trained(prepared, learned)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds
             warn(CollapseWarning(describe_collapse(self.kind.name, seeds, self.collapsed_)), stacklevel=2)
@@ -321,62 +304,54 @@ class LatentActionModel(BaseEstimator, ABC):
             raise UserError(f"The arm has {chain.dof} joints and the demonstrations {demonstrations.dof}.")
         return chain
 
-    def _fit_pairs(
+    def _prepared(
         self,
-        pairs: Pairs,
-        validation: tuple[int, ...],
-        arm: Chain | None,
+        demonstrations: Demonstrations,
+        validation: Sequence[int] | None,
+        chain: Chain | None,
         term: LossTerm | None,
-        checkpoint: Path | None,
-        report: Report | None,
-    ) -> TrainedModel:
-        outside = np.isin(pairs.episode, validation)
-        if outside.all() or not outside.any():
+    ) -> Prepared:
+        """Pairs of demonstrations, ready for training; arguments and errors as in `fit`."""
+        check_parameters(type(self), self.get_params(deep=False))
+        if validation is None:
+            rng = np.random.default_rng([self.data_seed, 0])
+            validation = [
+                int(index) for index in split_episodes(demonstrations, self.validation_fraction, rng)[1]
+            ]
+        check_validation(validation, len(demonstrations.episodes))
+        rng = np.random.default_rng([self.data_seed, 1])
+        pairs = make_pairs(
+            demonstrations, self.window, self.state_noise_rad, self.context, rng, actions=self.actions
+        )
+        arm = self._arm(demonstrations, chain) if self.kind.sees_tools else None
+        asked = Preparation(self.kind.damping_m2, self.looks_ahead, self.data_seed)
+        return prepare(asked, pairs, validation, arm, term)
+
+    def _dimensions(self, prepared: Prepared) -> Dimensions:
+        """The sizes of this model on these data.
+
+        Raises:
+            UserError: a latent action is larger than an action.
+        """
+        if self.latent_dim > prepared.joints:
             raise UserError(
-                "The arm moves in none of the training episodes, or in none of the validation episodes."
+                f"A latent action of {self.latent_dim} dimensions is no smaller than the arm's "
+                f"{prepared.joints}: choose at most {prepared.joints}."
             )
-        context, action = pairs.context[~outside], pairs.action[~outside]
-        if not action.any():
-            raise UserError("Every recorded action is zero: take actions from the states (displacement).")
-        tools = len(arm.tools) if arm else 0
-        dimensions = Dimensions(
-            self.seeds, self.latent_dim, context.shape[1], action.shape[1], self.hidden, tools
+        return Dimensions(
+            self.seeds, self.latent_dim, prepared.width, prepared.joints, self.hidden, prepared.tools
         )
-        if dimensions.latent > dimensions.action:
-            raise UserError(
-                f"A latent action of {dimensions.latent} dimensions is no smaller than the arm's "
-                f"{dimensions.action}: choose at most {dimensions.action}."
-            )
-        contexts, actions = _normalisers(arm, self.kind.damping_m2, context, action)
-        shown = contexts.apply(context)
-        elsewhere = shown[:0]
-        if term is not None:
-            rng = np.random.default_rng([self.data_seed, 2])
-            elsewhere = contexts.apply(term.contexts(context, dimensions.action, rng))
-        data = TrainingData(
-            context=shown,
-            action=actions.apply(action),
-            validation_context=contexts.apply(pairs.context[outside]),
-            validation_action=actions.apply(pairs.action[outside]),
-            elsewhere=elsewhere,
-            later=self._later(contexts, context, action),
-            validation_later=self._later(contexts, pairs.context[outside], pairs.action[outside]),
-        )
-        scaled = term and ScaledTerm(
-            term,
-            contexts=contexts.contexts if isinstance(contexts, ToolContexts) else contexts,
-            actions=actions,
-            joints=dimensions.action,
-            speed=float(np.sqrt(np.square(action).sum(axis=1).mean())),
-        )
-        learned = self._learn(data, dimensions, scaled, checkpoint, report)
-        weights = learned.weights
+
+    def _trained(self, prepared: Prepared, learned: TrainingResult) -> TrainedModel:
+        """The trained model: its weights, its normalisers, and the map from z to the input."""
+        weights, data = learned.weights, prepared.data
         latents = self._encode_rows(weights, data.context, data.action)
         centre = np.zeros_like(latents[:, 0]) if self.kind.rests_at_zero else latents.mean(axis=1)
         # A model that searches for z searches within the input's range.
         in_input_units = self.kind.encoder == "nearest"
         scale = unit_scale(latents) if in_input_units else latent_scale(latents, centre)
-        rows = np.linspace(0, len(context) - 1, min(EFFECT_SAMPLES, len(context))).astype(np.int64)
+        many = len(data.context)
+        rows = np.linspace(0, many - 1, min(EFFECT_SAMPLES, many)).astype(np.int64)
         effect = effect_of_dimensions(
             lambda u: self._decode(weights, scale.invert(u), data.context[rows]),
             scale.apply(latents[:, rows]),
@@ -385,33 +360,23 @@ class LatentActionModel(BaseEstimator, ABC):
         return TrainedModel(
             kind=self.kind,
             parameters=self.get_params(deep=False),
-            dimensions=dimensions,
+            dimensions=self._dimensions(prepared),
             tensors={
                 **weights,
-                **contexts.tensors(),
-                "action.scale": actions.scale,
+                **prepared.contexts.tensors(),
+                "action.scale": prepared.actions.scale,
                 "latent.centre": scale.centre[:, 0],
                 "latent.scale": scale.scale[:, 0],
             },
             summary=TrainingSummary(
                 seeds=self.seed_numbers,
-                validation_episodes=validation,
+                validation_episodes=prepared.validation,
                 validation_loss=learned.validation_loss,
                 best_epoch=learned.best_epoch,
                 history=learned.history,
                 collapsed=find_collapsed(effect, latents, gaussian=self.kind.encoder == "gaussian"),
             ),
         )
-
-    def _later(
-        self, contexts: Normaliser | ToolContexts, context: FloatArray, action: FloatArray
-    ) -> FloatArray:
-        """Observations (N, o) where actions (N, m) lead from contexts (N, c); (N, 0) if unused."""
-        if not self.looks_ahead:
-            return context[:, :0]
-        later = context.copy()
-        later[:, : action.shape[1]] += AHEAD_S * action
-        return contexts.apply(later)
 
     def _encode_rows(self, weights: Weights, context: FloatArray, action: FloatArray) -> FloatArray:
         return _in_rows(lambda rows: self._encode(weights, context[rows], action[rows]), len(context))
@@ -425,16 +390,6 @@ class LatentActionModel(BaseEstimator, ABC):
                 f"This {self.kind.name} model is not fitted yet: call fit first, or load a saved one."
             )
         return self.trained_
-
-
-def _normalisers(
-    arm: Chain | None, damping_m2: float | None, context: FloatArray, action: FloatArray
-) -> tuple[Normaliser | ToolContexts, Normaliser]:
-    """Normalisers of contexts and actions; in the metric of an arm's tools if the model has one."""
-    if arm is None or damping_m2 is None:
-        return context_normaliser(context), action_normaliser(action)
-    contexts = ToolContexts.fitted(arm, context, damping_m2)
-    return contexts, contexts.action_normaliser(context, action)
 
 
 def _in_rows(compute: Callable[[slice], FloatArray], rows: int) -> FloatArray:

@@ -2,10 +2,10 @@
 
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import ClassVar, final
+from typing import ClassVar, Self, final
 
 import numpy as np
 import torch
@@ -16,10 +16,11 @@ from latentarm.models.batches import Batch, TrainingData
 from latentarm.models.kind import Dimensions
 from latentarm.models.model import LatentActionModel, Weights
 from latentarm.models.networks import Networks, networks_from_arrays
+from latentarm.models.prepared import side_by_side
 from latentarm.models.scaling import SPAN_QUANTILE
 from latentarm.models.term import ScaledTerm, Span
 from latentarm.models.training import Report, TrainingConfig, TrainingResult, train
-from latentarm.types import FloatArray
+from latentarm.types import Demonstrations, FloatArray
 
 Start = Callable[[TrainingData, Dimensions], dict[str, FloatArray]]
 """From the training pairs to initial weights by name."""
@@ -43,6 +44,52 @@ class NeuralModel(LatentActionModel, ABC):
     @abstractmethod
     def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
         """psi: (S, B, c) and (S, B, m) to (S, B, d); the mean where psi is a distribution."""
+
+    @final
+    def fit_each(
+        self, demonstrations: Sequence[Demonstrations], *, validation: Sequence[int] | None = None
+    ) -> list[Self]:
+        """Learn one seed from each of S data sets, all in one training.
+
+        The result is that of fitting each alone, except that data sets that hold more pairs than the
+        smallest lose their last ones.
+
+        Args:
+            demonstrations: S of them, one for each of this model's seeds.
+            validation: as in `fit`, the same for all.
+
+        Returns:
+            S fitted models of one seed each.
+
+        Raises:
+            UserError: there are not as many data sets as seeds, or as in `fit`.
+        """
+        if len(demonstrations) != self.seeds:
+            raise UserError(
+                f"{len(demonstrations)} data sets for {self.seeds} seeds: give one for each seed."
+            )
+        models = [replace(self, seeds=1, seed=seed) for seed in self.seed_numbers]
+        prepared = [
+            model._prepared(shown, validation, None, None)
+            for model, shown in zip(models, demonstrations, strict=True)
+        ]
+        data = side_by_side([one.data for one in prepared])
+        learned = self._learn(data, self._dimensions(prepared[0]), None, None, None)
+        for index, (model, own) in enumerate(zip(models, prepared, strict=True)):
+            model.trained_ = model._trained(own, learned.of_seed(index))
+        return models
+
+    def _first(self, data: TrainingData, dimensions: Dimensions) -> dict[str, FloatArray] | None:
+        """What `start` says, for each seed on its own pairs where it has its own."""
+        if self.start is None or not data.own:
+            return self.start(data, dimensions) if self.start else None
+        one = replace(dimensions, seeds=1)
+        each = [self.start(data.of_seed(index), one) for index in range(dimensions.seeds)]
+        shapes = self.kind.weight_shapes(one)
+        return {
+            name: np.concatenate([np.broadcast_to(start[name], shapes[name]) for start in each])
+            for name in each[0]
+        }
 
     @final
     def _learn(
@@ -71,7 +118,7 @@ class NeuralModel(LatentActionModel, ABC):
                 checkpoint_interval_s=self.checkpoint_interval_s,
             ),
             device=choose_device(self.device),
-            start=self.start(data, dimensions) if self.start else None,
+            start=self._first(data, dimensions),
             checkpoint=checkpoint,
             identity=json.dumps({"kind": self.kind.name, **identity}, sort_keys=True),
             report=report,

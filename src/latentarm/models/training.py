@@ -64,6 +64,16 @@ class TrainingResult:
     best_epoch: IntArray
     history: FloatArray
 
+    def of_seed(self, index: int) -> "TrainingResult":
+        """The result of one of the S seeds, by its index."""
+        one = slice(index, index + 1)
+        return TrainingResult(
+            weights={name: values[one] for name, values in self.weights.items()},
+            validation_loss=self.validation_loss[one],
+            best_epoch=self.best_epoch[one],
+            history=self.history[:, one],
+        )
+
 
 def train(
     objective: Callable[[Networks, Batch], Tensor],

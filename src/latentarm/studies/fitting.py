@@ -2,11 +2,12 @@
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any, Final
 
 from latentarm.models.catalogue import MODELS
 from latentarm.models.model import LatentActionModel
+from latentarm.models.neural import NeuralModel
 from latentarm.models.scaling import CollapseWarning
 from latentarm.types import Demonstrations
 
@@ -43,10 +44,51 @@ def fit_model(
     Raises:
         UserError: the parameters or the demonstrations make no sense to the model.
     """
-    model_class = MODELS[kind]
-    if kl_weight is not None and "kl_weight" in {entry.name for entry in fields(model_class)}:
-        parameters["kl_weight"] = kl_weight
     with warnings.catch_warnings():
         # Studies show what models fail at: a dead axis shows in every figure.
         warnings.simplefilter("ignore", CollapseWarning)
-        return model_class(**parameters).fit(demonstrations, validation=validation, **(fit or {}))
+        return _model(kind, kl_weight, parameters).fit(demonstrations, validation=validation, **(fit or {}))
+
+
+def fit_each(
+    kind: str,
+    demonstrations: Sequence[Demonstrations],
+    *,
+    validation: Sequence[int],
+    seed: int,
+    kl_weight: float | None = None,
+    **parameters: Any,
+) -> list[LatentActionModel]:
+    """Models of a kind, each fitted to demonstrations of its own; those trained by gradient in one training.
+
+    Args:
+        kind: a name of `MODELS`.
+        demonstrations: what each of them learns from.
+        validation: episodes that say which epoch was best, the same for all.
+        seed: of the first; the others follow.
+        kl_weight: for models that have one.
+        parameters: of the model.
+
+    Returns:
+        As many models of one seed each as there are demonstrations.
+
+    Raises:
+        UserError: the parameters or the demonstrations make no sense to the model.
+    """
+    model = _model(kind, kl_weight, {**parameters, "seed": seed, "seeds": len(demonstrations)})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CollapseWarning)
+        if isinstance(model, NeuralModel):
+            return [*model.fit_each(demonstrations, validation=validation)]
+        return [
+            replace(model, seeds=1, seed=number).fit(shown, validation=validation)
+            for number, shown in zip(model.seed_numbers, demonstrations, strict=True)
+        ]
+
+
+def _model(kind: str, kl_weight: float | None, parameters: dict[str, Any]) -> LatentActionModel:
+    """A model of a kind, with a KL weight if it has one."""
+    model_class = MODELS[kind]
+    if kl_weight is not None and "kl_weight" in {entry.name for entry in fields(model_class)}:
+        parameters = {**parameters, "kl_weight": kl_weight}
+    return model_class(**parameters)

@@ -1,0 +1,148 @@
+"""Context-action pairs made ready for training: split, observed and normalised."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.kinematics.chain import Chain
+from latentarm.models.batches import TrainingData
+from latentarm.models.scaling import Normaliser, action_normaliser, context_normaliser
+from latentarm.models.term import LossTerm, ScaledTerm
+from latentarm.models.tool_contexts import ToolContexts
+from latentarm.types import FloatArray, Pairs
+
+AHEAD_S: Final = 0.1
+"""How far ahead models look (those that do), s: as long as a short press of the stick."""
+
+
+@final
+@dataclass(frozen=True)
+class Preparation:
+    """What a model asks of its data.
+
+    Attributes:
+        damping_m2: see `ModelKind.damping_m2`.
+        looks_ahead: whether its loss looks at the context that an action leads to within `AHEAD_S`.
+        data_seed: draws the contexts of a term.
+    """
+
+    damping_m2: float | None
+    looks_ahead: bool
+    data_seed: int
+
+
+@final
+@dataclass(frozen=True)
+class Prepared:
+    """One data set, ready for training.
+
+    Attributes:
+        data: normalised pairs.
+        contexts: from contexts as recorded to those of ``data``.
+        actions: from actions in rad/s to those of ``data``.
+        joints: m, joints that an action moves.
+        width: c, features of a context as recorded.
+        tools: k, end-effectors that the model looks at.
+        validation: episodes that decide when training stops.
+        term: the further term of the loss, or None.
+    """
+
+    data: TrainingData
+    contexts: Normaliser | ToolContexts
+    actions: Normaliser
+    joints: int
+    width: int
+    tools: int
+    validation: tuple[int, ...]
+    term: ScaledTerm | None
+
+
+def prepare(
+    asked: Preparation, pairs: Pairs, validation: Sequence[int], arm: Chain | None, term: LossTerm | None
+) -> Prepared:
+    """Split pairs by episode and normalise them by the training episodes alone.
+
+    Args:
+        asked: what the model asks of its data.
+        pairs: of all episodes.
+        validation: indices of the episodes that decide when training stops.
+        arm: the arm's kinematics, for models that look at the tools.
+        term: is minimised together with the model's own loss.
+
+    Raises:
+        UserError: on one side of the split nothing moves, or every action is zero.
+    """
+    outside = np.isin(pairs.episode, validation)
+    if outside.all() or not outside.any():
+        raise UserError(
+            "The arm moves in none of the training episodes, or in none of the validation episodes."
+        )
+    context, action = pairs.context[~outside], pairs.action[~outside]
+    if not action.any():
+        raise UserError("Every recorded action is zero: take actions from the states (displacement).")
+    contexts, actions = _normalisers(arm, asked.damping_m2, context, action)
+    shown, joints = contexts.apply(context), action.shape[1]
+    elsewhere = shown[:0]
+    if term is not None:
+        rng = np.random.default_rng([asked.data_seed, 2])
+        elsewhere = contexts.apply(term.contexts(context, joints, rng))
+
+    def later(before: FloatArray, taken: FloatArray) -> FloatArray:
+        """Observations (N, o) where actions (N, m) lead from contexts (N, c); (N, 0) if unused."""
+        if not asked.looks_ahead:
+            return before[:, :0]
+        after = before.copy()
+        after[:, :joints] += AHEAD_S * taken
+        return contexts.apply(after)
+
+    return Prepared(
+        data=TrainingData(
+            context=shown,
+            action=actions.apply(action),
+            validation_context=contexts.apply(pairs.context[outside]),
+            validation_action=actions.apply(pairs.action[outside]),
+            elsewhere=elsewhere,
+            later=later(context, action),
+            validation_later=later(pairs.context[outside], pairs.action[outside]),
+        ),
+        contexts=contexts,
+        actions=actions,
+        joints=joints,
+        width=context.shape[1],
+        tools=len(arm.tools) if arm else 0,
+        validation=tuple(int(episode) for episode in validation),
+        term=term
+        and ScaledTerm(
+            term,
+            contexts=contexts.contexts if isinstance(contexts, ToolContexts) else contexts,
+            actions=actions,
+            joints=joints,
+            speed=float(np.sqrt(np.square(action).sum(axis=1).mean())),
+        ),
+    )
+
+
+def side_by_side(data_sets: Sequence[TrainingData]) -> TrainingData:
+    """Data sets of S seeds as one, with a leading seed axis.
+
+    Where they differ in length, those that are longer lose their last pairs.
+    """
+    stacked: dict[str, FloatArray] = {}
+    for field in fields(TrainingData):
+        arrays: list[FloatArray] = [getattr(data, field.name) for data in data_sets]
+        shortest = min(map(len, arrays))
+        stacked[field.name] = np.stack([array[:shortest] for array in arrays])
+    return TrainingData(**stacked)
+
+
+def _normalisers(
+    arm: Chain | None, damping_m2: float | None, context: FloatArray, action: FloatArray
+) -> tuple[Normaliser | ToolContexts, Normaliser]:
+    """Normalisers of contexts and actions; in the metric of an arm's tools if the model has one."""
+    if arm is None or damping_m2 is None:
+        return context_normaliser(context), action_normaliser(action)
+    contexts = ToolContexts.fitted(arm, context, damping_m2)
+    return contexts, contexts.action_normaliser(context, action)
