@@ -141,6 +141,13 @@ MEASURES: Final[dict[str, Measure]] = {
     ),
     "tool_turn": Measure("1", "tool's turn per stick's", "lower", "the same of the tool's velocity"),
     "tool_turn_p95": Measure("1", "tool's turn per stick's, 95 %", "lower", "95th percentile of these"),
+    "nonlinearity": Measure(
+        "1",
+        "not linear in z",
+        None,
+        "share of the motion's variance, over 36 pushes of the stick, that is not linear in z; the motion at"
+        " rest does not count",
+    ),
     "findings": Measure("1", "findings", "lower", "how many thresholds of the verdict the model misses"),
     "success_rate": Measure("1", "success rate", "higher", "share of the drives that did the task"),
     "time_s": Measure("s", "time", "lower", "duration of a drive, failed ones included"),

@@ -23,6 +23,7 @@ class _Runtime(Runtime):
 
     def __init__(self, trained: TrainedModel, seed: int) -> None:
         d, self._joints = trained.dimensions.latent, trained.dimensions.action
+        self._mirrors = [slice(axis * self._joints, (axis + 1) * self._joints) for axis in range(d)]
         self._gain: FloatArray = trained.latents.scale[seed, 0] * trained.actions.scale
         turn = layers_of(trained, seed)
         (self._turn, self._turn_bias), *self._turns = halve_hidden(
@@ -40,15 +41,16 @@ class _Runtime(Runtime):
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
         """See `Runtime`."""
         here = context @ self._from_context + self._shift_bias
-        pushed = z @ self._from_latent + here
-        pushed, still = propagate(np.stack([pushed, np.broadcast_to(here, pushed.shape)]), self._shifts)
-        action = np.concatenate(
-            [np.broadcast_to(z * self._gain, (*pushed.shape[:-1], len(self._gain))), pushed - still], axis=-1
-        )
+        shift = propagate(z @ self._from_latent + here, self._shifts) - propagate(here, self._shifts)
+        d = len(self._gain)
+        action = np.empty((*shift.shape[:-1], self._joints))
+        action[..., :d] = z * self._gain
+        action[..., d:] = shift
         normals = propagate(context @ self._turn + self._turn_bias, self._turns)
-        for normal in np.split(normals, len(self._gain), axis=-1):
+        for part in self._mirrors:
+            normal = normals[..., part]
             share = 2 * np.vecdot(normal, action) / (np.vecdot(normal, normal) + NORM_FLOOR)
-            action = action - share[..., None] * normal
+            action -= share[..., None] * normal
         return action
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from latentarm.metrics.controllability import ReachConfig
 from latentarm.metrics.evaluation import EvaluationConfig, measure
 from latentarm.metrics.measures import MEASURES
+from latentarm.metrics.nonlinearity import nonlinearity
 from latentarm.metrics.samples import moving_episodes, spread_contexts, start_goal_pairs
 from latentarm.metrics.shooting import ShootingConfig, planned_reach
 from latentarm.metrics.turning import turning
@@ -38,6 +39,7 @@ MEASURED: Final = (
     "motion_turn_p95",
     "tool_turn",
     "tool_turn_p95",
+    "nonlinearity",
 )
 """Every measure in the order of the tables."""
 
@@ -88,7 +90,7 @@ def measure_model(
     measured = measure(model, demonstrations, held_out, robot, rng=rng, config=config)
     figures = dict(measured.per_seed)
     episodes = moving_episodes(demonstrations, held_out)
-    figures |= _turning(model, spread_contexts(episodes, "state", preset.turned_states), robot)
+    figures |= _around_the_stick(model, spread_contexts(episodes, "state", preset.turned_states), robot)
     measure_s = perf_counter() - began
 
     began = perf_counter()
@@ -110,7 +112,7 @@ def measure_model(
     return Measured({name: figures[name] for name in MEASURED if name in figures}, measure_s, plan_s)
 
 
-def _turning(model: LatentActionModel, contexts: FloatArray, robot: Robot) -> dict[str, FloatArray]:
+def _around_the_stick(model: LatentActionModel, contexts: FloatArray, robot: Robot) -> dict[str, FloatArray]:
     decoders = [model.decoder(seed) for seed in range(model.seeds)]
     turned = turning(decoders, contexts, robot.chain)
     figures: dict[str, FloatArray] = {}
@@ -118,6 +120,7 @@ def _turning(model: LatentActionModel, contexts: FloatArray, robot: Robot) -> di
         flat = values.reshape(len(values), -1)
         figures[name] = np.nanmean(flat, axis=1)
         figures[f"{name}_p95"] = np.nanpercentile(flat, JUMPY, axis=1)
+    figures["nonlinearity"] = np.nanmean(nonlinearity(decoders, contexts), axis=1)
     return figures
 
 
