@@ -5,55 +5,30 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from latentarm.alignment.affine import AffineAlignment
 from latentarm.alignment.answers import Motions
-from latentarm.alignment.contract import identity
 from latentarm.alignment.demonstrated import demonstrated_motions, noticeable
-from latentarm.alignment.error import lengths
-from latentarm.alignment.queries import (
-    StoppingRule,
-    bootstrap,
-    disagreement,
-    disagreement_share,
-    next_motion,
-    novelty,
-)
+from latentarm.alignment.queries import Design, StoppingRule, next_motion
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode
 
-MIRROR = AffineAlignment(np.diag([1.0, -1.0]), np.zeros(2))
+
+def test_what_was_asked_or_its_opposite_teaches_little_and_another_direction_much(slides):
+    """Slides: poses are states."""
+    way = np.array([[0.1, 0, 0], [0.1, 0, 0], [-0.1, 0, 0], [0, 0.09, 0]])
+    design = Design(slides.chain, Motions(np.zeros((4, 3)), way, 0.5))
+    first = design.worth([])
+    np.testing.assert_allclose(first[:3], first[0])
+    assert next_motion(first, []) == 0  # it tells of three motions
+    after = design.worth([0])
+    assert after[:3].max() < 0.05 * after[3]
+    assert next_motion(after, [0]) == 3
+    assert design.worth([0, 3]).max() < 0.05 * first[0]
 
 
-@pytest.fixture
-def axes(slides, columns):
-    """Motions that the two axes of the linear decoder make."""
-    start = np.zeros((2, 3))
-    return Motions(start, start + 0.5 * columns, 0.5)
-
-
-def test_those_who_are_alike_agree(linear_model, slides, axes):
-    apart = disagreement([identity, identity, identity], linear_model.decoder(), slides.chain, axes)
-    np.testing.assert_array_equal(apart, 0)
-
-
-def test_they_disagree_about_the_motion_that_they_read_differently(linear_model, slides, axes, columns):
-    apart = disagreement([identity, MIRROR], linear_model.decoder(), slides.chain, axes)
-    assert apart[0] == pytest.approx(0, abs=1e-9)
-    # Each would go the opposite way at the other's answer: twice the motion, in half of all pairs.
-    assert apart[1] == pytest.approx(2 * 0.5 * np.linalg.norm(columns[1]) / np.sqrt(2))
-    assert next_motion(apart, asked=[]) == 1
-    share = disagreement_share(apart, slides.chain, axes)
-    assert share == pytest.approx(np.linalg.norm(apart) / np.linalg.norm(lengths(slides.chain, axes)))
-
-
-def test_inputs_that_do_the_same_are_no_disagreement(linear_model, slides, axes, columns):
-    """Where the second axis moves nothing, what is thought of it does not matter."""
-    model = replace(linear_model)
-    tensors = dict(linear_model.trained_.tensors)
-    tensors["decoder.0.weight"] = tensors["decoder.0.weight"] * np.array([[1.0], [0.0]])
-    model.trained_ = replace(linear_model.trained_, tensors=tensors)
-    apart = disagreement([identity, MIRROR], model.decoder(), slides.chain, axes)
-    np.testing.assert_allclose(apart, 0, atol=1e-9)
+def test_the_same_direction_in_another_place_teaches_more_than_in_the_same(slides):
+    start = np.array([[0.0, 0, 0], [0.01, 0, 0], [0.8, 0, 0]])
+    worth = Design(slides.chain, Motions(start, start + np.array([0, 0.1, 0]), 0.5)).worth([0])
+    assert worth[2] > 1.5 * worth[1]
 
 
 def test_nothing_is_asked_twice():
@@ -64,40 +39,6 @@ def test_nothing_is_asked_twice():
         assert asked[-1] == expected
     with pytest.raises(UserError, match="All 3 motions"):
         next_motion(apart, asked)
-
-
-def test_what_is_alike_or_opposite_is_not_new(slides):
-    """Slides: poses are states, and the length of a motion is that of its way."""
-    start = np.zeros((5, 3))
-    start[4] = [0.4, 0.0, 0.0]
-    way = np.array([[0.1, 0, 0], [0.1, 0, 0], [-0.1, 0, 0], [0, 0.3, 0], [0.1, 0, 0]])
-    motions = Motions(start, start + way, 0.5)
-    longest = novelty(slides.chain, motions, [])
-    assert next_motion(longest, []) == 3
-    np.testing.assert_allclose(longest / longest[0], [1, 1, 1, 3, 1])
-    beside = novelty(slides.chain, motions, [0])
-    np.testing.assert_allclose(beside[:3], 0, atol=1e-12)
-    assert beside[3] > 0
-    assert beside[4] > 0
-    # The nearest of all that were asked about counts.
-    np.testing.assert_allclose(novelty(slides.chain, motions, [0, 3, 4]), 0, atol=1e-12)
-
-
-def test_motions_from_one_place_are_told_apart_by_their_way(slides):
-    start = np.zeros((2, 3))
-    motions = Motions(start, np.array([[0.1, 0, 0], [0, 0.1, 0]]), 0.5)
-    assert novelty(slides.chain, motions, [0])[1] == pytest.approx(np.sqrt(2))
-
-
-def test_a_bootstrap_repeats_what_was_answered(answered):
-    answers = answered(4, count=6)
-    drawn = bootstrap(answers, 20, np.random.default_rng(0))
-    pairs = {(tuple(start), tuple(u)) for start, u in zip(answers.motions.start, answers.u, strict=True)}
-    for one in drawn:
-        assert len(one) == 6
-        own = {(tuple(start), tuple(u)) for start, u in zip(one.motions.start, one.u, strict=True)}
-        assert own <= pairs
-    assert len({one.u.tobytes() for one in drawn}) > 10
 
 
 @pytest.mark.parametrize(

@@ -129,9 +129,42 @@ def test_a_belief_may_belong_to_the_context(swings, arm, answered):
     assert alignment.context_dim == 6
 
 
+def test_of_all_weights_those_are_kept_that_miss_the_held_out_answers_least(curved_model, arm, answered):
+    """Two answers train for long, and any weights learned from them miss eight others more and more."""
+    answers = answered(4, count=10)
+    unlabelled = answers.motions.context
+    decoder = curved_model.decoder()
+    errors = {
+        held_out: relative_alignment_error(
+            fit_alignments(
+                curved_model,
+                arm.chain,
+                [answers],
+                unlabelled,
+                FitConfig(NO_PRIORS, hidden=(32,), steps=1000, learning_rate=0.03, held_out=held_out),
+            ).best,
+            decoder,
+            arm.chain,
+            answers[np.arange(2, 10)],
+        )
+        for held_out in (0.0, 0.8)
+    }
+    trained_on_all, chosen = errors[0.0], errors[0.8]
+    short = FitConfig(NO_PRIORS, hidden=(32,), steps=1000, learning_rate=0.03)
+    (long,) = fit_alignments(curved_model, arm.chain, [answers[np.arange(2)]], unlabelled, short).alignments
+    assert trained_on_all < chosen
+    assert chosen < relative_alignment_error(long, decoder, arm.chain, answers[np.arange(2, 10)])
+
+
 def test_what_cannot_be_learned_is_refused(curved_model, arm, answered):
     answers = answered(4)
-    for wrong in ({"steps": 0}, {"batch_size": 0}, {"hidden": (8, 0)}, {"learning_rate": float("nan")}):
+    for wrong in (
+        {"steps": 0},
+        {"batch_size": 0},
+        {"hidden": (8, 0)},
+        {"learning_rate": float("nan")},
+        {"held_out": 1.0},
+    ):
         with pytest.raises(UserError):
             FitConfig(**wrong)
     with pytest.raises(UserError, match="no seed index 2"):

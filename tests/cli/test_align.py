@@ -3,28 +3,17 @@
 import io
 import json
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from latentarm.alignment.training import FitConfig
 from latentarm.commands import align as aligning
-from latentarm.runs import aligning as learning
-from latentarm.runs import questions
 from result_rows import rows_in
 
 Run = Callable[..., tuple[int, str, str]]
 
 ALIGN = ("align", "mine", "--name", "ada")
-
-
-@pytest.fixture
-def hurried(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Alignments are hardly learned, where a test is not about what was learned."""
-    monkeypatch.setattr(learning, "FitConfig", partial(FitConfig, steps=20))
-    monkeypatch.setattr(questions, "QUICK", FitConfig(steps=20))
 
 
 def errors(document: str) -> dict[str, float]:
@@ -68,7 +57,6 @@ def test_a_simulated_person_is_asked_and_drives(run: Run, trained: Path) -> None
     assert driven["with"] != driven["without"]
 
 
-@pytest.mark.usefixtures("hurried")
 def test_json_is_one_document_and_the_same_seed_gives_the_same(run: Run, trained: Path) -> None:
     outs = []
     for name in ("one", "two"):
@@ -90,7 +78,6 @@ def typed(monkeypatch: pytest.MonkeyPatch, *lines: str) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO("".join(f"{line}\n" for line in lines)))
 
 
-@pytest.mark.usefixtures("hurried")
 def test_a_person_answers_in_lines(run: Run, trained: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     typed(monkeypatch, "0.5 -1", "", "left", "2 0", "0.5", "nan 0", "0, 0.25", "\x1b[A\x1b[A\x1b[D")
     code, out, err = run(*ALIGN, "--answers", 3)
@@ -106,16 +93,15 @@ def test_a_person_answers_in_lines(run: Run, trained: Path, monkeypatch: pytest.
     assert len(np.unique(config["answers"]["start"], axis=0)) == 3
 
 
-@pytest.mark.usefixtures("hurried")
 def test_no_more_is_asked_when_enough_is_known(
     run: Run, trained: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(aligning.StoppingRule, "enough", lambda self, history: len(history) == 2)
     code, out, _ = run(*ALIGN, "--simulated", "--answers", 9)
     assert code == 0
-    # After three answers there is a first disagreement, after four a second.
-    assert out.count("Question ") == 4
-    assert "4 answers of a simulated person are enough" in out
+    # After two answers it is first known how much is unknown, after three again.
+    assert out.count("Question ") == 3
+    assert "3 answers of a simulated person are enough" in out
 
 
 def test_an_input_that_ends_saves_nothing(run: Run, trained: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -165,7 +151,6 @@ def test_what_cannot_be_aligned_is_refused(run: Run, trained: Path) -> None:
     assert not (trained / "profiles").exists()
 
 
-@pytest.mark.usefixtures("hurried")
 def test_a_name_is_given_once_and_for_one_model(run: Run, trained: Path) -> None:
     assert run(*ALIGN, "--simulated", "--answers", 1)[0] == 0
     code, _, err = run(*ALIGN, "--simulated")

@@ -8,7 +8,7 @@ from latentarm.alignment.queries import StoppingRule
 from latentarm.errors import UserError
 from latentarm.models.pca.training import PCA
 from latentarm.runs.person import Person
-from latentarm.runs.questions import Scene, ask, unwatched
+from latentarm.runs.questions import Scene, ask
 from latentarm.tasks.table_top import TableTop
 
 NEVER = StoppingRule(share=0.0, patience=100)
@@ -35,8 +35,8 @@ def scene():
     task = TableTop()
     demonstrations = task.demonstrate(4, np.random.default_rng(0))
     chain, rng = task.robot.chain, np.random.default_rng(1)
-    motions, unlabelled = shown(demonstrations, "state", chain, rng)
-    return Scene(PCA(latent_dim=2).fit(demonstrations), 0, chain, motions, unlabelled, rng, unwatched)
+    motions, _ = shown(demonstrations, "state", chain, rng)
+    return Scene(PCA(latent_dim=2).fit(demonstrations), 0, chain, motions)
 
 
 def asked(scene, *replies, count=2):
@@ -73,7 +73,7 @@ def test_back_from_the_first_question_leads_nowhere(scene):
     assert len(answers) == 1
 
 
-def test_going_back_past_what_an_ensemble_was_learned_from(scene):
+def test_going_back_past_what_was_known_after_an_answer(scene):
     answers, _, questions = asked(scene, 0.1, 0.2, 0.3, "back", "back", 0.5, 0.6, 0.7, count=4)
     assert [question.number for question in questions] == [1, 2, 3, 4, 3, 2, 3, 4]
     assert answers.u[:, 0].tolist() == [0.1, 0.5, 0.6, 0.7]
@@ -81,4 +81,4 @@ def test_going_back_past_what_an_ensemble_was_learned_from(scene):
 
 def test_whoever_answers_nothing_teaches_nothing(scene):
     with pytest.raises(UserError, match="No question was answered"):
-        asked(scene, *[None] * len(scene.motions))
+        asked(scene, *[None] * len(scene.candidates))

@@ -17,6 +17,9 @@ DURATION_S: Final = 0.5
 CANDIDATES: Final = 100
 """Motions that may be asked about."""
 
+KEPT: Final = 1000
+"""Motions that say which directions a place has; those that may be asked about are the first of them."""
+
 UNLABELLED: Final = 1000
 """Contexts in which the priors are to hold."""
 
@@ -63,7 +66,7 @@ def shown(
     chain: Chain,
     rng: np.random.Generator,
 ) -> tuple[Motions, FloatArray]:
-    """Motions to ask about that a person can tell from standing still, and contexts (M, c) without an answer.
+    """Motions that a person can tell from standing still, and contexts (M, c) without an answer.
 
     Args:
         demonstrations: those that trained the model, so that others can still judge it.
@@ -74,7 +77,7 @@ def shown(
     Raises:
         UserError: no demonstration moves for long enough, or a belief is asked for and missing.
     """
-    many = demonstrated_motions(demonstrations, CANDIDATES, rng, context=context)
+    many = demonstrated_motions(demonstrations, KEPT, rng, context=context)
     unlabelled = demonstrated_motions(demonstrations, UNLABELLED, rng, context=context).context
     return many[np.flatnonzero(noticeable(many, chain))], unlabelled
 

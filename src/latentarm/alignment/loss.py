@@ -123,6 +123,10 @@ class AlignmentLoss:
         )
         return loss / self._scale
 
+    def missed(self, networks: Networks) -> Tensor:
+        """The supervised part (equation 19) of each run on all of its answers, (S,)."""
+        return supervised(self._push(networks, self._start, self._u), self._wanted) / self._scale
+
     def _push(self, networks: Networks, place: Place, u: Tensor) -> Push:
         """T(s, u) with f as the networks have it."""
         seen = place.observed[..., : self._contexts]

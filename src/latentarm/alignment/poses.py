@@ -34,11 +34,15 @@ def pose_vectors(chain: Chain, state: FloatArray) -> FloatArray:
     Returns:
         (..., 12 k), m.
     """
-    transforms = chain.link_transforms(state)
+    return pose_vectors_at(chain, chain.link_transforms(state))
+
+
+def pose_vectors_at(chain: Chain, transforms: FloatArray) -> FloatArray:
+    """`pose_vectors` when the links' transforms (..., n, 4, 4) are already known."""
     position_weight, rotation_weight = pose_weights(len(chain.tools))
     parts: list[FloatArray] = []
     for tool in range(len(chain.tools)):
         pose = chain.tool_pose(transforms, tool)
         parts.append(position_weight * pose.position)
-        parts.append(rotation_weight * pose.rotation.reshape(*state.shape[:-1], 9))
+        parts.append(rotation_weight * pose.rotation.reshape(*transforms.shape[:-3], 9))
     return np.concatenate(parts, axis=-1)

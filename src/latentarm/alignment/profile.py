@@ -12,10 +12,17 @@ from typing import Final, final
 import numpy as np
 from safetensors.numpy import save
 
+from latentarm.alignment.contract import Alignment
+from latentarm.alignment.meaning import Meaning
+from latentarm.alignment.poses import POSE_SIZE
 from latentarm.alignment.runtime import LearnedAlignment, tensor_shapes
+from latentarm.alignment.surroundings import Surroundings
+from latentarm.alignment.tool_space import ToolSpace
 from latentarm.demonstrations.folders import check_vacant, staged_folder
 from latentarm.errors import UserError
 from latentarm.files import sync_folder, write_text, written_whole
+from latentarm.kinematics.chain import Chain
+from latentarm.models.kind import Decoder, Shape
 from latentarm.models.reading import Section
 from latentarm.models.saving import (
     CONFIG_LIMIT,
@@ -30,8 +37,17 @@ from latentarm.untrusted.opening import read_bytes
 
 FOLDER: Final = "profiles"
 ALIGNMENT_NAME: Final = "alignment.safetensors"
-SCHEMA: Final = 1
+SCHEMA: Final = 2
+NETWORK_SCHEMA: Final = 1
+"""Of the profiles that held a network; they are still read."""
+
+MOST_PLACES: Final = 10_000
+"""Of answers and of regions; a profile of ours keeps some tens."""
+
 NAMED: Final = re.compile(r"\w[\w-]{0,63}")
+
+SCALES: Final = "lengths.scale"
+"""Tensor of the turn's length, m, the regions' width, m, the fastest motion, m/s, and its duration, s."""
 
 TRIAL: Final = ".trial"
 """Folder of a profile on trial, before it is kept under a person's name; no person can have this name."""
@@ -43,18 +59,24 @@ class Profile:
     """What one person means by their input, under one seed of one model.
 
     Attributes:
-        alignment: f.
+        known: what is known of the person; of an older profile the network f.
         fingerprint: of the model and the seed, see `model_fingerprint`.
         seed_index: which of the model's seeds decodes.
     """
 
-    alignment: LearnedAlignment
+    known: ToolSpace | LearnedAlignment
     fingerprint: str
     seed_index: int
 
-    def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
-        """``z = f(u, c)``: inputs (..., d) in contexts (..., c) to latent actions (..., d)."""
-        return self.alignment(u, context)
+    def alignment(self, decoder: Decoder, chain: Chain) -> Alignment:
+        """``z = f(u, c)`` with the model's decoder and the arm.
+
+        Raises:
+            UserError: the profile is not for this arm.
+        """
+        if isinstance(self.known, LearnedAlignment):
+            return self.known
+        return self.known.with_arm(decoder, chain)
 
 
 def model_fingerprint(run: Path, seed_index: int) -> str:
@@ -129,26 +151,32 @@ def discard_trial(run: Path) -> None:
         raise UserError(f"{folder} cannot be deleted: {error.strerror or error}.") from error
 
 
-def save_profile(profile: Profile, folder: Path, about: Mapping[str, object]) -> None:
+def save_profile(
+    known: ToolSpace, fingerprint: str, seed_index: int, folder: Path, about: Mapping[str, object]
+) -> None:
     """Write a profile to a new folder, which appears whole or not at all.
 
     Args:
-        profile: the profile.
+        known: what is known of the person.
+        fingerprint: see `Profile`.
+        seed_index: see `Profile`.
         folder: from `new_profile_folder`.
         about: further keys for its ``config.json`` (who answered what, how well it is met, ...).
 
     Raises:
         UserError: the folder is there already, or cannot be written.
     """
-    alignment = profile.alignment
-    content = save({name: np.ascontiguousarray(array) for name, array in alignment.tensors.items()})
+    tensors = _tensors(known)
+    content = save({name: np.ascontiguousarray(tensors[name]) for name in sorted(tensors)})
+    inputs, twist = known.meaning.matrix.shape
     section = {
         "schema": SCHEMA,
-        "fingerprint": profile.fingerprint,
-        "seed_index": profile.seed_index,
-        "latent": alignment.latent_dim,
-        "context": alignment.context_dim,
-        "hidden": list(alignment.hidden),
+        "fingerprint": fingerprint,
+        "seed_index": seed_index,
+        "latent": inputs,
+        "tools": twist // 6,
+        "answers": len(known.meaning.place),
+        "regions": len(known.surroundings.place),
         "sha256": hashlib.sha256(content).hexdigest(),
     }
     with staged_folder(folder) as staging:
@@ -172,7 +200,7 @@ def load_profile(run: Path, name: str) -> Profile:
     path = folder / CONFIG_NAME
     section = Section.of_file(path, CONFIG_LIMIT).section("profile")
     schema = section.integer("schema", 0)
-    if schema != SCHEMA:
+    if schema not in (SCHEMA, NETWORK_SCHEMA):
         raise UserError(
             f"{path} has schema {schema} and this version reads schema {SCHEMA}: align the person again."
         )
@@ -182,10 +210,57 @@ def load_profile(run: Path, name: str) -> Profile:
         raise UserError(
             f"The profile '{name}' was learned for another model than {run}: align the person again."
         )
-    shapes = tensor_shapes(
+    if schema == NETWORK_SCHEMA:
+        known: ToolSpace | LearnedAlignment = LearnedAlignment(_read(folder, section, _network(section)))
+    else:
+        known = _tool_space(_read(folder, section, _tool_space_shapes(section)))
+    return Profile(known, fingerprint, seed_index)
+
+
+def _read(folder: Path, section: Section, shapes: Mapping[str, Shape]) -> dict[str, FloatArray]:
+    return read_tensors(folder / ALIGNMENT_NAME, shapes, section.text("sha256"))
+
+
+def _network(section: Section) -> dict[str, Shape]:
+    """Shapes of an older profile's tensors."""
+    return tensor_shapes(
         section.integer("latent", 1),
         section.integer("context", 1),
         tuple(section.integers("hidden", 1, longest=MOST_LAYERS)),
     )
-    tensors = read_tensors(folder / ALIGNMENT_NAME, shapes, section.text("sha256"))
-    return Profile(LearnedAlignment(tensors), fingerprint, seed_index)
+
+
+def _tool_space_shapes(section: Section) -> dict[str, Shape]:
+    inputs, tools = section.integer("latent", 1), section.integer("tools", 1)
+    answers, regions = section.integer("answers", 1), section.integer("regions", 1)
+    if max(inputs, tools, answers, regions) > MOST_PLACES:
+        raise UserError(f"{section.where} describes a profile that is too large: align the person again.")
+    return {
+        "meaning": (inputs, 6 * tools),
+        "answers.place": (answers, POSE_SIZE * tools),
+        "answers.turn": (answers,),
+        "regions.place": (regions, POSE_SIZE * tools),
+        "regions.outside": (regions, 6 * tools, 6 * tools),
+        SCALES: (4,),
+    }
+
+
+def _tensors(known: ToolSpace) -> dict[str, FloatArray]:
+    meaning, surroundings = known.meaning, known.surroundings
+    return {
+        "meaning": meaning.matrix,
+        "answers.place": meaning.place,
+        "answers.turn": meaning.turn_rad,
+        "regions.place": surroundings.place,
+        "regions.outside": surroundings.outside,
+        SCALES: np.array([meaning.length_m, surroundings.width_m, surroundings.fast_m_s, known.duration_s]),
+    }
+
+
+def _tool_space(tensors: Mapping[str, FloatArray]) -> ToolSpace:
+    length_m, width_m, fast_m_s, duration_s = map(float, tensors[SCALES])
+    return ToolSpace(
+        Meaning(tensors["meaning"], tensors["answers.place"], tensors["answers.turn"], length_m),
+        Surroundings(tensors["regions.place"], tensors["regions.outside"], width_m, fast_m_s),
+        duration_s,
+    )

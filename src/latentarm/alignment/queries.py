@@ -1,7 +1,7 @@
 """Which motion to ask about next, and when to stop.
 
-The next motion is the one least like all before it; asking stops when an ensemble of alignments agrees. In
-the study of section 8.3 this teaches more than to ask where the ensemble disagrees most (docs/alignment.md).
+A person's meaning is a Gaussian process on ``u = Q(c) dx`` with the kernel ``dx . dx' [1 + RBF(x, x')]``. Its
+variance does not depend on the answers: it says before the first one which motion teaches most.
 """
 
 from collections.abc import Sequence
@@ -10,97 +10,55 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.alignment.answers import Answers, Motions
-from latentarm.alignment.contract import Alignment
-from latentarm.alignment.error import lengths, outcome
+from latentarm.alignment.answers import Motions
 from latentarm.alignment.poses import pose_vectors
+from latentarm.alignment.twists import motion_twists
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
-from latentarm.models.kind import Decoder
 from latentarm.types import FloatArray
 
-TOO_FEW: Final = 3
-"""Answers below which alignments agree or disagree by chance."""
+TOO_FEW: Final = 2
+"""Answers after which asking may stop."""
 
-ENSEMBLE: Final = 5
-"""Alignments that disagree, and of which the best is kept in the end."""
+LENGTH_M: Final = 0.3
+"""Distance over which the meaning of an input may change with the place, when questions are chosen."""
 
-PLACE_WEIGHT: Final = 0.5
-"""Weight of a motion's place relative to its direction when motions are compared."""
-
-INPUTS_TRIED: Final = 200
-"""Inputs, at most, that are tried to find the one that an alignment would want for a motion."""
+VARIATION: Final = 0.1
+"""Coefficient of variation of the answers, when questions are chosen."""
 
 
-def bootstrap(answers: Answers, count: int, rng: np.random.Generator) -> list[Answers]:
-    """Bootstrap samples of the answers, one for each alignment of an ensemble.
-
-    Alignments that differ only in their initial weights agree long before they are right, so each of these
-    is also trained on different answers.
-
-    Args:
-        answers: N.
-        count: how many times to draw.
-        rng: source of the draws.
-    """
-    return [answers[rng.integers(0, len(answers), len(answers))] for _ in range(count)]
-
-
-def disagreement(
-    alignments: Sequence[Alignment], decoder: Decoder, chain: Chain, motions: Motions
-) -> FloatArray:
-    """How much an ensemble disagrees about the motion that the answer would cause.
-
-    Each alignment i has an input u_i that comes nearest to the motion. Were the answer u_j, as another one
-    expects, alignment i would lead to Psi(T_i(s, u_j)) where it wants Psi(T_i(s, u_i)): the root mean square
-    distance between the two, over all i and j, is the disagreement. It is one of the tool's motions, so that
-    inputs that do the same count as the same.
-
-    Args:
-        alignments: S of them.
-        decoder: phi.
-        chain: the arm.
-        motions: N.
-
-    Returns:
-        (N,), m, see `pose_vectors`.
-    """
-    inputs = _grid(decoder.latent_dim)
-    tried = np.broadcast_to(inputs[:, None], (len(inputs), len(motions), decoder.latent_dim))
-    led = np.stack([outcome(alignment, decoder, chain, motions, tried) for alignment in alignments])
-    wanted = np.square(led - pose_vectors(chain, motions.end)).sum(-1).argmin(axis=1)  # (S, N)
-    each, motion = np.arange(len(alignments)), np.arange(len(motions))
-    # (i, j, N, p): where alignment i leads with the input that j wants.
-    crossed = led[each[:, None, None], wanted[None], motion]
-    own = led[each[:, None], wanted, motion]
-    return np.sqrt(np.square(crossed - own[:, None]).sum(-1).mean(axis=(0, 1)))
-
-
-def novelty(chain: Chain, motions: Motions, asked: Sequence[int]) -> FloatArray:
-    """How different each motion is from all that were asked about.
-
-    Motions are alike where they begin in like poses and lead the same way, or the opposite way: what pushes
-    back is known from what pushes. To ask about the least alike, again and again, is the greedy k-centre
-    choice (Gonzalez 1985; as active learning, Sener & Savarese 2018).
+@final
+class Design:
+    """How much each motion would teach.
 
     Args:
         chain: the arm.
-        motions: N.
-        asked: rows of those that were asked about.
-
-    Returns:
-        (N,), without units: the distance to the nearest one; while none was asked about, the length.
+        motions: N, that may be asked about.
     """
-    place = pose_vectors(chain, motions.start)
-    way = pose_vectors(chain, motions.end) - place
-    place = PLACE_WEIGHT * _scaled(place - place.mean(axis=0))
-    way = _scaled(way)
-    if not asked:
-        return np.linalg.norm(way, axis=-1)
-    there = np.square(place[:, None] - place[asked]).sum(axis=-1)
-    alike = np.square(way[:, None] - way[asked]).sum(axis=-1)
-    opposite = np.square(way[:, None] + way[asked]).sum(axis=-1)
-    return np.sqrt(there + np.minimum(alike, opposite)).min(axis=1)
+
+    def __init__(self, chain: Chain, motions: Motions) -> None:
+        place, twist = pose_vectors(chain, motions.start), motion_twists(chain, motions)
+        apart = np.square(place[:, None] - place).sum(axis=-1)
+        prior = (twist @ twist.T) * (1.0 + np.exp(-0.5 * apart / LENGTH_M**2))
+        self._prior = prior / max(float(np.diag(prior).mean()), 1e-12)
+
+    def worth(self, asked: Sequence[int]) -> FloatArray:
+        """By how much an answer about each motion lowers the mean variance over all.
+
+        Active learning by expected variance (Cohn 1996).
+
+        Args:
+            asked: rows of those that were asked about.
+
+        Returns:
+            (N,), as a share of the mean variance before the first answer.
+        """
+        variance = self._prior
+        noise = VARIATION**2 * (np.diag(self._prior) + 1.0)
+        for row in asked:
+            column = variance[:, row]
+            variance = variance - np.outer(column, column) / (column[row] + noise[row])
+        return np.square(variance).mean(axis=0) / (np.diag(variance) + noise)
 
 
 def next_motion(worth: FloatArray, asked: Sequence[int]) -> int:
@@ -122,8 +80,7 @@ class StoppingRule:
     """When to stop asking.
 
     Attributes:
-        share: enough is known where the ensemble disagrees by less than this share of a motion's length,
-            root mean square over the motions.
+        share: enough is known where less than this share of the inputs is unknown (`Posterior.share`).
         fall: nor is anything learned where ``patience`` answers have not lowered it by this share.
         patience: answers.
 
@@ -146,27 +103,9 @@ class StoppingRule:
         """Whether to stop asking.
 
         Args:
-            history: the disagreement after each answer so far, as a share of a motion's length.
+            history: the share that was unknown after each answer so far.
         """
         if history and history[-1] < self.share:
             return True
         earlier, recent = history[: -self.patience], history[-self.patience :]
         return bool(earlier) and min(recent) > (1 - self.fall) * min(earlier)
-
-
-def disagreement_share(apart: FloatArray, chain: Chain, motions: Motions) -> float:
-    """Disagreement (N,) about motions as a share of their length, both root mean square."""
-    return float(np.sqrt(np.square(apart).mean() / np.square(lengths(chain, motions)).mean()))
-
-
-def _scaled(vectors: FloatArray) -> FloatArray:
-    """Vectors (N, p) in the root mean square of their lengths; zeros stay what they are."""
-    scale = np.sqrt(np.square(vectors).sum(axis=-1).mean())
-    return vectors / scale if scale > 0 else vectors
-
-
-def _grid(axes: int) -> FloatArray:
-    """Inputs (K, d) evenly over [-1, 1]^d, with zero among them."""
-    per_axis = max(3, int(INPUTS_TRIED ** (1 / axes)))
-    values = np.linspace(-1, 1, min(per_axis - 1 + per_axis % 2, 41))
-    return np.stack(np.meshgrid(*[values] * axes, indexing="ij"), axis=-1).reshape(-1, axes)

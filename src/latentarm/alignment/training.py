@@ -1,8 +1,7 @@
 """Learning alignments: S runs in one batched loop, each independent of the others."""
 
 import math
-from collections.abc import Callable, Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final, final
 
@@ -11,7 +10,7 @@ import torch
 
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.loss import ANSWERS_AT_ONCE, AlignmentLoss, Draw
-from latentarm.alignment.priors import Priors
+from latentarm.alignment.priors import NO_PRIORS, Priors
 from latentarm.alignment.runtime import LearnedAlignment, layer_shapes
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
@@ -19,17 +18,17 @@ from latentarm.models.batches import seed_generator
 from latentarm.models.model import LatentActionModel
 from latentarm.models.networks import FlatNetworks
 from latentarm.models.optimiser import FlatAdam, falling_rate
-from latentarm.models.training import progress_bar, threads_for
+from latentarm.models.training import threads_for
 from latentarm.types import FloatArray
-
-Report = Callable[[int, int], None]
-"""Called after each step of a fit with the number of steps done and the total."""
 
 JUDGED: Final = 512
 """Contexts in which all runs are judged at the end."""
 
 JUDGE: Final = 0
 """The seed that they are drawn from."""
+
+CHECK_EVERY: Final = 250
+"""Steps between two looks at the answers that are held out."""
 
 
 @final
@@ -43,6 +42,8 @@ class FitConfig:
         steps: of Adam.
         learning_rate: at the start; it falls along half a cosine.
         batch_size: contexts without an answer that each step sees.
+        held_out: share of the answers, the last ones, that train nothing: the weights that miss them least
+            are kept. 0 keeps the last weights.
 
     Raises:
         UserError: a figure is out of its range.
@@ -53,16 +54,15 @@ class FitConfig:
     steps: int = 400
     learning_rate: float = 5e-3
     batch_size: int = 64
+    held_out: float = 0.0
 
     def __post_init__(self) -> None:
         if min(self.steps, self.batch_size, *self.hidden) < 1:
             raise UserError("An alignment is learned in at least one step, batch and unit of each layer.")
         if not (math.isfinite(self.learning_rate) and self.learning_rate > 0):
             raise UserError(f"The learning rate must be positive, not {self.learning_rate:g}.")
-
-
-QUICK: Final = FitConfig(steps=150)
-"""How an ensemble is learned between two questions, while a person waits."""
+        if not 0 <= self.held_out < 1:
+            raise UserError(f"A share of answers is held out, 0 or more and below 1, not {self.held_out:g}.")
 
 
 @final
@@ -94,7 +94,6 @@ def fit_alignments(
     *,
     seed_index: int = 0,
     seeds: Sequence[int] | None = None,
-    report: Report | None = None,
 ) -> FittedAlignments:
     """Learn an alignment for each run, all runs together.
 
@@ -106,7 +105,6 @@ def fit_alignments(
         config: how; the defaults where None.
         seed_index: which of the model's seeds decodes.
         seeds: S, of the weights and draws of each run; 0..S-1 where None.
-        report: see `Report`.
 
     Raises:
         UserError: the model is not fitted or has no such seed, the answers do not fit it, or the training
@@ -115,7 +113,9 @@ def fit_alignments(
     config = config or FitConfig()
     seeds = range(len(answers)) if seeds is None else seeds
     decoder = model.torch_decoder(seed_index)
-    loss = AlignmentLoss(decoder, chain, answers, unlabelled, config.priors)
+    trained, held_out = _divided(answers, config.held_out)
+    loss = AlignmentLoss(decoder, chain, trained, unlabelled, config.priors)
+    kept = _Kept(AlignmentLoss(decoder, chain, held_out, unlabelled, NO_PRIORS)) if held_out else None
     shapes = layer_shapes(decoder.latent_dim, decoder.context_dim, config.hidden)
     networks = FlatNetworks(
         {name: (len(seeds), *shape) for name, shape in shapes.items()}, torch.device("cpu")
@@ -123,15 +123,17 @@ def fit_alignments(
     networks.initialise([seed_generator(seed, 0) for seed in seeds], {})
     adam = FlatAdam(networks.values)
     draws = loss.draws(seeds, config.steps, config.batch_size)
-    rows = 3 * config.batch_size + min(len(answers[0]), ANSWERS_AT_ONCE)
-    report = report or unheard
+    rows = 3 * config.batch_size + min(len(trained[0]), ANSWERS_AT_ONCE)
     with threads_for(len(seeds) * rows * max(config.hidden, default=1)):
         for step in range(config.steps):
             draw = Draw(*(part[step] for part in draws))
             networks.fill_gradient(loss(networks.networks, draw).sum())
             rate = falling_rate(config.learning_rate, step, config.steps)
             adam.step(networks.values, networks.gradient, rate)
-            report(step + 1, config.steps)
+            if kept is not None and ((step + 1) % CHECK_EVERY == 0 or step + 1 == config.steps):
+                kept.look(networks)
+    if kept is not None:
+        kept.restore(networks)
     with torch.no_grad():
         # The same draws for every run, so that their losses compare.
         judged = loss.draws([JUDGE] * len(seeds), 1, JUDGED)
@@ -147,17 +149,38 @@ def fit_alignments(
     return FittedAlignments(alignments, final)
 
 
-def unheard(step: int, steps: int) -> None:
-    """A `Report` that does nothing."""
+def _divided(answers: Sequence[Answers], held_out: float) -> tuple[list[Answers], list[Answers]]:
+    """The answers that train, and those that do not, where there are any."""
+    last = [round(held_out * len(one)) for one in answers]
+    if not any(last):
+        return list(answers), []
+    parts = [
+        (one[np.arange(len(one) - many)], one[np.arange(len(one) - many, len(one))])
+        for one, many in zip(answers, last, strict=True)
+    ]
+    return [first for first, _ in parts], [second for _, second in parts]
 
 
-@contextmanager
-def step_bar(shown: bool) -> Generator[Report]:
-    """A `Report` that shows a bar on standard error.
+class _Kept:
+    """The weights of each run that have missed the held-out answers least."""
 
-    Args:
-        shown: whether there is one at all.
-    """
-    with progress_bar(shown, "steps") as bar:
-        task = bar.add_task("learning the alignment", loss="")
-        yield lambda step, steps: bar.update(task, total=steps, completed=step)
+    def __init__(self, loss: AlignmentLoss) -> None:
+        self._loss = loss
+        self._best: torch.Tensor | None = None
+        self._least = torch.tensor(torch.inf)
+
+    def look(self, networks: FlatNetworks) -> None:
+        """Compare what there is now."""
+        with torch.no_grad():
+            missed = self._loss.missed(networks.networks)
+        if self._best is None:
+            self._best, self._least = networks.values.clone(), missed
+            return
+        better = missed < self._least
+        self._least = torch.where(better, missed, self._least)
+        self._best[better] = networks.values[better]
+
+    def restore(self, networks: FlatNetworks) -> None:
+        """Put the best weights back."""
+        if self._best is not None:
+            networks.values.copy_(self._best)

@@ -10,7 +10,6 @@ from tyro.conf import Positional, arg
 
 from latentarm.alignment.profile import new_profile_folder, profile_folder
 from latentarm.alignment.queries import StoppingRule
-from latentarm.alignment.training import step_bar
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, MovedDataset, Seed
 from latentarm.commands.output import say, show
@@ -62,13 +61,7 @@ def align_run(config: AlignOptions, say: Say) -> list[Row]:
         UserError: the run cannot be aligned, the name is taken, or nobody answers.
     """
     folder = new_profile_folder(config.run, config.name)
-    known = alignable(
-        config.run,
-        config.seed_index,
-        config.seed,
-        config.demonstrations,
-        lambda: step_bar(not config.json and sys.stderr.isatty()),
-    )
+    known = alignable(config.run, config.seed_index, config.seed, config.demonstrations)
     person = _person(config, known.scene, say)
     answers = ask(known.scene, person, config.answers, say, StoppingRule())
     say(f"Learning from {len(answers)} answers of a {person.kind} ...")

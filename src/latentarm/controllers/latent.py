@@ -77,10 +77,10 @@ def latent_controller(run: Path, profile: str | None, robot: Robot) -> LatentCon
     Raises:
         UserError: the run has no such profile, its model is broken, or it is for another arm.
     """
-    alignment = None if profile is None else load_profile(run, profile)
-    decoder = load_decoder(run, 0 if alignment is None else alignment.seed_index)
+    person = None if profile is None else load_profile(run, profile)
+    decoder = load_decoder(run, 0 if person is None else person.seed_index)
     if decoder.action_dim != robot.dof:
         raise UserError(
             f"{run} was trained for {decoder.action_dim} joints and the robot {robot.name} has {robot.dof}."
         )
-    return LatentController(decoder, identity if alignment is None else alignment)
+    return LatentController(decoder, identity if person is None else person.alignment(decoder, robot.chain))

@@ -11,9 +11,8 @@ from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.demonstrated import shown
 from latentarm.alignment.error import relative_alignment_error
-from latentarm.alignment.profile import Profile, model_fingerprint, save_profile
-from latentarm.alignment.queries import ENSEMBLE
-from latentarm.alignment.training import FitConfig
+from latentarm.alignment.profile import model_fingerprint, save_profile
+from latentarm.alignment.tool_space import ToolSpace
 from latentarm.assistance.annotation import prepared
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
@@ -22,7 +21,7 @@ from latentarm.metrics.results import as_document
 from latentarm.models.saving import load_model
 from latentarm.runs.folder import Run, read_run, robot_of
 from latentarm.runs.person import Kind
-from latentarm.runs.questions import Scene, Watch, unwatched
+from latentarm.runs.questions import Scene
 from latentarm.runs.samples import ALIGN_STREAM, load_samples
 from latentarm.types import Row
 
@@ -55,12 +54,16 @@ class Learned:
     """What was learned of a person.
 
     Attributes:
-        profile: theirs, for one run.
+        known: what is known of them.
+        fingerprint: of the model and the seed that it is for.
+        seed_index: that seed.
         rows: how far the answers themselves are missed: with the profile, with an affine map, and with z = u.
         about: what the profile's file says besides.
     """
 
-    profile: Profile
+    known: ToolSpace
+    fingerprint: str
+    seed_index: int
     rows: list[Row]
     about: dict[str, object]
 
@@ -70,12 +73,10 @@ class Learned:
         Raises:
             UserError: the folder is there already, or cannot be written.
         """
-        save_profile(self.profile, folder, self.about)
+        save_profile(self.known, self.fingerprint, self.seed_index, folder, self.about)
 
 
-def alignable(
-    folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | None = None, watch: Watch = unwatched
-) -> Alignable:
+def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | None = None) -> Alignable:
     """Load a run, and choose what may be asked about.
 
     Args:
@@ -83,7 +84,6 @@ def alignable(
         seed_index: which of the run's seeds decodes.
         seed: of everything random.
         dataset: where the run's dataset lies now, if it was moved; runs of this version do not need it.
-        watch: see `Scene`.
 
     Raises:
         UserError: the run cannot be aligned.
@@ -98,12 +98,12 @@ def alignable(
     rng = np.random.default_rng([ALIGN_STREAM, seed])
     samples = load_samples(folder)
     if samples is not None and samples.motions is not None:
-        motions, unlabelled = samples.motions, samples.unlabelled
+        motions = samples.motions
     else:
         demonstrations = prepared(run.dataset(dataset, "motions to ask about"), run.context)
         training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
-        motions, unlabelled = shown(select_episodes(demonstrations, training), model.context, chain, rng)
-    scene = Scene(model, seed_index, chain, motions, unlabelled, rng, watch)
+        motions, _ = shown(select_episodes(demonstrations, training), model.context, chain, rng)
+    scene = Scene(model, seed_index, chain, motions)
     return Alignable(run, fingerprint, scene, seed)
 
 
@@ -115,17 +115,14 @@ def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
         answers: theirs.
         name: of the person.
         kind: of person.
-
-    Raises:
-        UserError: the training diverged.
     """
     scene = known.scene
     decoder = scene.model.decoder(scene.seed_index)
-    alignment = scene.learn([answers] * ENSEMBLE, FitConfig()).best
+    tool_space = scene.learn(answers)
     alignments = {
         NO_ALIGN: identity,
         "manual_align": fit_affine(scene.model, answers, scene.seed_index),
-        PROFILE: alignment,
+        PROFILE: tool_space.with_arm(decoder, scene.chain),
     }
     rows = [
         Row(
@@ -153,4 +150,4 @@ def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
         },
         **as_document(rows),
     }
-    return Learned(Profile(alignment, known.fingerprint, scene.seed_index), rows, about)
+    return Learned(tool_space, known.fingerprint, scene.seed_index, rows, about)

@@ -1,36 +1,22 @@
 """Asking a person, question by question, what they mean by their input."""
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
+from functools import cached_property
 from typing import final
 
 import numpy as np
 
 from latentarm.alignment.answers import Answers, Motions
-from latentarm.alignment.queries import (
-    ENSEMBLE,
-    TOO_FEW,
-    StoppingRule,
-    bootstrap,
-    disagreement,
-    disagreement_share,
-    next_motion,
-    novelty,
-)
-from latentarm.alignment.training import QUICK, FitConfig, FittedAlignments, Report, fit_alignments, unheard
+from latentarm.alignment.demonstrated import CANDIDATES
+from latentarm.alignment.posterior import Posterior, fit_meaning
+from latentarm.alignment.queries import TOO_FEW, Design, StoppingRule, next_motion
+from latentarm.alignment.surroundings import Surroundings
+from latentarm.alignment.tool_space import ToolSpace
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.model import LatentActionModel
 from latentarm.runs.person import Person, Question, Say
 from latentarm.types import FloatArray
-
-Watch = Callable[[], AbstractContextManager[Report]]
-
-
-def unwatched() -> AbstractContextManager[Report]:
-    """A `Watch` that does nothing."""
-    return nullcontext(unheard)
 
 
 @final
@@ -42,36 +28,35 @@ class Scene:
         model: the trained model.
         seed_index: which of its seeds decodes.
         chain: the arm.
-        motions: that may be asked about.
-        unlabelled: (M, c).
-        rng: of the ensembles.
-        watch: opened for each fit; says whom to tell how far it is.
+        motions: of the demonstrations; the first of them may be asked about.
     """
 
     model: LatentActionModel
     seed_index: int
     chain: Chain
     motions: Motions
-    unlabelled: FloatArray
-    rng: np.random.Generator
-    watch: Watch
 
-    def learn(self, answers: list[Answers], config: FitConfig) -> FittedAlignments:
-        """An alignment for each entry, from seeds 0, 1, ..."""
-        with self.watch() as report:
-            return fit_alignments(
-                self.model,
-                self.chain,
-                answers,
-                self.unlabelled,
-                config,
-                seed_index=self.seed_index,
-                report=report,
-            )
+    @cached_property
+    def candidates(self) -> Motions:
+        """Motions that may be asked about."""
+        return self.motions[np.arange(min(CANDIDATES, len(self.motions)))]
+
+    @cached_property
+    def surroundings(self) -> Surroundings:
+        """What the motions do in each place."""
+        return Surroundings.of_motions(self.motions, self.chain, self.model.latent_dim)
+
+    def posterior(self, answers: Answers) -> Posterior:
+        """What answers say of the person."""
+        return fit_meaning(answers, self.chain, self.surroundings, self.candidates)
+
+    def learn(self, answers: Answers) -> ToolSpace:
+        """What is to be kept of the person."""
+        return ToolSpace(self.posterior(answers).meaning, self.surroundings, answers.motions.duration_s)
 
 
 def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRule) -> Answers:
-    """Ask about the longest motion, then about the least like all before, until an ensemble agrees.
+    """Ask about the motion that teaches most, again and again, until enough is known.
 
     Args:
         scene: what is asked about.
@@ -83,14 +68,15 @@ def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRu
     Raises:
         UserError: nobody answers, or there is nothing left to ask.
     """
-    motions, chain = scene.motions, scene.chain
+    motions, chain = scene.candidates, scene.chain
     places = [chain.forward(state).position for state in (motions.start, motions.end)]
     reach_m = float(np.linalg.norm(places[1] - places[0], axis=-1).max())
+    design = Design(chain, motions)
     asked: list[int] = []
     answered: dict[int, FloatArray] = {}
     history: list[float] = []
     while len(answered) < count and len(asked) < len(motions):
-        row = next_motion(novelty(chain, motions, asked), asked)
+        row = next_motion(design.worth(asked), asked)
         asked.append(row)
         motion = motions[np.array([row])]
         reply = person.answer(
@@ -105,10 +91,7 @@ def ask(scene: Scene, person: Person, count: int, say: Say, stopping: StoppingRu
             continue
         answered[row] = reply
         if TOO_FEW <= len(answered) < count:
-            so_far = _answers(motions, answered)
-            ensemble = scene.learn(bootstrap(so_far, ENSEMBLE, scene.rng), QUICK).alignments
-            apart = disagreement(ensemble, scene.model.decoder(scene.seed_index), chain, motions)
-            history.append(disagreement_share(apart, chain, motions))
+            history.append(scene.posterior(_answers(motions, answered)).share)
             if stopping.enough(history):
                 say(f"{len(answered)} answers of a {person.kind} are enough: more would change little.")
                 break

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from latentarm.studies.alignment.cell import Cell, CellResult
-from latentarm.studies.alignment.curves import BY_DISAGREEMENT, CHOICES, CurveCell, CurveResult
+from latentarm.studies.alignment.curves import CHOICES, CHOSEN, CurveCell, CurveResult
 from latentarm.studies.alignment.preset import CONDITIONS, NO_ALIGN, PRESETS
 from latentarm.studies.alignment.scene import DecoderCell, LearnedDecoder
 
-AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1)
+AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1)
 """Means of the conditions, in their order."""
 
 
@@ -32,11 +32,7 @@ def make_curve(task="plane", noise=0.0, counts=(1, 3, 6, 10, 20), faster=1.0, ru
     """Errors of 1 / n at random, and as if there were ``faster`` times as many answers by choice."""
     spread = np.linspace(0.9, 1.1, runs)
     errors = {
-        choice: {
-            count: spread / (count * (1.0 if choice == CHOICES[0] else faster))
-            for count in counts
-            if choice != BY_DISAGREEMENT or count <= 10
-        }
+        choice: {count: spread / (count * (faster if choice == CHOSEN else 1.0)) for count in counts}
         for choice in CHOICES
     }
     return CurveResult(

@@ -29,7 +29,15 @@ from latentarm.studies.alignment.drives import (
 from latentarm.studies.alignment.drives_learning import TURN_RAD, Learned, learn, turned_person
 from latentarm.studies.alignment.drives_tables import compare_drives, drives_rows, misses
 from latentarm.studies.alignment.figures import drives_figure
-from latentarm.studies.alignment.preset import ALL_PRIORS, IDEAL, NO_ALIGN, PRESETS, WITHOUT_PRIORS, Drives
+from latentarm.studies.alignment.preset import (
+    ALL_PRIORS,
+    IDEAL,
+    NO_ALIGN,
+    PRESETS,
+    TOOL_SPACE,
+    WITHOUT_PRIORS,
+    Drives,
+)
 from latentarm.studies.alignment.rows import Measured
 from latentarm.studies.alignment.study import STUDY
 from latentarm.studies.study import Request
@@ -121,7 +129,8 @@ def test_without_alignment_the_same_person_does_not_reach_it_and_another_does():
 
 def learned():
     """Two models that are the same, and alignments that differ."""
-    alignments = {NO_ALIGN: identity, WITHOUT_PRIORS: identity, ALL_PRIORS: perfect, IDEAL: perfect}
+    alignments = {NO_ALIGN: identity, WITHOUT_PRIORS: identity, ALL_PRIORS: identity}
+    alignments |= {TOOL_SPACE: perfect, IDEAL: perfect}
     return Learned(
         model=SimpleNamespace(decoder=lambda seed: TwoDirections()),
         alignments=(alignments, alignments),
@@ -143,7 +152,7 @@ def test_all_conditions_have_the_same_starts_and_chances():
         assert len(np.unique(starts, axis=0)) == len(starts)
     # With the same alignment the whole drive is the same; knowing the arm or help makes another.
     for alike, other in ((WITHOUT_PRIORS, KNOWS), (IDEAL, HELPED)):
-        base = NO_ALIGN if alike == WITHOUT_PRIORS else ALL_PRIORS
+        base = NO_ALIGN if alike == WITHOUT_PRIORS else TOOL_SPACE
         for one, same, different in zip(every[base], every[alike], every[other], strict=True):
             np.testing.assert_array_equal(one.path, same.path)
             assert not np.array_equal(one.path, different.path)
@@ -156,7 +165,7 @@ def test_another_seed_starts_elsewhere():
 
 def test_learning_gives_every_condition_its_alignment_and_the_same_figures_again():
     one, again = (learn(drive_cells(TINY, 3)[0]) for _ in range(2))
-    assert list(one.errors) == [NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS, IDEAL]
+    assert list(one.errors) == [NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS, TOOL_SPACE, IDEAL]
     assert len(one.alignments) == 2
     for name, errors in one.errors.items():
         assert errors.shape == (2,)
@@ -205,7 +214,7 @@ def result(reached):
 
 
 def test_tests_by_hand():
-    tests = compare_drives([result({ALL_PRIORS: 6, WITHOUT_PRIORS: 6})])
+    tests = compare_drives([result({TOOL_SPACE: 6, WITHOUT_PRIORS: 6, ALL_PRIORS: 6})])
     place = {(one.measure, one.against): one for one in tests}
     # All six drives differ, and all one way: p = 2 ** -6.
     assert place["arrival_rate", NO_ALIGN].p == pytest.approx(2**-6)
@@ -239,11 +248,11 @@ def test_misses_are_parted_into_what_the_person_steers_and_what_nobody_does():
 
 
 def test_the_page_says_what_holds_and_what_does_not():
-    found = [result({ALL_PRIORS: 6, WITHOUT_PRIORS: 6, KNOWS: 6})]
-    page = STUDY.report(Request(Path("out"), TINY, ("table_top",)), Measured([], [], [], found)).page
+    found = [result({TOOL_SPACE: 6, WITHOUT_PRIORS: 6, KNOWS: 6})]
+    page = STUDY.report(Request(Path("out"), TINY, ("table_top",)), Measured([], [], [], [], found)).page
     assert "**simulated**" in page
     assert "turned by 60 degrees and mirrored" in page
-    assert f"| {ALL_PRIORS} | 0.60 ± 0.14 | 6 of 6 (100%) |" in page
+    assert f"| {TOOL_SPACE} | 0.60 ± 0.14 | 6 of 6 (100%) |" in page
     assert f"| {NO_ALIGN} | 0.60 ± 0.14 | 0 of 6 (0%) | 0.500 | 50, 20 | 0 of 6 (0%) |" in page
     assert "reaches more goals than No Align: supported" in page
     assert "reaches more goals than No Priors: **not supported** (no drive differs)" in page

@@ -56,14 +56,14 @@ def test_one_run_has_bars_without_spread(result):
 def test_every_choice_has_a_curve_in_every_panel(curve, noises):
     figure = curves_figure([curve(task, noise) for noise in noises for task in TASKS], TASKS)
     assert_well_drawn(figure)
-    assert {*CHOICES, "10 answers at random", "where asking stops (mean)"} <= words_of(figure)
+    assert {*CHOICES, "All Priors, at random, 10 answers", "where asking stops (mean)"} <= words_of(figure)
     assert len(figure.axes) == len(TASKS) * len(noises)
 
 
 def test_short_curves_have_no_mark_of_ten(curve):
     figure = curves_figure([curve(counts=(1, 3), runs=1)], ["plane"])
     assert_well_drawn(figure)
-    assert "10 answers at random" not in words_of(figure)
+    assert "All Priors, at random, 10 answers" not in words_of(figure)
 
 
 def test_conditions_are_told_apart_without_colour():

@@ -1,26 +1,28 @@
 """One decoder, one cell, one curve: what they hold, and that they are the same again."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
-from latentarm.alignment.queries import next_motion, novelty
 from latentarm.studies.alignment.cell import Cell, measure_cell
 from latentarm.studies.alignment.curves import (
     AT_RANDOM,
-    BY_DISAGREEMENT,
-    BY_NOVELTY,
     CHOICES,
+    CHOSEN,
+    PRIORS_AT_RANDOM,
     CurveCell,
+    chosen,
     measure_curve,
 )
 from latentarm.studies.alignment.preset import (
     ALL_PRIORS,
     CONDITIONS,
     FEW_ANSWERS,
+    IDEAL,
     LEARNED,
     NO_ALIGN,
     SINGLE_PRIORS,
@@ -30,6 +32,8 @@ from latentarm.studies.alignment.preset import (
 )
 from latentarm.studies.alignment.rows import time_alignment
 from latentarm.studies.alignment.scene import DecoderCell, learn_decoder, scene_of
+from latentarm.studies.alignment.turning import person
+from latentarm.tasks.pouring.tasks import FAR_LEFT_M, NEAR_RIGHT_M
 
 TINY = Preset(
     "tiny",
@@ -45,7 +49,8 @@ TINY = Preset(
     runs=2,
     steps=4,
     ideal_steps=6,
-    curves=Curves(answers=(1, 4), candidates=12, ensemble=2, ensemble_steps=3, disagreement_up_to=4),
+    ideal_runs=1,
+    curves=Curves(answers=(1, 4), networks=(4,), candidates=12),
 )
 
 
@@ -67,7 +72,7 @@ def result(learned):
 def test_every_condition_has_an_error_for_each_run(result):
     assert list(result.errors) == list(CONDITIONS)
     for name, errors in result.errors.items():
-        assert errors.shape == ((1,) if name == NO_ALIGN else (TINY.runs,))
+        assert errors.shape == ((1,) if name in (NO_ALIGN, IDEAL) else (TINY.runs,))
         assert np.isfinite(errors).all()
         assert (errors > 0).all()
     assert result.encoded > 0
@@ -134,20 +139,18 @@ def curve(learned):
 
 
 def test_a_curve_has_a_point_for_every_number_and_choice(curve):
-    assert set(curve.errors) == set(CHOICES)
-    for errors in curve.errors.values():
-        assert list(errors) == [1, 4]
+    assert list(curve.errors) == list(CHOICES)
+    for choice, errors in curve.errors.items():
+        assert list(errors) == ([4] if choice == PRIORS_AT_RANDOM else [1, 4])
         assert all(values.shape == (TINY.runs,) for values in errors.values())
-    # Neither has begun to choose at the first answer.
-    np.testing.assert_array_equal(curve.errors[AT_RANDOM][1], curve.errors[BY_DISAGREEMENT][1])
-    assert not np.array_equal(curve.errors[AT_RANDOM][1], curve.errors[BY_NOVELTY][1])
+    assert not np.array_equal(curve.errors[AT_RANDOM][1], curve.errors[CHOSEN][1])
 
 
 def test_asking_stops_within_what_may_be_asked_and_has_the_error_there(curve):
-    assert ((curve.stopped_after >= 3) & (curve.stopped_after <= 4)).all()
+    assert ((curve.stopped_after >= 2) & (curve.stopped_after <= 4)).all()
     for run, count in enumerate(curve.stopped_after):
         if count == 4:
-            assert curve.stopped_at[run] == pytest.approx(curve.errors[BY_NOVELTY][4][run], rel=1e-4)
+            assert curve.stopped_at[run] == curve.errors[CHOSEN][4][run]
 
 
 def test_a_curve_is_the_same_again(learned, curve):
@@ -159,19 +162,27 @@ def test_a_curve_is_the_same_again(learned, curve):
     np.testing.assert_array_equal(curve.stopped_at, again.stopped_at)
 
 
-def test_questions_by_novelty_soon_hold_both_parts_of_reach_and_pour():
-    """Where two things are meant in two places, both are asked about within three questions."""
+def test_four_chosen_questions_hold_both_parts_of_reach_and_pour():
+    """Where two things are meant in two places, each is asked about more than once."""
     scene = scene_of(learn_decoder(DecoderCell("reach_and_pour", "pca", TINY, 0)))
-    motions = scene.shown
-    asked = []
-    for _ in range(3):
-        asked.append(next_motion(novelty(scene.chain, motions, asked), asked))
-    there = scene.preference.is_there(scene.chain.forward(motions.start[asked]).position)
-    assert there.any()
-    assert not there.all()
+    asked = chosen(scene.chain, scene.shown, 4)
+    there = scene.preference.is_there(scene.chain.forward(scene.shown.start[asked]).position)
+    assert there.sum() == 2
 
 
-def test_the_time_of_one_alignment_and_of_all_runs_is_taken(learned):
+def test_the_axes_of_some_people_turn_by_as_much_either_way(scene):
+    """By hand: at the middle of the table, and at its two ends along the way in which they turn."""
+    one = replace(person(scene, 0), axes=SimpleNamespace(inputs=lambda motions: np.tile([0.5, 0.0], (3, 1))))
+    low, high = np.array(NEAR_RIGHT_M), np.array(FAR_LEFT_M)
+    reach = np.sign(one.along) * (high - low) / 2
+    places = (low + high) / 2 + np.array([[0.0], [1.0], [-1.0]]) * reach
+    seen = SimpleNamespace(forward=lambda state: SimpleNamespace(position=np.pad(places, ((0, 0), (0, 1)))))
+    u = replace(one, chain=seen).inputs(SimpleNamespace(start=None))
+    angles = np.arctan2(u[:, 1], u[:, 0]) - one.middle_rad
+    np.testing.assert_allclose(np.exp(1j * angles), np.exp(1j * one.turn_rad * np.array([0, 1, -1])))
+    np.testing.assert_allclose(np.linalg.norm(u, axis=1), 0.5)
+
+
+def test_the_times_of_learning_and_of_a_call_are_taken(learned):
     took = time_alignment(learned)
-    assert took["runs"] == TINY.runs
-    assert min(took["alone_s"], took["in_one_fit_s"]) > 0
+    assert min(took["all_priors_s"], took["tool_space_s"], took["tool_space_call_s"]) > 0

@@ -8,13 +8,14 @@ from rich.console import Console
 
 from latentarm.metrics.measures import MEASURES
 from latentarm.runs.results_folder import CONFIG
-from latentarm.studies.alignment.preset import CONDITIONS, PRESETS, Curves, Drives, Preset
-from latentarm.studies.alignment.study import MODELS, STUDY, TASKS
+from latentarm.studies.alignment.preset import CONDITIONS, IDEAL, PRESETS, Curves, Drives, Preset, Turning
+from latentarm.studies.alignment.study import STUDY, TASKS
 from latentarm.studies.alignment.tables import summary_tables
 from latentarm.studies.study import ALWAYS_MADE, Request, run_study
 
 TINY = Preset(
     "tiny",
+    models=("cae", "scl"),
     episodes=3,
     test_episodes=2,
     epochs=1,
@@ -26,10 +27,10 @@ TINY = Preset(
     test_motions=20,
     runs=2,
     steps=2,
+    ideal_runs=1,
     ideal_steps=2,
-    curves=Curves(
-        noises=(0.0,), answers=(1, 4), candidates=8, ensemble=2, ensemble_steps=2, disagreement_up_to=4
-    ),
+    curves=Curves(noises=(0.0,), answers=(1, 4), networks=(4,), candidates=8),
+    turning=Turning(people=2, noises=(0.0,), ideal_people=1),
     drives=Drives(models=("cvae",), seeds=1, episodes=6, epochs=1, answers=2, to_each_goal=1, limit_s=0.3),
 )
 
@@ -52,16 +53,17 @@ def test_every_model_condition_and_noise_has_its_row(done):
     assert {row.task for row in rows} == {"plane"}
     assert {row.measure for row in rows} <= set(MEASURES)
     of = {(row.model, row.condition, row.measure): row for row in rows}
-    for model in MODELS:
+    for model in TINY.models:
         assert of[model, "the encoder's own choice", "relative_alignment_error"].n == 1
         for noise in ("0", "0.5"):
             for name in CONDITIONS:
                 row = of[model, f"{name}, noise {noise}", "relative_alignment_error"]
-                assert row.n == (1 if name == "No Align" else TINY.runs)
+                assert row.n == (1 if name in ("No Align", IDEAL) else TINY.runs)
                 assert row.mean > 0
-    assert of["cae", "by novelty, 4 answers, noise 0", "relative_alignment_error"].n == TINY.runs
-    assert of["cae", "at random, 1 answer, noise 0", "relative_alignment_error"].mean > 0
-    assert 3 <= of["cae", "by novelty, stopped, noise 0", "answers"].mean <= 4
+    assert of["cae", "Tool Space, chosen, 4 answers, noise 0", "relative_alignment_error"].n == TINY.runs
+    assert of["cae", "All Priors, at random, 4 answers, noise 0", "relative_alignment_error"].mean > 0
+    assert 2 <= of["cae", "Tool Space, chosen, stopped, noise 0", "answers"].mean <= 4
+    assert of["cae", "axes turn, Tool Space, chosen, noise 0", "relative_alignment_error"].n == 2
 
 
 def test_at_a_glance_are_the_papers_conditions_under_every_noise(done):
@@ -76,7 +78,7 @@ def test_at_a_glance_are_the_papers_conditions_under_every_noise(done):
 
 def test_noise_changes_nothing_for_who_asks_nothing(done):
     rows, _ = done
-    for model in MODELS:
+    for model in TINY.models:
         same = {row.mean for row in rows if row.model == model and (row.condition or "")[:8] == "No Align"}
         assert len(same) == 1
 
@@ -92,15 +94,24 @@ def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
     page = (out / "results.md").read_text()
     assert "**simulated**" in page
     assert "--preset tiny --task plane --seed 0" in page
-    for words in ("H1", "H2", "H3", *CONDITIONS, "beyond the paper", "Where asking stops", "missed"):
+    for words in (
+        "H1",
+        "H2",
+        "H3",
+        *CONDITIONS,
+        "beyond the paper",
+        "Where asking stops",
+        "missed",
+        "axes turn",
+    ):
         assert words in page
     for name in STUDY.figures[:3]:
         assert f"]({name}.png)" in page
     assert "Drives to the goals" not in page
     timings = json.loads((out / "timings.json").read_text())
-    assert timings["one_alignment"][0]["alone_s"] > 0
+    assert timings["one_alignment"][0]["tool_space_call_s"] > 0
     runs = json.loads((out / "runs.json").read_text())
-    assert all(len(one["values"]) in (1, TINY.runs) for one in runs)
+    assert all(len(one["values"]) in (1, 2) for one in runs)
 
 
 def test_drives_alone_are_a_page_of_their_own(tmp_path):

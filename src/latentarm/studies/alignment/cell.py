@@ -11,7 +11,7 @@ from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.priors import NO_PRIORS
 from latentarm.alignment.training import FitConfig
-from latentarm.studies.alignment.preset import IDEAL, LEARNED, MANUAL, NO_ALIGN, Stream
+from latentarm.studies.alignment.preset import IDEAL, LEARNED, MANUAL, NO_ALIGN, TOOL_SPACE, Preset, Stream
 from latentarm.studies.alignment.scene import LearnedDecoder, Scene, scene_of
 from latentarm.types import FloatArray
 
@@ -82,13 +82,30 @@ def _measure(cell: Cell, scene: Scene) -> CellResult:
         NO_ALIGN: scene.errors([identity]),
         MANUAL: scene.errors([fit_affine(scene.model, answers) for answers in few]),
     }
-    configs = {name: FitConfig(priors, steps=preset.steps) for name, priors in LEARNED.items()}
-    configs[IDEAL] = FitConfig(NO_PRIORS, steps=preset.ideal_steps)
     learn_s: dict[str, float] = {}
-    for name, config in configs.items():
-        answers = ask(preset.ideal_answers) if name == IDEAL else few
+    for name, priors in LEARNED.items():
         began = perf_counter()
-        fitted = scene.learn(answers, config, runs)
+        fitted = scene.learn(few, FitConfig(priors, steps=preset.steps), runs)
         learn_s[name] = perf_counter() - began
         errors[name] = scene.errors(fitted.alignments)
+    began = perf_counter()
+    alignments = [scene.in_tool_space(answers) for answers in few]
+    learn_s[TOOL_SPACE] = perf_counter() - began
+    errors[TOOL_SPACE] = scene.errors(alignments)
+    began = perf_counter()
+    ideal = scene.learn(
+        ask(preset.ideal_answers)[: preset.ideal_runs], ideal_config(preset), runs[: preset.ideal_runs]
+    )
+    learn_s[IDEAL] = perf_counter() - began
+    errors[IDEAL] = scene.errors(ideal.alignments)
     return CellResult(cell, errors, scene.encoded(), learn_s)
+
+
+def ideal_config(preset: Preset) -> FitConfig:
+    """How Ideal Align is learned: to its end, which answers decide that train nothing."""
+    return FitConfig(
+        NO_PRIORS,
+        steps=preset.ideal_steps,
+        learning_rate=preset.ideal_rate,
+        held_out=preset.ideal_held_out,
+    )

@@ -7,29 +7,20 @@ from typing import Final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from latentarm.alignment.answers import Answers
-from latentarm.alignment.queries import (
-    TOO_FEW,
-    StoppingRule,
-    bootstrap,
-    disagreement,
-    disagreement_share,
-    next_motion,
-    novelty,
-)
-from latentarm.alignment.runtime import LearnedAlignment
+from latentarm.alignment.answers import Answers, Motions
+from latentarm.alignment.queries import TOO_FEW, Design, StoppingRule, next_motion
 from latentarm.alignment.training import FitConfig
-from latentarm.studies.alignment.preset import Preset, Stream
+from latentarm.kinematics.chain import Chain
+from latentarm.studies.alignment.preset import ALL_PRIORS, TOOL_SPACE, Preset, Stream
 from latentarm.studies.alignment.scene import LearnedDecoder, Scene, scene_of
-from latentarm.studies.streams import generator
 from latentarm.types import FloatArray
 
-AT_RANDOM: Final = "at random"
-BY_NOVELTY: Final = "by novelty"
-BY_DISAGREEMENT: Final = "by disagreement"
+PRIORS_AT_RANDOM: Final = f"{ALL_PRIORS}, at random"
+AT_RANDOM: Final = f"{TOOL_SPACE}, at random"
+CHOSEN: Final = f"{TOOL_SPACE}, chosen"
 
-CHOICES: Final = (AT_RANDOM, BY_NOVELTY, BY_DISAGREEMENT)
-"""How questions are chosen; by novelty is what `latentarm align` does."""
+CHOICES: Final = (PRIORS_AT_RANDOM, AT_RANDOM, CHOSEN)
+"""What is learned, and how questions are chosen; the last is what `latentarm align` does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,12 +43,12 @@ class CurveCell:
 
 @dataclass(frozen=True, eq=False)
 class CurveResult:
-    """What was measured, with all priors.
+    """What was measured.
 
     Attributes:
         cell: what was asked for.
         errors: choice -> number of answers -> (R,), relative error of each run on the held-out motions.
-        stopped_after: (R,), answers after which asking by novelty would have stopped.
+        stopped_after: (R,), answers after which `latentarm align` would have stopped.
         stopped_at: (R,), the error there.
     """
 
@@ -81,105 +72,62 @@ def measure_curve(cell: CurveCell) -> CurveResult:
 
 
 def _measure(cell: CurveCell) -> CurveResult:
-    scene, preset = scene_of(cell.learned), cell.preset
+    scene, sizes = scene_of(cell.learned), cell.preset.curves
     said = [
-        scene.ask(preset.curves.candidates, cell.noise, Stream.CANDIDATES, Stream.CANDIDATE_ANSWERS, run)
-        for run in range(preset.runs)
+        scene.ask(sizes.candidates, cell.noise, Stream.CANDIDATES, Stream.CANDIDATE_ANSWERS, run)
+        for run in range(cell.preset.runs)
     ]
-    most = min(len(said[0]), max(preset.curves.answers))
-    orders = {
-        AT_RANDOM: [list(range(most)) for _ in said],
-        BY_NOVELTY: [_by_novelty(scene, answers, most) for answers in said],
-    }
-    followed = min(most, preset.curves.disagreement_up_to)
-    orders[BY_DISAGREEMENT] = _by_disagreement(cell, scene, said, followed)
-    errors = {
-        choice: {
-            count: _errors(cell, scene, said, asked, [count] * len(said))
-            for count in preset.curves.answers
-            if count <= len(asked[0])
-        }
-        for choice, asked in orders.items()
-    }
-    after = _stops(cell, scene, said, orders[BY_NOVELTY])
+    most = min(len(said[0]), max(sizes.answers))
+    orders = [chosen(scene.chain, answers.motions, most) for answers in said]
+
+    def errors(orders: Sequence[Sequence[int]], count: int) -> FloatArray:
+        return scene.errors(
+            [
+                scene.in_tool_space(answers[np.array(order[:count])])
+                for answers, order in zip(said, orders, strict=True)
+            ]
+        )
+
+    at_random = [list(range(most)) for _ in said]
+    counts = [count for count in sizes.answers if count <= most]
+    after = [_stop(scene, answers, order) for answers, order in zip(said, orders, strict=True)]
+    stopped = [
+        scene.in_tool_space(answers[np.array(order[:count])])
+        for answers, order, count in zip(said, orders, after, strict=True)
+    ]
     return CurveResult(
         cell=cell,
-        errors=errors,
+        errors={
+            PRIORS_AT_RANDOM: {
+                count: _with_priors(cell, scene, said, count) for count in sizes.networks if count <= most
+            },
+            AT_RANDOM: {count: errors(at_random, count) for count in counts},
+            CHOSEN: {count: errors(orders, count) for count in counts},
+        },
         stopped_after=np.array(after, dtype=np.float64),
-        stopped_at=_errors(cell, scene, said, orders[BY_NOVELTY], after),
+        stopped_at=scene.errors(stopped),
     )
 
 
-def _by_novelty(scene: Scene, said: Answers, most: int) -> list[int]:
-    """Rows of the questions of one run, in the order of asking."""
-    asked: list[int] = []
+def chosen(chain: Chain, motions: Motions, most: int) -> list[int]:
+    """Rows of the questions of one run, in the order of asking; no answer changes it."""
+    design, asked = Design(chain, motions), list[int]()
     while len(asked) < most:
-        asked.append(next_motion(novelty(scene.chain, said.motions, asked), asked))
+        asked.append(next_motion(design.worth(asked), asked))
     return asked
 
 
-def _by_disagreement(cell: CurveCell, scene: Scene, said: Sequence[Answers], most: int) -> list[list[int]]:
-    """Rows of the questions of each run: the first at random, then where an ensemble disagrees most."""
-    asked = [list(range(min(TOO_FEW, most))) for _ in said]
-    while len(asked[0]) < most:
-        for run, ensemble in _ensembles(cell, scene, said, dict(enumerate(asked))).items():
-            apart = disagreement(ensemble, scene.decoder, scene.chain, said[run].motions)
-            asked[run].append(next_motion(apart, asked[run]))
-    return asked
+def _stop(scene: Scene, said: Answers, order: Sequence[int]) -> int:
+    """After how many answers `latentarm align` stops."""
+    history: list[float] = []
+    for count in range(TOO_FEW, len(order)):
+        history.append(scene.meant(said[np.array(order[:count])]).share)
+        if StoppingRule().enough(history):
+            return count
+    return len(order)
 
 
-def _stops(
-    cell: CurveCell, scene: Scene, said: Sequence[Answers], asked: Sequence[Sequence[int]]
-) -> list[int]:
-    """After how many answers each run would have stopped, as `latentarm align` does."""
-    most = len(asked[0])
-    after = [most] * len(said)
-    asking = {run: list[float]() for run in range(len(said))}
-    for count in range(TOO_FEW, most):
-        rows = {run: asked[run][:count] for run in asking}
-        for run, ensemble in _ensembles(cell, scene, said, rows).items():
-            motions = said[run].motions
-            apart = disagreement(ensemble, scene.decoder, scene.chain, motions)
-            asking[run].append(disagreement_share(apart, scene.chain, motions))
-            if StoppingRule().enough(asking[run]):
-                after[run] = count
-                del asking[run]
-        if not asking:
-            break
-    return after
-
-
-def _ensembles(
-    cell: CurveCell, scene: Scene, said: Sequence[Answers], rows: Mapping[int, Sequence[int]]
-) -> dict[int, tuple[LearnedAlignment, ...]]:
-    """An ensemble for each of some runs, from the answers so far, all learned in one fit."""
-    learned, size = cell.learned.cell, cell.preset.curves.ensemble
-    drawn = [
-        sample
-        for run, asked in rows.items()
-        for sample in bootstrap(
-            said[run][np.array(asked)],
-            size,
-            generator(learned.seed, learned.task, Stream.ENSEMBLES, run, len(asked)),
-        )
-    ]
-    config = FitConfig(steps=cell.preset.curves.ensemble_steps)
-    alignments = scene.learn(drawn, config, [*range(size)] * len(rows)).alignments
-    return {run: alignments[size * place : size * (place + 1)] for place, run in enumerate(rows)}
-
-
-def _errors(
-    cell: CurveCell,
-    scene: Scene,
-    said: Sequence[Answers],
-    asked: Sequence[Sequence[int]],
-    counts: Sequence[int],
-) -> FloatArray:
-    """Relative errors (R,) of what each run learns from its first answers, ``counts`` of them."""
-    config = FitConfig(steps=cell.preset.steps)
-    errors = np.empty(len(said))
-    for count in sorted(set(counts)):
-        runs = [run for run, own in enumerate(counts) if own == count]
-        answers = [said[run][np.array(asked[run][:count])] for run in runs]
-        errors[runs] = scene.errors(scene.learn(answers, config, runs).alignments)
-    return errors
+def _with_priors(cell: CurveCell, scene: Scene, said: Sequence[Answers], count: int) -> FloatArray:
+    """Relative errors (R,) of All Priors with the first answers, which are at random."""
+    answers = [one[np.arange(count)] for one in said]
+    return scene.errors(scene.learn(answers, FitConfig(steps=cell.preset.steps), range(len(said))).alignments)

@@ -20,14 +20,14 @@ from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.simulation.drive import RATE_HZ, Setup, simulate
 from latentarm.simulation.drives import drive_plan
 from latentarm.studies.alignment.drives_learning import DriveCell, Learned, learn
-from latentarm.studies.alignment.preset import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS, Preset
+from latentarm.studies.alignment.preset import ALL_PRIORS, IDEAL, NO_ALIGN, TOOL_SPACE, WITHOUT_PRIORS, Preset
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray, StepRecord
 
-HELPED: Final = f"{ALL_PRIORS}, shared autonomy"
+HELPED: Final = f"{TOOL_SPACE}, shared autonomy"
 KNOWS: Final = "knows the arm"
-DRIVEN: Final = (NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS, HELPED, IDEAL, KNOWS)
+DRIVEN: Final = (NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS, TOOL_SPACE, HELPED, IDEAL, KNOWS)
 """All conditions, as tables and figures order them."""
 
 PATH_HZ: Final = 10.0
@@ -151,7 +151,7 @@ def _there(task: Task, goal: int, record: StepRecord) -> bool:
 
 
 def _setup(task: Task, learned: Learned, seed: int, condition: str, limit_s: float) -> Setup:
-    alignment = {KNOWS: NO_ALIGN, HELPED: ALL_PRIORS}.get(condition, condition)
+    alignment = {KNOWS: NO_ALIGN, HELPED: TOOL_SPACE}.get(condition, condition)
     return Setup(
         task,
         LatentController(learned.model.decoder(seed), learned.alignments[seed][alignment]),

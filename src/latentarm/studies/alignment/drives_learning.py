@@ -17,21 +17,22 @@ from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import Alignment, identity
 from latentarm.alignment.demonstrated import demonstrated_motions, shown
 from latentarm.alignment.error import relative_alignment_error
-from latentarm.alignment.priors import NO_PRIORS
-from latentarm.alignment.queries import ENSEMBLE, StoppingRule
-from latentarm.alignment.training import FitConfig
+from latentarm.alignment.queries import StoppingRule
+from latentarm.alignment.training import FitConfig, fit_alignments
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.kinematics.chain import Chain
 from latentarm.models.model import LatentActionModel
 from latentarm.operators.expectation import Expectation, displacements, main_directions
-from latentarm.runs.questions import Scene, ask, unwatched
+from latentarm.runs.questions import Scene, ask
 from latentarm.simulation.asking import FASTEST, SimulatedPerson
 from latentarm.simulation.drive import STATE_NOISE_RAD
+from latentarm.studies.alignment.cell import ideal_config
 from latentarm.studies.alignment.preset import (
     ALL_PRIORS,
     IDEAL,
     LEARNED,
     NO_ALIGN,
+    TOOL_SPACE,
     WITHOUT_PRIORS,
     Preset,
     Stream,
@@ -152,19 +153,26 @@ def _alignments(
     ideal: Answers,
 ) -> dict[str, Alignment]:
     """Every alignment of one model: with priors and without, from the same answers."""
-    drawing, asking = (_generator(cell, use, seed_index) for use in (Stream.CANDIDATES, Stream.ENSEMBLES))
+    drawing = _generator(cell, Stream.CANDIDATES, seed_index)
     motions, unlabelled = shown(training, "state", person.chain, drawing)
-    scene = Scene(model, seed_index, person.chain, motions, unlabelled, asking, unwatched)
+    scene = Scene(model, seed_index, person.chain, motions)
     count = cell.preset.drives.answers
     # Asking never stops early, so that every model has the same number of answers.
     stopping = StoppingRule(share=0.0, patience=count)
     answers = ask(scene, SimulatedPerson(person, _unheard), count, _unheard, stopping)
-    few = {
-        name: scene.learn([answers] * ENSEMBLE, FitConfig(LEARNED[name], steps=cell.preset.steps)).best
-        for name in (WITHOUT_PRIORS, ALL_PRIORS)
+
+    def learn(answers: Answers, config: FitConfig) -> Alignment:
+        return fit_alignments(model, person.chain, [answers], unlabelled, config, seed_index=seed_index).best
+
+    return {
+        NO_ALIGN: identity,
+        **{
+            name: learn(answers, FitConfig(LEARNED[name], steps=cell.preset.steps))
+            for name in (WITHOUT_PRIORS, ALL_PRIORS)
+        },
+        TOOL_SPACE: scene.learn(answers).with_arm(model.decoder(seed_index), person.chain),
+        IDEAL: learn(ideal, ideal_config(cell.preset)),
     }
-    best = scene.learn([ideal], FitConfig(NO_PRIORS, steps=cell.preset.ideal_steps)).best
-    return {NO_ALIGN: identity, **few, IDEAL: best}
 
 
 def _errors(

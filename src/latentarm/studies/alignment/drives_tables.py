@@ -1,8 +1,8 @@
 """Figures of the drives, tests of what alignment does for them, and the tables of both.
 
-All Priors is compared with No Align and with No Priors, drive by drive: each pair has the same model, goal,
-start and chances. Whether the goal is reached is tested by McNemar's exact test, the time by a paired t test;
-both are one-sided, and corrected by Holm's method over all tests with one kind of model.
+Tool Space is compared with No Align, No Priors and All Priors, drive by drive: each pair has the same model,
+goal, start and chances. Whether the goal is reached is tested by McNemar's exact test, the time by a paired t
+test; both are one-sided, and corrected by Holm's method over all tests with one kind of model.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.table import ABSENT, format_figure
 from latentarm.studies.alignment.drives import DRIVEN, HELPED, KNOWS, DrivesResult
 from latentarm.studies.alignment.drives_learning import TASK
-from latentarm.studies.alignment.preset import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS
+from latentarm.studies.alignment.preset import ALL_PRIORS, IDEAL, NO_ALIGN, TOOL_SPACE, WITHOUT_PRIORS
 from latentarm.studies.hypotheses import Comparison, comparison_table, corrected
 from latentarm.studies.page import markdown_table
 from latentarm.studies.statistics import Statistic, format_p, paired
@@ -26,6 +26,9 @@ REACHED: Final = "arrival_rate"
 TIME: Final = "time_s"
 DONE: Final = "success_rate"
 ERROR: Final = "relative_alignment_error"
+
+AGAINST: Final = (NO_ALIGN, WITHOUT_PRIORS, ALL_PRIORS)
+"""What Tool Space is compared with."""
 
 
 def drive_figures(result: DrivesResult, condition: str) -> dict[str, FloatArray]:
@@ -73,13 +76,13 @@ def compare_drives(results: Sequence[DrivesResult]) -> list[Comparison]:
     """Every test, model by model."""
     comparisons: list[Comparison] = []
     for result in results:
-        figures = {name: drive_figures(result, name) for name in (ALL_PRIORS, NO_ALIGN, WITHOUT_PRIORS)}
+        figures = {name: drive_figures(result, name) for name in (TOOL_SPACE, *AGAINST)}
         comparisons += [
             _test(
-                result.cell.model, measure, against, figures[ALL_PRIORS][measure], figures[against][measure]
+                result.cell.model, measure, against, figures[TOOL_SPACE][measure], figures[against][measure]
             )
             for measure in (REACHED, TIME)
-            for against in (NO_ALIGN, WITHOUT_PRIORS)
+            for against in AGAINST
         ]
     return corrected(comparisons)
 
@@ -93,7 +96,7 @@ def _test(model: str, measure: str, against: str, own: FloatArray, other: FloatA
         task=TASK,
         model=model,
         measure=measure,
-        subject=ALL_PRIORS,
+        subject=TOOL_SPACE,
         against=against,
         direction="greater" if more else "less",
         mean=float(own.mean()),
@@ -117,6 +120,7 @@ WORDS: Final = {
     NO_ALIGN: "z = u",
     WITHOUT_PRIORS: "learned from the answers alone",
     ALL_PRIORS: "learned from the same answers and all priors",
+    TOOL_SPACE: "learned from the same answers as `latentarm align` does",
     HELPED: "the same, with help towards the likely goals, as in the demo",
     IDEAL: "learned from many more answers",
     KNOWS: "z = u and a person of equation 24 who knows exactly what each input does: the demo's operator",
@@ -192,7 +196,7 @@ def _said(tests: Sequence[Comparison]) -> list[str]:
     """The results of one model's tests, one sentence each."""
     words = {REACHED: "reaches more goals than", TIME: "is faster than"}
     return [
-        f"{ALL_PRIORS} {words[one.measure]} {one.against}: "
+        f"{TOOL_SPACE} {words[one.measure]} {one.against}: "
         + ("supported" if one.holds else f"**not supported**{_why(one)}")
         for one in tests
     ]

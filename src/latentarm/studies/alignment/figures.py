@@ -8,7 +8,7 @@ import numpy as np
 from latentarm.metrics.looks import look_of
 from latentarm.simulation.drive_figures import GOAL_COLOURS, GOAL_MARKERS, OUTCOMES, outcome_lines
 from latentarm.studies.alignment.cell import CellResult
-from latentarm.studies.alignment.curves import AT_RANDOM, BY_NOVELTY, CHOICES, CurveResult
+from latentarm.studies.alignment.curves import CHOICES, CHOSEN, PRIORS_AT_RANDOM, CurveResult
 from latentarm.studies.alignment.drives import DRIVEN, Driven, DrivesResult
 from latentarm.studies.alignment.hypotheses import RANDOM_ANSWERS
 from latentarm.studies.alignment.preset import CONDITIONS
@@ -125,7 +125,7 @@ def curves_figure(curves: Sequence[CurveResult], tasks: Sequence[str]) -> "Figur
     places = list(dict.fromkeys((curve.cell.learned.cell.model, curve.cell.noise) for curve in curves))
     figure = new_figure(CURVES_ROW_MM * len(places) + CURVES_FRAME_MM, TWO_COLUMNS_MM)
     figure.suptitle(
-        "Relative alignment error, all priors, mean over runs with 95 % interval; people and arm simulated",
+        "Relative alignment error, mean over runs with 95 % interval; people and arm simulated",
         fontsize=FONT_SIZE,
     )
     panels = figure.subplots(len(places), len(tasks), sharex=True, squeeze=False)
@@ -159,13 +159,13 @@ def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
             elinewidth=0.6,
             zorder=3 + index,
         )
-    if RANDOM_ANSWERS in curve.errors[AT_RANDOM]:
+    if RANDOM_ANSWERS in curve.errors[PRIORS_AT_RANDOM]:
         axes.axhline(
-            curve.errors[AT_RANDOM][RANDOM_ANSWERS].mean(),
+            curve.errors[PRIORS_AT_RANDOM][RANDOM_ANSWERS].mean(),
             color="black",
             linestyle=":",
             linewidth=0.8,
-            label=f"{RANDOM_ANSWERS} answers at random",
+            label=f"{PRIORS_AT_RANDOM}, {RANDOM_ANSWERS} answers",
             zorder=2,
         )
     axes.plot(
@@ -174,7 +174,7 @@ def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
         marker="*",
         markersize=8.0,
         color="white",
-        markeredgecolor=look_of(BY_NOVELTY).colour,
+        markeredgecolor=look_of(CHOSEN).colour,
         linestyle="none",
         label="where asking stops (mean)",
         zorder=8,
@@ -185,7 +185,7 @@ def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
     tidy(axes)
 
 
-DRIVES_ROW_MM: Final = 36.0
+DRIVES_ROW_MM: Final = 32.0
 DRIVES_LEGEND_MM: Final = 18.0
 VIEW: Final = ((-0.6, 0.6), (-0.2, 0.85))
 """What is shown, y from and to, x from and to, m."""

@@ -3,11 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
+from math import pi
 from typing import Final
 
 from latentarm.alignment.priors import NO_PRIORS, Priors
-from latentarm.alignment.queries import ENSEMBLE
-from latentarm.alignment.training import QUICK
 
 
 @dataclass(frozen=True)
@@ -15,22 +14,33 @@ class Curves:
     """Sizes of the learning curves.
 
     Attributes:
-        models: whose decoders.
         noises: coefficients of variation of the answers.
         answers: numbers of answers at which the error is taken, rising.
+        networks: those of them at which it is also taken of All Priors, which takes longer.
         candidates: motions that may be asked about.
-        ensemble: alignments whose disagreement is looked at.
-        ensemble_steps: of Adam, for each ensemble.
-        disagreement_up_to: answers up to which questions are also chosen by disagreement.
     """
 
-    models: tuple[str, ...] = ("cae",)
-    noises: tuple[float, ...] = (0.0,)
-    answers: tuple[int, ...] = (1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30)
+    noises: tuple[float, ...] = (0.0, 0.5)
+    answers: tuple[int, ...] = (1, 2, 3, 4, 6, 10)
+    networks: tuple[int, ...] = (2, 4, 10)
     candidates: int = 100
-    ensemble: int = ENSEMBLE
-    ensemble_steps: int = QUICK.steps
-    disagreement_up_to: int = 10
+
+
+@dataclass(frozen=True)
+class Turning:
+    """People whose axes turn over the table.
+
+    Attributes:
+        people: simulated; each answers about other motions.
+        noises: coefficients of variation of their answers.
+        turn_rad: by how much their axes are turned at the far ends of the table, one way and the other, rad.
+        ideal_people: the first of them, for whom Ideal Align is learned.
+    """
+
+    people: int = 20
+    noises: tuple[float, ...] = (0.0, 0.5)
+    turn_rad: float = pi / 3
+    ideal_people: int = 6
 
 
 @dataclass(frozen=True)
@@ -47,7 +57,7 @@ class Drives:
         limit_s: a drive that lasts longer has failed, s.
     """
 
-    models: tuple[str, ...] = ("cvae", "isometric")
+    models: tuple[str, ...] = ("cvae",)
     seeds: int = 3
     episodes: int = 60
     epochs: int = 16
@@ -62,6 +72,7 @@ class Preset:
 
     Attributes:
         name: what it is called on the command line.
+        models: whose decoders alignments are learned for; the paper's alone where time counts.
         episodes: demonstrations that train the decoder and that questions are about; a fifth of them is for
             validation and decides which epoch is best.
         test_episodes: further ones, that alignments are judged on.
@@ -76,12 +87,18 @@ class Preset:
         test_motions: held-out motions that the error is averaged over.
         runs: alignments of each kind, each with different answers; 10 in the paper.
         steps: of Adam, for each alignment.
-        ideal_steps: the same for Ideal Align.
+        ideal_runs: alignments of Ideal Align, which hardly differ.
+        ideal_steps: of Adam, for each of them.
+        ideal_rate: its learning rate at the start.
+        ideal_held_out: share of its answers that decide which weights are kept.
+        surroundings: demonstrated motions that say which directions a place has.
         curves: how error falls with the number of answers.
+        turning: people whose axes turn.
         drives: drives to the goals of the demo.
     """
 
     name: str
+    models: tuple[str, ...] = ("cae",)
     episodes: int = 40
     test_episodes: int = 10
     epochs: int = 60
@@ -95,8 +112,13 @@ class Preset:
     test_motions: int = 500
     runs: int = 10
     steps: int = 400
-    ideal_steps: int = 1500
+    ideal_runs: int = 3
+    ideal_steps: int = 5000
+    ideal_rate: float = 0.02
+    ideal_held_out: float = 0.1
+    surroundings: int = 1000
     curves: Curves = field(default_factory=Curves)
+    turning: Turning = field(default_factory=Turning)
     drives: Drives = field(default_factory=Drives)
 
 
@@ -114,9 +136,10 @@ PRESETS: Final[dict[str, Preset]] = {
         runs=3,
         steps=25,
         ideal_steps=60,
-        curves=Curves(
-            noises=(0.0,), answers=(1, 3, 5), candidates=30, ensemble_steps=20, disagreement_up_to=5
-        ),
+        ideal_runs=2,
+        surroundings=300,
+        curves=Curves(noises=(0.0,), answers=(1, 2, 4), networks=(2, 4), candidates=30),
+        turning=Turning(people=3, noises=(0.0,), ideal_people=2),
         drives=Drives(
             models=("cvae",), seeds=1, episodes=12, epochs=2, answers=4, to_each_goal=1, limit_s=3.0
         ),
@@ -139,6 +162,9 @@ class Stream(IntEnum):
     CANDIDATES = 9
     CANDIDATE_ANSWERS = 10
     ENSEMBLES = 11
+    PEOPLE = 12
+    PEOPLE_QUESTIONS = 13
+    SURROUNDINGS = 14
 
 
 NO_ALIGN: Final = "No Align"
@@ -146,6 +172,8 @@ MANUAL: Final = "Manual Align"
 WITHOUT_PRIORS: Final = "No Priors"
 ALL_PRIORS: Final = "All Priors"
 IDEAL: Final = "Ideal Align"
+TOOL_SPACE: Final = "Tool Space"
+"""What `latentarm align` does."""
 
 SINGLE_PRIORS: Final[Mapping[str, Priors]] = {
     "Proportional": replace(NO_PRIORS, proportional=Priors().proportional),
@@ -155,9 +183,9 @@ SINGLE_PRIORS: Final[Mapping[str, Priors]] = {
 """One prior at a time, with its weight from All Priors."""
 
 LEARNED: Final[Mapping[str, Priors]] = {WITHOUT_PRIORS: NO_PRIORS, **SINGLE_PRIORS, ALL_PRIORS: Priors()}
-"""Networks that are learned from a few answers, and the priors of each, as in `latentarm align`."""
+"""Networks that are learned from a few answers, and the priors of each."""
 
-FEW_ANSWERS: Final = (MANUAL, *LEARNED)
+FEW_ANSWERS: Final = (MANUAL, *LEARNED, TOOL_SPACE)
 """The conditions that get the same few answers."""
 
 CONDITIONS: Final = (NO_ALIGN, *FEW_ANSWERS, IDEAL)

@@ -1,5 +1,6 @@
 """Everything that the study measured, as its rows, the figures of every run, and how long it took."""
 
+import timeit
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from time import perf_counter
@@ -10,10 +11,11 @@ from threadpoolctl import threadpool_limits
 from latentarm.alignment.training import FitConfig
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.studies.alignment.cell import CellResult
-from latentarm.studies.alignment.curves import BY_NOVELTY, CurveResult
+from latentarm.studies.alignment.curves import CHOSEN, CurveResult
 from latentarm.studies.alignment.drives import DrivesResult
 from latentarm.studies.alignment.preset import ALL_PRIORS, CONDITIONS, LEARNED, Stream, under
 from latentarm.studies.alignment.scene import LearnedDecoder, scene_of
+from latentarm.studies.alignment.turning import TurningResult
 from latentarm.types import FloatArray, Row
 
 STUDY: Final = "alignment"
@@ -27,8 +29,10 @@ ENCODED: Final = "the encoder's own choice"
 """Condition of the rows that say what the encoder's own latent actions come to."""
 
 
-def rows_of(results: Sequence[CellResult], curves: Sequence[CurveResult]) -> list[Row]:
-    """Mean and SD over runs of every figure; the table of each task and model first, then the curves."""
+def rows_of(
+    results: Sequence[CellResult], curves: Sequence[CurveResult], turning: Sequence[TurningResult]
+) -> list[Row]:
+    """Mean and SD of every figure: the tables, then the curves, then people whose axes turn."""
     rows: list[Row] = []
     for task, model in dict.fromkeys((result.cell.task, result.cell.model) for result in results):
         here = [result for result in results if (result.cell.task, result.cell.model) == (task, model)]
@@ -44,7 +48,20 @@ def rows_of(results: Sequence[CellResult], curves: Sequence[CurveResult]) -> lis
             summarise(Subject(STUDY, cell.task, cell.model, condition), measure, values)
             for condition, measure, values in curve_figures(curve)
         ]
+    for result in turning:
+        cell = result.cell.learned.cell
+        rows += [
+            summarise(
+                Subject(STUDY, cell.task, cell.model, of_turning(name, result.cell.noise)), ERROR, values
+            )
+            for name, values in result.errors.items()
+        ]
     return rows
+
+
+def of_turning(condition: str, noise: float) -> str:
+    """How rows name a condition with people whose axes turn."""
+    return under(f"axes turn, {condition}", noise)
 
 
 def curve_figures(curve: CurveResult) -> Iterator[tuple[str, str, FloatArray]]:
@@ -53,9 +70,14 @@ def curve_figures(curve: CurveResult) -> Iterator[tuple[str, str, FloatArray]]:
     for choice, errors in curve.errors.items():
         for count, values in errors.items():
             yield under(asked(choice, count), noise), ERROR, values
-    stopped = under(f"{BY_NOVELTY}, stopped", noise)
+    stopped = under(f"{CHOSEN}, stopped", noise)
     yield stopped, ANSWERS, curve.stopped_after
     yield stopped, ERROR, curve.stopped_at
+
+
+CALLS: Final = 20
+REPEATS: Final = 5
+"""Calls of an alignment that are timed together, and how often; the fastest counts."""
 
 
 def asked(choice: str, count: int) -> str:
@@ -71,12 +93,14 @@ class Measured:
         decoders: that the alignments stand on.
         results: the cells of the table, by task, model and noise.
         curves: by noise, model and task.
+        turning: people whose axes turn, by noise.
         drives: one for each kind of model that was driven with.
     """
 
     decoders: Sequence[LearnedDecoder]
     results: Sequence[CellResult]
     curves: Sequence[CurveResult]
+    turning: Sequence[TurningResult]
     drives: Sequence[DrivesResult]
 
 
@@ -92,6 +116,18 @@ def by_run(measured: Measured) -> list[dict[str, object]]:
         for curve in measured.curves
         for name, measure, values in curve_figures(curve)
     ]
+    turning = [
+        (
+            result.cell.learned.cell.task,
+            result.cell.learned.cell.model,
+            of_turning(name, result.cell.noise),
+            result.cell.noise,
+            ERROR,
+            values,
+        )
+        for result in measured.turning
+        for name, values in result.errors.items()
+    ]
     return [
         {
             "task": task,
@@ -101,7 +137,7 @@ def by_run(measured: Measured) -> list[dict[str, object]]:
             "measure": measure,
             "values": values.tolist(),
         }
-        for task, model, name, noise, measure, values in (*table, *curves)
+        for task, model, name, noise, measure, values in (*table, *curves, *turning)
     ]
 
 
@@ -133,24 +169,24 @@ def timings(measured: Measured) -> dict[str, object]:
 
 
 def time_alignment(learned: LearnedDecoder) -> dict[str, object]:
-    """How long one alignment with all priors takes, alone and with all runs in one fit, s; on one thread."""
+    """How long one alignment takes to learn, with priors and in tool space, and to call, s; one thread."""
     preset, scene = learned.cell.preset, scene_of(learned)
-    answers = [
-        scene.ask(preset.answers, 0.0, Stream.QUESTIONS, Stream.ANSWERS, run) for run in range(preset.runs)
-    ]
+    answers = [scene.ask(preset.answers, 0.0, Stream.QUESTIONS, Stream.ANSWERS, 0)]
     config = FitConfig(LEARNED[ALL_PRIORS], steps=preset.steps)
-    took_s: list[float] = []
-    for runs in (range(1), range(preset.runs)):
+    with threadpool_limits(limits=1):
         began = perf_counter()
-        with threadpool_limits(limits=1):
-            scene.learn([answers[run] for run in runs], config, runs)
-        took_s.append(perf_counter() - began)
+        scene.learn(answers[:1], config, [0])
+        priors_s, began = perf_counter() - began, perf_counter()
+        alignment = scene.in_tool_space(answers[0])
+        tool_space_s = perf_counter() - began
+        u, context = scene.test.u[0], scene.test.motions.context[0]
+        calls = timeit.repeat(lambda: alignment(u, context), number=CALLS, repeat=REPEATS)
     return {
         "task": learned.cell.task,
         "model": learned.cell.model,
         "answers": preset.answers,
         "steps": preset.steps,
-        "alone_s": took_s[0],
-        "runs": preset.runs,
-        "in_one_fit_s": took_s[1],
+        "all_priors_s": priors_s,
+        "tool_space_s": tool_space_s,
+        "tool_space_call_s": min(calls) / CALLS,
     }

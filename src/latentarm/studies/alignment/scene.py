@@ -11,9 +11,12 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import Alignment
-from latentarm.alignment.demonstrated import demonstrated_motions, noticeable
+from latentarm.alignment.demonstrated import CANDIDATES, demonstrated_motions, noticeable
 from latentarm.alignment.error import lengths, outcome, relative_alignment_error
 from latentarm.alignment.poses import pose_vectors
+from latentarm.alignment.posterior import Posterior, fit_meaning
+from latentarm.alignment.surroundings import Surroundings
+from latentarm.alignment.tool_space import ToolSpace, ToolSpaceAlignment
 from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
 from latentarm.kinematics.chain import Chain
 from latentarm.models.kind import Decoder
@@ -137,6 +140,7 @@ class Scene:
         shown: motions of the training demonstrations that are visibly not rest.
         unlabelled: (M, c), contexts of the training demonstrations.
         test: held-out motions, and what is meant by them without noise.
+        surroundings: of the training demonstrations.
     """
 
     learned: LearnedDecoder
@@ -145,6 +149,7 @@ class Scene:
     shown: Motions
     unlabelled: FloatArray
     test: Answers
+    surroundings: Surroundings
 
     @property
     def model(self) -> LatentActionModel:
@@ -176,11 +181,23 @@ class Scene:
         """An alignment for each of S runs, from the seeds' first weights."""
         return fit_alignments(self.model, self.chain, answers, self.unlabelled, config, seeds=seeds)
 
+    def meant(self, answers: Answers) -> Posterior:
+        """What answers say of the person, judged on the first of the motions that are shown."""
+        few = self.shown[np.arange(min(CANDIDATES, len(self.shown)))]
+        return fit_meaning(answers, self.chain, self.surroundings, few)
+
+    def in_tool_space(self, answers: Answers) -> ToolSpaceAlignment:
+        """The alignment of `latentarm align`."""
+        known = ToolSpace(self.meant(answers).meaning, self.surroundings, answers.motions.duration_s)
+        return known.with_arm(self.decoder, self.chain)
+
     def errors(self, alignments: Sequence[Alignment]) -> FloatArray:
         """Relative errors (S,) on the held-out motions."""
-        return np.array(
-            [relative_alignment_error(one, self.decoder, self.chain, self.test) for one in alignments]
-        )
+        return np.array([self.error(one, self.test) for one in alignments])
+
+    def error(self, alignment: Alignment, test: Answers) -> float:
+        """The relative error for a person who meant ``test``."""
+        return relative_alignment_error(alignment, self.decoder, self.chain, test)
 
     def encoded(self) -> float:
         """The relative error with the latent action that the encoder would choose, which knows the motion.
@@ -213,11 +230,14 @@ def scene_of(learned: LearnedDecoder) -> Scene:
     test = demonstrated_motions(
         demonstrate(cell, Stream.TEST), cell.preset.test_motions, draw(Stream.TEST_MOTIONS)
     )
+    shown = every[np.flatnonzero(noticeable(every, chain))]
+    some = shown[draw(Stream.SURROUNDINGS).permutation(len(shown))[: cell.preset.surroundings]]
     return Scene(
         learned=learned,
         chain=chain,
         preference=preference,
-        shown=every[np.flatnonzero(noticeable(every, chain))],
+        shown=shown,
         unlabelled=demonstrated_motions(training, cell.preset.unlabelled, draw(Stream.UNLABELLED)).context,
         test=Answers(test, preference.inputs(test)),
+        surroundings=Surroundings.of_motions(some, chain, 2),
     )

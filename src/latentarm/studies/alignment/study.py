@@ -1,13 +1,13 @@
 """`latentarm reproduce alignment`: learning what simulated people mean by their stick (section 8.3)."""
 
 from collections.abc import Sequence
-from math import degrees
+from math import degrees, exp
 from typing import TYPE_CHECKING, Final
 
+from latentarm.alignment import posterior, queries, tool_space
 from latentarm.alignment.demonstrated import DURATION_S
 from latentarm.alignment.poses import ROTATION_WEIGHT_M
 from latentarm.alignment.priors import Priors
-from latentarm.alignment.queries import TOO_FEW
 from latentarm.metrics.looks import look_of
 from latentarm.studies.alignment import curves, drives
 from latentarm.studies.alignment import preset as conditions
@@ -28,7 +28,10 @@ from latentarm.studies.alignment.tables import (
     stopping_table,
     summary_tables,
     target_table,
+    turning_table,
 )
+from latentarm.studies.alignment.turning import TASK as TURNING_TASK
+from latentarm.studies.alignment.turning import TurningCell, TurningResult, measure_turning
 from latentarm.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm.studies.page import render_page
 from latentarm.studies.statistics import LEVEL
@@ -41,20 +44,17 @@ from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MODELS: Final = (PAPER_MODEL, "scl", "isometric")
-"""The paper's decoder, the state-conditioned linear one, and ours."""
-
 TASKS: Final = (*POURING_TASKS, TASK)
 """The paper's tasks, and the demo's table, where goals are driven to."""
 
-AnyCell = Cell | CurveCell | DriveCell
-AnyResult = CellResult | CurveResult | DrivesResult
+AnyCell = Cell | CurveCell | TurningCell | DriveCell
+AnyResult = CellResult | CurveResult | TurningResult | DrivesResult
 
 
 def _measure(request: Request[Preset], grid: Grid) -> Measured:
     wanted = [
         DecoderCell(task, model, request.preset, request.seed)
-        for model in reversed(MODELS)  # the longest first
+        for model in request.preset.models
         for task in request.tasks
         if task in POURING_TASKS
     ]
@@ -65,6 +65,7 @@ def _measure(request: Request[Preset], grid: Grid) -> Measured:
         decoders,
         results=sorted((one for one in found if isinstance(one, CellResult)), key=_place),
         curves=[one for one in found if isinstance(one, CurveResult)],
+        turning=[one for one in found if isinstance(one, TurningResult)],
         drives=[one for one in found if isinstance(one, DrivesResult)],
     )
 
@@ -77,6 +78,8 @@ def measure(cell: AnyCell) -> AnyResult:
     """
     if isinstance(cell, Cell):
         return measure_cell(cell)
+    if isinstance(cell, TurningCell):
+        return measure_turning(cell)
     return measure_curve(cell) if isinstance(cell, CurveCell) else measure_drives(cell)
 
 
@@ -87,16 +90,23 @@ def _cells(request: Request[Preset], decoders: Sequence[LearnedDecoder]) -> list
         CurveCell(learned, noise)
         for noise in preset.curves.noises
         for learned in decoders
-        if learned.cell.model in preset.curves.models
+        if learned.cell.model == PAPER_MODEL
+    ]
+    turning = [
+        TurningCell(learned, noise)
+        for learned in decoders
+        if (learned.cell.task, learned.cell.model) == (TURNING_TASK, PAPER_MODEL)
+        for noise in preset.turning.noises
     ]
     drives = drive_cells(preset, request.seed) if TASK in request.tasks else []
     table = [Cell(learned, noise) for learned in decoders for noise in preset.noises]
-    return [*curves, *drives, *table]
+    return [*drives, *turning, *curves, *table]
 
 
 def _place(result: CellResult) -> tuple[int, int, float]:
     """Where a cell stands in tables."""
-    return TASKS.index(result.cell.task), MODELS.index(result.cell.model), result.cell.noise
+    models = result.cell.learned.cell.preset.models
+    return TASKS.index(result.cell.task), models.index(result.cell.model), result.cell.noise
 
 
 def _decoder_label(cell: DecoderCell) -> str:
@@ -106,14 +116,16 @@ def _decoder_label(cell: DecoderCell) -> str:
 def _label(cell: AnyCell) -> str:
     if isinstance(cell, DriveCell):
         return f"{TASK}, {cell.model}, drives"
+    if isinstance(cell, TurningCell):
+        return f"{TURNING_TASK}, {cell.learned.cell.model}, noise {cell.noise:g}, axes turn"
     what = ", curve" if isinstance(cell, CurveCell) else ""
     return f"{cell.learned.cell.task}, {cell.learned.cell.model}, noise {cell.noise:g}{what}"
 
 
 def _report(request: Request[Preset], measured: Measured) -> Report:
-    rows = [*rows_of(measured.results, measured.curves), *drives_rows(measured.drives)]
+    rows = [*rows_of(measured.results, measured.curves, measured.turning), *drives_rows(measured.drives)]
     tests, drive_tests = compare_conditions(measured.results), compare_drives(measured.drives)
-    reached = targets(measured.results, measured.curves)
+    reached = targets(measured.results, measured.curves, measured.turning)
     figures = _figures(measured)
     # While nothing else runs.
     alone = [time_alignment(one) for one in measured.decoders if one.cell.model == PAPER_MODEL]
@@ -176,15 +188,21 @@ def _page(
         duration_s=DURATION_S,
         rotation_weight_m=ROTATION_WEIGHT_M,
         priors=Priors(),
+        fading=exp(-Priors().gamma),
         conditions=conditions,
         choices=curves,
-        too_few=TOO_FEW,
         verdicts=verdicts(tests),
         target_table=target_table(reached),
         condition_tables={
             task: {model: condition_table(cells) for model, cells in of_task.items()}
             for task, of_task in by_task.items()
         },
+        settings=posterior,
+        queries=queries,
+        tool_space=tool_space,
+        turning=measured.turning,
+        turning_deg=degrees(request.preset.turning.turn_rad),
+        turning_table=turning_table(measured.turning) if measured.turning else "",
         stopping_table=stopping_table(measured.curves),
         curve_tables={_curve_name(curve): curve_table(curve) for curve in measured.curves},
         drives=measured.drives,

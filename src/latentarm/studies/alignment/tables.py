@@ -15,6 +15,7 @@ from latentarm.studies.alignment.drives_tables import REACHED, TIME
 from latentarm.studies.alignment.hypotheses import PAPER_MODEL, Target
 from latentarm.studies.alignment.preset import CONDITIONS, Preset, under
 from latentarm.studies.alignment.rows import ENCODED, ERROR
+from latentarm.studies.alignment.turning import TURNING, TurningResult
 from latentarm.studies.page import markdown_table
 from latentarm.types import FloatArray, Row
 
@@ -44,7 +45,7 @@ def curve_table(curve: CurveResult) -> str:
 
 
 def stopping_table(curves: Sequence[CurveResult]) -> str:
-    """Where asking by novelty stops, and the error there."""
+    """Where asking stops, and the error there."""
     head = ["", "model", "noise", "answers", "relative error"]
     lines = [
         [
@@ -57,6 +58,20 @@ def stopping_table(curves: Sequence[CurveResult]) -> str:
         for curve in curves
     ]
     return markdown_table(head, lines)
+
+
+def turning_table(results: Sequence[TurningResult]) -> str:
+    """Errors with people whose axes turn: conditions down, noises across."""
+    lines = [
+        [
+            f"{name} ({len(results[0].errors[name])} people)",
+            *(_mean_and_sd(one.errors[name]) for one in results),
+        ]
+        for name in TURNING
+    ]
+    return markdown_table(
+        ["relative error, simulated", *(f"noise {one.cell.noise:g}" for one in results)], lines
+    )
 
 
 def target_table(found: Sequence[Target]) -> str:

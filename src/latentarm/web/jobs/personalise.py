@@ -1,7 +1,5 @@
 """Asking a person on the page, and learning from their answers, in a child process."""
 
-from collections.abc import Callable, Generator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final, Literal, final
@@ -14,9 +12,6 @@ from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import Personalise, ShownMotion
 from latentarm.web.protocol.scene import pose_of
-
-_TELL_EVERY: Final = 10
-"""Steps of a fit."""
 
 _FRAMES: Final = 16
 """Poses along a motion; pages glide from one to the next."""
@@ -53,10 +48,8 @@ class _Asked(Message):
 
 
 @final
-class _Fitting(Message):
-    type: Literal["fitting"] = "fitting"
-    last: bool
-    share: float
+class _Learning(Message):
+    type: Literal["learning"] = "learning"
 
 
 @final
@@ -67,7 +60,7 @@ class _Learned(Message):
     error_without: float
 
 
-_Said = _Asked | _Fitting | _Learned
+_Said = _Asked | _Learning | _Learned
 _SAID: Final[TypeAdapter[_Said]] = TypeAdapter(Annotated[_Said, Field(discriminator="type")])
 
 
@@ -119,8 +112,8 @@ class PersonaliseJob:
                         back=back,
                         motion=motion,
                     )
-                case _Fitting(last=last, share=share):
-                    self._change(phase="learning" if last else "thinking", motion=None, share=share)
+                case _Learning():
+                    self._change(phase="learning", motion=None)
                 case _Learned(answers=answers, error=error, error_without=error_without):
                     self._change(
                         phase="learned", answers=answers, error=error, error_without=error_without, share=1.0
@@ -203,20 +196,10 @@ def ask_and_learn(wire: Wire, plan: PersonalisePlan) -> None:
     from latentarm.runs.aligning import NO_ALIGN, PROFILE, alignable, learn
     from latentarm.runs.questions import ask
 
-    last = False
-
-    @contextmanager
-    def watch() -> Generator[Callable[[int, int], None]]:
-        def report(step: int, steps: int) -> None:
-            if step % _TELL_EVERY == 0:
-                wire.say(_Fitting(last=last, share=step / steps))
-
-        yield report
-
-    known = alignable(plan.run, watch=watch)
+    known = alignable(plan.run)
     person = PersonOnPage(wire)
     answers = ask(known.scene, person, plan.questions, lambda text: None, StoppingRule())
-    last = True
+    wire.say(_Learning())
     learned = learn(known, answers, plan.name, person.kind)
     learned.save(plan.out)
     errors = {row.condition: float(row.mean or 0.0) for row in learned.rows}

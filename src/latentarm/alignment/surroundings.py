@@ -1,0 +1,78 @@
+"""What the demonstrations do in each place: the directions that a motion there should keep to."""
+
+from dataclasses import dataclass
+from typing import Final, Self, final
+
+import numpy as np
+
+from latentarm.alignment.answers import Motions
+from latentarm.alignment.poses import pose_vectors
+from latentarm.alignment.twists import motion_twists
+from latentarm.kinematics.chain import Chain
+from latentarm.types import FloatArray
+
+REGIONS: Final = 24
+"""Regions that the demonstrated places are divided into, at most."""
+
+FASTEST: Final = 0.99
+"""Share of the demonstrated motions that are slower than what counts as fast."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """Directions of demonstrated motions by place.
+
+    Attributes:
+        place: (K, 12 k), the middles of regions, as `pose_vectors` has them, m.
+        outside: (K, 6 k, 6 k), symmetric; takes out of a twist what was demonstrated there.
+        width_m: how far a region reaches.
+        fast_m_s: the speed that hardly any demonstrated motion exceeds, m/s.
+    """
+
+    place: FloatArray
+    outside: FloatArray
+    width_m: float
+    fast_m_s: float
+
+    @classmethod
+    def of_motions(cls, motions: Motions, chain: Chain, latent: int) -> Self:
+        """Divide the places into regions (k-means), and take the main directions in each.
+
+        A direction counts as outside by how much less it was demonstrated than the d-th most.
+
+        Args:
+            motions: demonstrated.
+            chain: the arm.
+            latent: d, how many directions an input can have.
+        """
+        from sklearn.cluster import KMeans  # takes a second, and only learning needs it
+
+        place, twist = pose_vectors(chain, motions.start), motion_twists(chain, motions)
+        regions = min(REGIONS, max(1, len(motions) // (2 * latent)))
+        found = KMeans(regions, n_init="auto", random_state=0).fit(place)
+        middles = np.asarray(found.cluster_centers_, dtype=np.float64)
+        outside = np.stack([_outside(twist[found.labels_ == region], latent) for region in range(regions)])
+        apart = np.linalg.norm(middles[:, None] - middles, axis=-1) + np.diag(np.full(regions, np.inf))
+        width = float(np.median(apart.min(axis=1))) if regions > 1 else 1.0
+        speed = float(np.quantile(np.linalg.norm(twist, axis=-1), FASTEST))
+        return cls(middles, outside, max(width, 1e-3), max(speed, 1e-6))
+
+    def __call__(self, place: FloatArray) -> FloatArray:
+        """What takes the demonstrated out of twists at places (..., 12 k): (..., 6 k, 6 k)."""
+        near = np.square(place[..., None, :] - self.place).sum(axis=-1)
+        weight = np.exp(-0.5 * (near - near.min(axis=-1, keepdims=True)) / self.width_m**2)
+        weight /= weight.sum(axis=-1, keepdims=True)
+        flat = weight @ self.outside.reshape(len(self.outside), -1)
+        return flat.reshape(*weight.shape[:-1], *self.outside.shape[1:])
+
+    def planes(self, latent: int) -> FloatArray:
+        """The d main directions of each region, (K, 6 k, d)."""
+        return np.linalg.eigh(self.outside)[1][..., :latent]
+
+
+def _outside(twist: FloatArray, latent: int) -> FloatArray:
+    """(6 k, 6 k) of the motions (N, 6 k) of one region."""
+    spread, directions = np.linalg.eigh(twist.T @ twist)
+    least = max(float(spread[-latent]), 1e-12)
+    return (directions * (1.0 - np.minimum(spread / least, 1.0))) @ directions.T

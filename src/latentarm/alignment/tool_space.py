@@ -1,0 +1,140 @@
+"""The alignment z = f(u, c) that makes the tools do what a person means, by inverting the decoder."""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.alignment.meaning import Meaning
+from latentarm.alignment.poses import pose_vectors_at
+from latentarm.alignment.surroundings import Surroundings
+from latentarm.alignment.twists import tool_jacobian
+from latentarm.errors import UserError
+from latentarm.kinematics.chain import Chain
+from latentarm.models.kind import Decoder
+from latentarm.types import FloatArray
+
+OUTSIDE: Final = 1.0
+"""Weight of motion that was not demonstrated in a place, as a share of a full push."""
+
+RIDGES: Final = (1.0, 0.3, 0.1, 0.03, 0.01, 0.01, 0.01)
+"""Weight of ‖z‖^2 in each step. It falls, so that of several z that do the same, one near rest is found."""
+
+SECANT: Final = 0.05
+"""Half the distance in z over which the decoder's derivative is taken."""
+
+REACH: Final = 0.5
+"""The farthest that one step goes in z."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class ToolSpace:
+    """What is known of a person, without the decoder and the arm that it is used with.
+
+    Attributes:
+        meaning: Q.
+        surroundings: of the demonstrations that the person was asked about.
+        duration_s: of the motions that they were asked about, s.
+    """
+
+    meaning: Meaning
+    surroundings: Surroundings
+    duration_s: float
+
+    def with_arm(self, decoder: Decoder, chain: Chain) -> "ToolSpaceAlignment":
+        """The person's alignment.
+
+        Args:
+            decoder: phi.
+            chain: the arm.
+
+        Raises:
+            UserError: they were asked about another arm or another number of inputs.
+        """
+        inputs, twist = self.meaning.matrix.shape
+        if twist != 6 * len(chain.tools) or inputs != decoder.latent_dim or chain.dof != decoder.action_dim:
+            raise UserError(
+                f"The profile is for {inputs} inputs and {twist // 6} tools, and the model has"
+                f" {decoder.latent_dim} inputs and the arm {len(chain.tools)} tools: align the person again."
+            )
+        return ToolSpaceAlignment(self, decoder, chain)
+
+
+@final
+class ToolSpaceAlignment:
+    """``z = argmin ‖Q(c) J phi(z, c) - u‖^2 + ‖N(c) J phi(z, c)‖^2 + r ‖z‖^2``.
+
+    The first term is what the person means (`Meaning`), the second keeps to what the demonstrations do in the
+    place (`Surroundings`, N in full pushes), and J is the Jacobian of the tools half way through a motion as
+    long as those that were asked about. The minimum is sought by a fixed number of damped Gauss-Newton steps
+    from z = 0, so the time is bounded, nothing is remembered between calls, and z is bounded.
+
+    Args:
+        known: Q, N and the length of a motion.
+        decoder: phi.
+        chain: the arm.
+    """
+
+    def __init__(self, known: ToolSpace, decoder: Decoder, chain: Chain) -> None:
+        self._meaning, self._surroundings = known.meaning, known.surroundings
+        self._duration_s = known.duration_s
+        self._decoder, self._chain = decoder, chain
+        axes = decoder.latent_dim
+        sides = SECANT * np.eye(axes)
+        self._around = np.concatenate([np.zeros((1, axes)), sides, -sides])
+        self._penalty = OUTSIDE / known.surroundings.fast_m_s
+
+    def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
+        """Latent actions.
+
+        Args:
+            u: (..., d), each entry in [-1, 1].
+            context: (..., c); leading axes broadcast against those of ``u``.
+
+        Returns:
+            (..., d), in input units.
+        """
+        state = context[..., : self._chain.dof]
+        transforms = self._chain.link_transforms(state)
+        place = pose_vectors_at(self._chain, transforms)
+        q, outside = self._meaning(place), self._penalty * self._surroundings(place)
+        metric, wanted = self._pulled_back(q, outside, tool_jacobian(self._chain, transforms), u)
+        z = np.zeros(np.broadcast_shapes(u.shape[:-1], state.shape[:-1]) + u.shape[-1:])
+        for step, ridge in enumerate(RIDGES):
+            action, slope = self._linear(z, context)
+            if step == len(RIDGES) - 2:
+                middle = self._chain.link_transforms(state + 0.5 * self._duration_s * action)
+                metric, wanted = self._pulled_back(q, outside, tool_jacobian(self._chain, middle), u)
+            z = z + _limited(_gauss_newton(metric, wanted, action, slope, ridge, z))
+        return z
+
+    def _linear(self, z: FloatArray, context: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The decoded action (..., n), and its derivative (..., n, d) by central differences."""
+        axes = z.shape[-1]
+        decoded = self._decoder.decode(z[..., None, :] + self._around, context[..., None, :])
+        ahead, behind = decoded[..., 1 : axes + 1, :], decoded[..., axes + 1 :, :]
+        return decoded[..., 0, :], ((ahead - behind) / (2 * SECANT)).mT
+
+    @staticmethod
+    def _pulled_back(
+        q: FloatArray, outside: FloatArray, jacobian: FloatArray, u: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """The metric (..., n, n) of joint velocities, and its product (..., n) with the wanted one."""
+        meant, stray = q @ jacobian, outside @ jacobian
+        return meant.mT @ meant + stray.mT @ stray, (u[..., None, :] @ meant)[..., 0, :]
+
+
+def _gauss_newton(
+    metric: FloatArray, wanted: FloatArray, action: FloatArray, slope: FloatArray, ridge: float, z: FloatArray
+) -> FloatArray:
+    """One step (..., d)."""
+    pulled = slope.mT @ metric
+    gradient = (slope.mT @ wanted[..., None])[..., 0] - (pulled @ action[..., None])[..., 0] - ridge * z
+    curvature = pulled @ slope + ridge * np.eye(z.shape[-1])
+    return np.asarray(np.linalg.solve(curvature, gradient[..., None])[..., 0], dtype=np.float64)
+
+
+def _limited(step: FloatArray) -> FloatArray:
+    """A step shortened smoothly to `REACH` at most."""
+    return step / np.sqrt(1.0 + np.square(step).sum(axis=-1, keepdims=True) / REACH**2)

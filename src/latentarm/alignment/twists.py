@@ -1,0 +1,44 @@
+"""Motions of the tools as vectors in which a turn counts like a distance, and how joints cause them."""
+
+import numpy as np
+
+from latentarm.alignment.answers import Motions
+from latentarm.alignment.poses import ROTATION_WEIGHT_M
+from latentarm.kinematics.chain import Chain
+from latentarm.kinematics.rotations import pose_error
+from latentarm.types import FloatArray
+
+
+def motion_twists(chain: Chain, motions: Motions) -> FloatArray:
+    """Mean velocities of all k tools in N motions, (N, 6 k), m/s.
+
+    Of each tool the linear velocity, and the angular one times `ROTATION_WEIGHT_M`, both in the base frame.
+    The squared length is the mean over tools.
+    """
+    parts = [
+        pose_error(chain.forward(motions.start, tool), chain.forward(motions.end, tool))
+        for tool in range(len(chain.tools))
+    ]
+    return np.concatenate(parts, axis=-1) * _weights(chain) / motions.duration_s
+
+
+def tool_jacobian(chain: Chain, transforms: FloatArray) -> FloatArray:
+    """The Jacobian of `motion_twists`: joint velocities to twists.
+
+    Args:
+        chain: the arm.
+        transforms: (..., n, 4, 4), of its links.
+
+    Returns:
+        (..., 6 k, n), m/s per rad/s.
+    """
+    parts = [
+        chain.jacobian_at(transforms, chain.tool_pose(transforms, tool), tool)
+        for tool in range(len(chain.tools))
+    ]
+    return np.concatenate(parts, axis=-2) * _weights(chain)[:, None]
+
+
+def _weights(chain: Chain) -> FloatArray:
+    each = np.repeat([1.0, ROTATION_WEIGHT_M], 3)
+    return np.tile(each, len(chain.tools)) / np.sqrt(len(chain.tools))
