@@ -19,6 +19,7 @@ from latentarm.models.batches import seed_generator
 from latentarm.models.catalogue import MODELS
 from latentarm.models.checkpoint import TrainingState
 from latentarm.models.optimiser import FlatAdam
+from latentarm.models.replay import Replay
 from latentarm.models.training import epoch_bar
 
 NEURAL = [name for name in MODELS if name != "pca"]
@@ -26,10 +27,16 @@ SMALL = {"epochs": 2, "hidden": (8, 8), "window": 2}
 
 
 @pytest.mark.parametrize("name", NEURAL)
-def test_a_seeds_result_does_not_depend_on_the_seeds_beside_it(name, demonstrations, samples):
+def test_a_seeds_result_depends_neither_on_the_seeds_beside_it_nor_on_replays(
+    name, demonstrations, samples, monkeypatch
+):
     context, z = samples
-    together = MODELS[name](seeds=5, seed=10, **SMALL).fit(demonstrations)
     alone = MODELS[name](seeds=1, seed=13, **SMALL).fit(demonstrations)
+    replayed = []
+    monkeypatch.setattr(training, "REPLAYED_STEPS", 0)
+    monkeypatch.setattr(Replay, "__call__", lambda self: (replayed.append(self), Replay.run(self)))
+    together = MODELS[name](seeds=5, seed=10, **SMALL).fit(demonstrations)
+    assert len(replayed) > 1, "no step was replayed"
     np.testing.assert_allclose(alone.decode(z, context)[0], together.decode(z, context)[3], rtol=0, atol=1e-9)
     np.testing.assert_allclose(alone.validation_loss_[0], together.validation_loss_[3], rtol=1e-6)
 
@@ -155,6 +162,17 @@ def test_a_truncated_checkpoint_is_refused(demonstrations, tmp_path):
 def test_divergence_is_said(demonstrations):
     with pytest.raises(UserError, match="diverged for seed 0"):
         MODELS["ae"](**{**SMALL, "learning_rate": 1e30}).fit(demonstrations)
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="this machine has no CUDA")
+@pytest.mark.parametrize("name", ["cvae", "homogeneous"])
+def test_on_cuda_the_losses_are_those_of_the_cpu(name, demonstrations):
+    settings = {"epochs": 8, "hidden": (8, 8), "window": 2, "seeds": 3}
+    reference = MODELS[name](**settings).fit(demonstrations)
+    first, again = (MODELS[name](**settings, device="cuda").fit(demonstrations) for _ in range(2))
+    np.testing.assert_allclose(first.history_[0], reference.history_[0], rtol=1e-3)
+    np.testing.assert_allclose(first.validation_loss_, reference.validation_loss_, rtol=0.1)
+    np.testing.assert_allclose(first.history_, again.history_, rtol=1e-3)
 
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="this machine has CUDA")

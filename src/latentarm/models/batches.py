@@ -1,6 +1,6 @@
 """Batches for the training loop, shuffled for each seed separately."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from typing import Final, NamedTuple, final
 
@@ -15,6 +15,9 @@ ELSEWHERE: Final = 32
 
 ELSEWHERE_JUDGED: Final = 256
 """The same for validation, which always uses the first ones."""
+
+JUDGED_AT_ONCE: Final = 400
+"""Validation pairs per seed that are judged together: what they need stays in the processor's cache."""
 
 FEWEST_STEPS: Final = 16
 """Steps of an epoch, at least: a small dataset is cut into smaller batches."""
@@ -93,7 +96,9 @@ class Batches:
 
     Attributes:
         size: B, pairs per step and seed.
-        validation: all validation pairs as one batch.
+        steps: of an epoch.
+        batch: the current training batch; always the same tensors, which `epoch` fills anew.
+        validation: all validation pairs, in parts.
     """
 
     def __init__(
@@ -102,48 +107,75 @@ class Batches:
         def tensor(values: FloatArray) -> Tensor:
             return torch.from_numpy(values).float().to(device)
 
-        self._seeds, self._noise_dim, self._device = tuple(seeds), noise_dim, device
-        self._context, self._action = _rows(tensor(data.context)), _rows(tensor(data.action))
-        self._elsewhere, self._later = _rows(tensor(data.elsewhere)), _rows(tensor(data.later))
+        self._seeds, self._device = tuple(seeds), device
         self._own, self._pairs, self._places = data.own, data.context.shape[-2], data.elsewhere.shape[-2]
         self._rows = min(ELSEWHERE, self._places)
         self.size = max(1, min(batch_size, self._pairs // FEWEST_STEPS))
-        many, validation = len(seeds), data.validation_context.shape[-2]
-        self.validation = Batch(
-            context=tensor(data.validation_context).expand(many, -1, -1).contiguous(),
-            action=tensor(data.validation_action).expand(many, -1, -1).contiguous(),
-            noise=torch.zeros(many, validation, noise_dim, device=device),
-            elsewhere=tensor(data.elsewhere)[..., :ELSEWHERE_JUDGED, :].expand(many, -1, -1).contiguous(),
-            later=tensor(data.validation_later).expand(many, -1, -1).contiguous(),
-        )
+        self.steps = self._pairs // self.size
+        by_pair = tensor(data.context), tensor(data.action), tensor(data.later)
+        self._by_pair, self._elsewhere = [_rows(table) for table in by_pair], _rows(tensor(data.elsewhere))
+
+        def room(rows: int, width: int) -> Tensor:
+            return torch.zeros(len(seeds), rows, width, device=device)
+
+        context, action, later = (room(self.size, table.shape[-1]) for table in self._by_pair)
+        elsewhere = room(self._rows, self._elsewhere.shape[-1])
+        self.batch = Batch(context, action, room(self.size, noise_dim), elsewhere, later)
+        self.validation = list(self._parts(data, noise_dim, tensor))
+
+    def _parts(
+        self, data: TrainingData, noise_dim: int, tensor: Callable[[FloatArray], Tensor]
+    ) -> Iterator[Batch]:
+        """All validation pairs, for every seed; in one part where a term looks at them all together."""
+        pairs = data.validation_context.shape[-2]
+        at_once = pairs if self._places else JUDGED_AT_ONCE
+
+        def every_seed(values: FloatArray) -> Tensor:
+            return tensor(values).expand(len(self._seeds), -1, -1).contiguous()
+
+        for first in range(0, pairs, at_once):
+            rows = slice(first, first + at_once)
+            context = every_seed(data.validation_context[..., rows, :])
+            yield Batch(
+                context=context,
+                action=every_seed(data.validation_action[..., rows, :]),
+                noise=context.new_zeros(*context.shape[:2], noise_dim),
+                elsewhere=every_seed(data.elsewhere[..., :ELSEWHERE_JUDGED, :]),
+                later=every_seed(data.validation_later[..., rows, :]),
+            )
 
     def epoch(self, epoch: int) -> Iterator[Batch]:
-        """Whole batches of one pass; the pairs that do not fill a last one wait for the next shuffle."""
-        many, size = len(self._seeds), self.size
-        steps = self._pairs // size
+        """Fill `batch` anew and again; pairs that do not fill a last one wait for the next shuffle."""
+        many, size, steps, noise_dim = len(self._seeds), self.size, self.steps, self.batch.noise.shape[-1]
         order = torch.empty(steps, many, size, dtype=torch.int64)
-        noise = torch.empty(steps, many, size, self._noise_dim)
+        noise = torch.empty(steps, many, size, noise_dim)
         places = torch.empty(steps, many, self._rows, dtype=torch.int64)
         for index, seed in enumerate(self._seeds):
             generator = seed_generator(seed, epoch)
             order[:, index] = torch.randperm(self._pairs, generator=generator)[: steps * size].view(
                 steps, size
             )
-            noise[:, index] = torch.randn(steps, size, self._noise_dim, generator=generator)
+            noise[:, index] = torch.randn(steps, size, noise_dim, generator=generator)
             if self._rows:
                 places[:, index] = torch.randint(self._places, (steps, self._rows), generator=generator)
         if self._own:
             # Each seed's rows follow those of the seed before it.
             seed = torch.arange(many)[:, None]
             order, places = order + seed * self._pairs, places + seed * self._places
-        order, noise = order.to(self._device).view(steps, many * size), noise.to(self._device)
-        width = self._elsewhere.shape[-1]
-        places = places.to(self._device).view(steps, many * self._rows)
+        order = order.to(self._device).view(steps, many * size)
+        noise, places = noise.to(self._device), places.to(self._device).view(steps, many * self._rows)
+        current = (self.batch.context, self.batch.action, self.batch.later)
+        filled = [
+            (table, into.flatten(0, 1))
+            for table, into in zip(self._by_pair, current, strict=True)
+            if into.numel()
+        ]
+        elsewhere = self.batch.elsewhere.flatten(0, 1)
         for chosen, drawn, place in zip(order, noise, places, strict=True):
-            yield Batch(
-                context=self._context.index_select(0, chosen).view(many, size, -1),
-                action=self._action.index_select(0, chosen).view(many, size, -1),
-                noise=drawn,
-                elsewhere=self._elsewhere.index_select(0, place).view(many, self._rows, width),
-                later=self._later.index_select(0, chosen).view(many, size, self._later.shape[-1]),
-            )
+            for table, into in filled:
+                torch.index_select(table, 0, chosen, out=into)
+            if noise_dim:
+                self.batch.noise.copy_(drawn)
+            if self._rows:
+                torch.index_select(self._elsewhere, 0, place, out=elsewhere)
+            yield self.batch

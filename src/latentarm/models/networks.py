@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Final, final
+from typing import Final, cast, final
 
 import torch
 from torch import Tensor
 
 from latentarm.models.kind import Shape
+from latentarm.models.perceptron import Perceptrons
 from latentarm.types import FloatArray
 
 Layer = tuple[Tensor, Tensor]
@@ -17,24 +18,29 @@ Networks = Mapping[str, Sequence[Layer]]
 """Layers, input first, by the network's name ("encoder", "decoder")."""
 
 ALIGNMENT: Final = 16
-"""Each tensor starts at a multiple of this many floats within its seed's row (64 bytes). The matrix
-kernels may round differently at other alignments; this keeps a seed's result free of its neighbours."""
+"""Each layer starts at a multiple of this many floats within its seed's row (64 bytes). The matrix
+kernels may round differently at other alignments; this keeps a seed's result free of its neighbours. The bias
+follows the weight directly, so that the two can be one matrix."""
 
 
-def mlp(layers: Sequence[Layer], inputs: Tensor) -> Tensor:
+def mlp(layers: Sequence[Layer], *inputs: Tensor) -> Tensor:
     """S perceptrons with SiLU hidden units, x sigmoid(x), and a linear output.
 
-    SiLU is smooth, so the arm follows the stick smoothly, and on a CPU it costs a tenth of tanh.
+    SiLU is smooth, so the arm follows the stick smoothly. In training the gradient is written out and can be
+    taken once; for a loss that has a gradient in it see `mlp_along`.
 
     Args:
         layers: at least one.
-        inputs: (S, B, in).
+        *inputs: side by side, (S, B, k) each.
 
     Returns:
         (S, B, out).
     """
+    if torch.is_grad_enabled() and layers[0][0].requires_grad:
+        parameters = [parameter for layer in layers for parameter in layer]
+        return cast(Tensor, Perceptrons.apply(len(inputs), *inputs, *parameters))
     *hidden, (weight, bias) = layers
-    values = inputs
+    values = inputs[0] if len(inputs) == 1 else torch.cat(inputs, dim=-1)
     for hidden_weight, hidden_bias in hidden:
         values = torch.nn.functional.silu(torch.baddbmm(hidden_bias, values, hidden_weight))
     return torch.baddbmm(bias, values, weight)
@@ -88,16 +94,20 @@ class FlatNetworks:
         values: (S, P) float32, the weights.
         gradient: (S, P) float32, the gradient that `fill_gradient` filled in.
         networks: the layers, leaves of the graph, sharing memory with ``values``.
+        offsets: where in a row of ``values`` each tensor begins, by name.
     """
 
     def __init__(self, shapes: Mapping[str, Shape], device: torch.device) -> None:
         """Lay out zeros for tensors of the given shapes, each (S, in, out)."""
         self._shapes = dict(shapes)
-        self._offsets: dict[str, int] = {}
+        self.offsets: dict[str, int] = {}
         seeds, length = next(iter(shapes.values()))[0], 0
         for name, (_, *rest) in shapes.items():
-            self._offsets[name] = length
-            length += math.ceil(math.prod(rest) / ALIGNMENT) * ALIGNMENT
+            if not name.endswith(".bias"):
+                length = math.ceil(length / ALIGNMENT) * ALIGNMENT
+            self.offsets[name] = length
+            length += math.prod(rest)
+        length = math.ceil(length / ALIGNMENT) * ALIGNMENT
         self.values = torch.zeros(seeds, length, device=device)
         self.gradient = torch.zeros_like(self.values)
         self._leaves = {
@@ -110,7 +120,7 @@ class FlatNetworks:
         """The tensors by name, as views into a buffer laid out like ``values``."""
         views: dict[str, Tensor] = {}
         for name, (_, *rest) in self._shapes.items():
-            start = self._offsets[name]
+            start = self.offsets[name]
             views[name] = flat[:, start : start + math.prod(rest)].unflatten(1, rest)
         return views
 

@@ -14,7 +14,8 @@ def reconstruction_error(action: Tensor, reconstructed: Tensor) -> Tensor:
     Returns:
         (S,).
     """
-    return (action - reconstructed).square().sum(dim=(1, 2)) / action.shape[1]
+    squared = torch.nn.functional.mse_loss(reconstructed, action, reduction="none")
+    return squared.sum(dim=(1, 2)) / action.shape[1]
 
 
 def kl_divergence(mean: Tensor, log_variance: Tensor) -> Tensor:

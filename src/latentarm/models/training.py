@@ -19,6 +19,7 @@ from latentarm.models.checkpoint import TrainingState, fingerprint, read_checkpo
 from latentarm.models.kind import Shape
 from latentarm.models.networks import FlatNetworks, Networks
 from latentarm.models.optimiser import FlatAdam, falling_rate
+from latentarm.models.replay import Replay, UnreplayableError
 from latentarm.types import FloatArray, IntArray
 from latentarm.untrusted.console import VisibleConsole
 
@@ -27,6 +28,9 @@ Report = Callable[[int, int, float], None]
 
 THREADED_WORK: Final = 40_000
 """Hidden units per layer and step above which a second thread pays off."""
+
+REPLAYED_STEPS: Final = 100
+"""Steps from which recording one and replaying it pays off."""
 
 
 @dataclass(frozen=True)
@@ -115,6 +119,7 @@ def train(
     adam = FlatAdam(networks.values)
     state = TrainingState.start(networks.values, adam)
     settings = asdict(config) | {"identity": identity, "seeds": list(seeds), "shapes": shapes}
+    settings["offsets"] = networks.offsets
     del settings["checkpoint_interval_s"]
     print_of = fingerprint(settings, [getattr(data, field.name) for field in fields(data)])
     if checkpoint is not None and checkpoint.exists():
@@ -128,14 +133,13 @@ def train(
     report = report or _unheard
     report(state.epoch, config.epochs, math.inf)
     with threads_for(len(seeds) * batches.size * max(shape[-1] for shape in shapes.values())):
+        fill_gradient = _gradient(objective, networks, batches, device, state, config)
         while state.epoch < config.epochs and not state.stalled(config.patience).all():
             rate = falling_rate(config.learning_rate, state.epoch, config.epochs)
-            for batch in batches.epoch(state.epoch + 1):
-                networks.fill_gradient(objective(networks.networks, batch).sum())
+            for _ in batches.epoch(state.epoch + 1):
+                fill_gradient()
                 adam.step(networks.values, networks.gradient, rate)
-            with torch.no_grad():
-                loss = objective(networks.networks, batches.validation).cpu().double().numpy()
-            state.record(loss, adam.steps, config.patience)
+            state.record(_validation_loss(objective, networks, batches), adam.steps, config.patience)
             report(state.epoch, config.epochs, float(state.best_loss.mean()))
             if checkpoint is not None and monotonic() - written >= config.checkpoint_interval_s:
                 write_checkpoint(checkpoint, print_of, state)
@@ -154,6 +158,48 @@ def train(
         best_epoch=state.best_epoch.copy(),
         history=np.array(state.history),
     )
+
+
+def _gradient(
+    objective: Callable[[Networks, Batch], Tensor],
+    networks: FlatNetworks,
+    batches: Batches,
+    device: torch.device,
+    state: TrainingState,
+    config: TrainingConfig,
+) -> Callable[[], None]:
+    """What fills in the gradient of the current batch: a `Replay`, if it pays off and proves to be right."""
+
+    def compute() -> None:
+        networks.fill_gradient(objective(networks.networks, batches.batch).sum())
+
+    upcoming = batches.epoch(state.epoch + 1)
+    if (config.epochs - state.epoch) * batches.steps < REPLAYED_STEPS or next(upcoming, None) is None:
+        return compute
+    try:
+        replay = Replay(compute, [*batches.batch, networks.values], device)
+    except UnreplayableError:
+        return compute
+    # On other pairs, so that an objective that depends on more than its arguments is noticed.
+    next(upcoming, None)
+    compute()
+    expected = networks.gradient.clone()
+    networks.gradient.zero_()
+    replay()
+    return replay if torch.equal(networks.gradient, expected) else compute
+
+
+@torch.no_grad()
+def _validation_loss(
+    objective: Callable[[Networks, Batch], Tensor], networks: FlatNetworks, batches: Batches
+) -> FloatArray:
+    """Mean over all validation pairs, (S,)."""
+    total, pairs = torch.zeros(len(networks.values), dtype=torch.float64), 0
+    for part in batches.validation:
+        count = part.context.shape[1]
+        total += count * objective(networks.networks, part).double().cpu()
+        pairs += count
+    return (total / pairs).numpy()
 
 
 @contextmanager

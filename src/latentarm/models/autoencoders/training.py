@@ -21,11 +21,10 @@ class _Autoencoder(NeuralModel, ABC):
 
     def _encoded(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
         """The encoder network on (c, a): (S, B, c) and (S, B, m) to (S, B, d), or 2 d for a Gaussian one."""
-        return mlp(networks["encoder"], torch.cat([context, action], dim=-1))
+        return mlp(networks["encoder"], context, action)
 
     def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
-        seen = torch.cat([latent, context], dim=-1) if self.kind.sees_context else latent
-        return mlp(networks["decoder"], seen)
+        return mlp(networks["decoder"], *((latent, context) if self.kind.sees_context else (latent,)))
 
 
 class _Deterministic(_Autoencoder, ABC):

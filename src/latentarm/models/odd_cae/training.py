@@ -51,7 +51,7 @@ class OddCAE(NeuralModel):
         return error + self.smoothness_weight * reconstruction_error(action, later)
 
     def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
-        return mlp(networks["encoder"], torch.cat([context, action], dim=-1))
+        return mlp(networks["encoder"], context, action)
 
     def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
         forth, back = torch.cat([latent, context], dim=-1), torch.cat([-latent, context], dim=-1)

@@ -38,7 +38,7 @@ class SCN(NeuralModel):
         return reconstruction_error(batch.action, self._action(networks, latent, batch.context))
 
     def _latent(self, networks: Networks, context: Tensor, action: Tensor) -> Tensor:
-        return mlp(networks["encoder"], torch.cat([context, action], dim=-1))
+        return mlp(networks["encoder"], context, action)
 
     def _action(self, networks: Networks, latent: Tensor, context: Tensor) -> Tensor:
         inputs = latent.shape[-1]
