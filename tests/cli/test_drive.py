@@ -9,7 +9,7 @@ import pytest
 
 from latentarm.commands.drive import DriveOptions, drive_run
 from latentarm.errors import UserError
-from latentarm.operators.catalogue import PLANNING, usual_operator
+from latentarm.operators.catalogue import PEOPLE, OperatorName, usual_operator
 from latentarm.simulation.drive_table import COLUMNS, endings_in_words
 
 
@@ -52,5 +52,12 @@ def test_a_recording_has_the_same_rows(tmp_path: Path) -> None:
 
 
 def test_the_operator_plans_where_goals_are_held_out_episodes() -> None:
-    assert PLANNING[usual_operator("held_out")] is not None
-    assert PLANNING[usual_operator("table_top")] is PLANNING[usual_operator("reach")] is None
+    assert PEOPLE[usual_operator("held_out")].plans is not None
+    assert PEOPLE[usual_operator("table_top")].plans is PEOPLE[usual_operator("reach")].plans is None
+
+
+@pytest.mark.parametrize("name", PEOPLE)
+def test_everybody_in_the_catalogue_drives_and_is_named(tmp_path: Path, name: OperatorName) -> None:
+    driven = drive_run(config(tmp_path, operator=name, drives=1, time_limit_s=0.3))
+    assert {entry["operator"] for entry in driven.entries} == {name}
+    assert name in COLUMNS["operator"]

@@ -3,8 +3,10 @@ import pytest
 
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
-from latentarm.operators.boltzmann import BoltzmannConfig, BoltzmannOperator
-from latentarm.operators.planning import PlanningConfig, PlanningOperator
+from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.operators.expectation import Expectation
+from latentarm.operators.person import Person, SimulatedPerson
+from latentarm.operators.planning import PlanningConfig
 from latentarm.robots.planar import planar
 from latentarm.types import Context
 
@@ -47,6 +49,15 @@ def driven(operator, controller, target, seconds, seed=0):
     return state, np.array(inputs)
 
 
+def one_step(config):
+    return SimulatedPerson(ARM, Person(config), PERIOD_S)
+
+
+def planner(config=None):
+    decides = BoltzmannConfig() if config is None else config
+    return SimulatedPerson(ARM, Person(decides, plans=PlanningConfig()), PERIOD_S)
+
+
 def distance(state, target):
     return np.linalg.norm(ARM.chain.forward(state).position - target.position)
 
@@ -54,19 +65,19 @@ def distance(state, target):
 def test_who_plans_leaves_a_dead_end_that_one_step_does_not_leave():
     target = ARM.chain.forward(START + np.array([0.0, 0.5]))
     certain = BoltzmannConfig(beta=1e9)
-    stuck, _ = driven(BoltzmannOperator(ARM, certain, PERIOD_S), Driven(True), target, 10.0)
-    came, inputs = driven(PlanningOperator(ARM, certain, period_s=PERIOD_S), Driven(True), target, 10.0)
+    stuck, _ = driven(one_step(certain), Driven(True), target, 10.0)
+    came, inputs = driven(planner(certain), Driven(True), target, 10.0)
     assert distance(stuck, target) > 0.05
     assert distance(came, target) < 0.02
-    assert np.abs(inputs).max() <= 1.0
+    assert np.linalg.norm(inputs, axis=1).max() <= 1.0 + 1e-9
 
 
 def test_who_is_not_stuck_does_as_equation_24_says():
     target = ARM.chain.forward(START + np.array([0.6, -0.6]))
     config = BoltzmannConfig()
-    one_step = driven(BoltzmannOperator(ARM, config, PERIOD_S), Driven(False), target, 0.4)[1]
-    planning = driven(PlanningOperator(ARM, config, period_s=PERIOD_S), Driven(False), target, 0.4)[1]
-    np.testing.assert_array_equal(planning, one_step)
+    plain = driven(one_step(config), Driven(False), target, 0.4)[1]
+    planning = driven(planner(config), Driven(False), target, 0.4)[1]
+    np.testing.assert_array_equal(planning, plain)
 
 
 def test_a_plan_comes_to_its_end():
@@ -77,13 +88,13 @@ def test_a_plan_comes_to_its_end():
         def action(self, z, context, mode):
             return 0.0 * super().action(z, context, mode)
 
-    _, inputs = driven(PlanningOperator(ARM, period_s=PERIOD_S), Useless(True), target, 5.0)
+    _, inputs = driven(planner(), Useless(True), target, 5.0)
     assert len(np.unique(inputs, axis=0)) > 1
 
 
 def test_the_same_randomness_gives_the_same_drive():
     target = ARM.chain.forward(START + np.array([0.0, 0.5]))
-    operator = PlanningOperator(ARM, period_s=PERIOD_S)
+    operator = planner()
     first, second = (driven(operator, Driven(True), target, 4.0, seed=3)[1] for _ in range(2))
     np.testing.assert_array_equal(first, second)
 
@@ -91,3 +102,9 @@ def test_the_same_randomness_gives_the_same_drive():
 def test_a_plan_without_a_piece_is_refused():
     with pytest.raises(UserError, match="plan"):
         PlanningConfig(pieces=0)
+
+
+def test_only_who_knows_the_arm_plans():
+    guess = Expectation(ARM.chain, np.eye(3)[:2], 0.1)
+    with pytest.raises(UserError, match="knows the arm"):
+        Person(imagines=guess, plans=PlanningConfig())

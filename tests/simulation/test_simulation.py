@@ -6,7 +6,7 @@ from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlp
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.operators.person import Person
 from latentarm.robots.catalogue import load_robot
 from latentarm.simulation.drive import Setup, simulate
 from latentarm.simulation.drives import drive_all
@@ -23,7 +23,7 @@ def setup(
     rule: Rule = BoltzmannBelief,
 ) -> Setup:
     controller = EndEffectorController(task.robot)
-    return Setup(task, controller, arbitration, BoltzmannConfig(), time_limit_s, rule)
+    return Setup(task, controller, arbitration, Person(), time_limit_s, rule)
 
 
 def test_mode_switching_reaches_and_stabs() -> None:

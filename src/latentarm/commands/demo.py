@@ -31,7 +31,7 @@ from latentarm.metrics.summary import Subject, headline
 from latentarm.metrics.table import markdown_table
 from latentarm.models.saving import load_decoder
 from latentarm.models.training import epoch_bar
-from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.operators.person import Person
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.runs.evaluating import evaluate_run
 from latentarm.runs.results_folder import ResultsFolder, vacant_name
@@ -161,8 +161,7 @@ def _conditions(task: TableTop, config: DemoOptions, seeds: int) -> list[tuple[S
         model: str | None, condition: str, controllers: Sequence[Controller], arbitration: Arbitration | None
     ) -> None:
         setups = [
-            Setup(task, one, arbitration, BoltzmannConfig(), TIME_LIMIT_S, arm=config.arm)
-            for one in controllers
+            Setup(task, one, arbitration, Person(), TIME_LIMIT_S, arm=config.arm) for one in controllers
         ]
         conditions.append((Subject("demo", task=task.name, model=model, condition=condition), setups))
 

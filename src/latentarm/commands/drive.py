@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Final, Literal
 
@@ -26,8 +26,7 @@ from latentarm.errors import UserError
 from latentarm.metrics.drives import drive_rows
 from latentarm.metrics.results import as_document
 from latentarm.metrics.summary import Subject
-from latentarm.operators.boltzmann import BoltzmannConfig
-from latentarm.operators.catalogue import PLANNING, OperatorName, usual_operator
+from latentarm.operators.catalogue import PEOPLE, OperatorName, usual_operator
 from latentarm.parallel.grid import check_processes, counting_bar
 from latentarm.robots.limits_file import read_limits
 from latentarm.robots.notices import notices
@@ -90,10 +89,12 @@ class DriveOptions:
     ] = None
     drives: Annotated[int, arg(help="Drives for each goal.")] = 3
     operator: Annotated[
-        Literal["greedy", "planning"] | None,
+        OperatorName | None,
         arg(
-            help="Simulated operator: greedy looks one step ahead (equation 24), planning looks up to 4 s"
-            " ahead where one step leads no nearer. By default planning on held-out episodes, else greedy."
+            help="Simulated operator: greedy knows what each input does and looks one step ahead (equation"
+            " 24); learning has only a linear guess of that, learned while driving; unsteady has a reaction"
+            " time and tremor; planning looks up to 4 s ahead where one step leads no nearer. By default"
+            " planning on held-out episodes, else greedy."
         ),
     ] = None
     beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0
@@ -196,14 +197,14 @@ def drive_run(config: DriveOptions, tell: Callable[[Sequence[str]], None] = lamb
         task = task_of_run(run, config.task, config.robot, config.end_effector, limits, config.demonstrations)
     tell(notices(task.robot))
     operator = config.operator or usual_operator(task.name)
+    person = PEOPLE[operator]
     setup = Setup(
         task=task,
         controller=_controller(config, task),
         arbitration=arbitration,
-        operator=BoltzmannConfig(beta=config.beta),
+        person=replace(person, decides=replace(person.decides, beta=config.beta)),
         time_limit_s=config.time_limit_s or (HELD_OUT_LIMIT_S if task.name == HELD_OUT else TIME_LIMIT_S),
         rule=BELIEFS.find(config.belief, "--belief"),
-        planning=PLANNING[operator],
         arm=config.arm,
     )
     about = _about(config, setup, operator, run, arbitration)

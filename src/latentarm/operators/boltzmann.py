@@ -1,5 +1,6 @@
 """A simulated person who is approximately optimal (equation 24)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import final
 
@@ -8,17 +9,19 @@ import numpy as np
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.kinematics.rotations import angle_between
-from latentarm.operators.foresight import Foresight, KnowsTheArm
-from latentarm.operators.operator import Operator
+from latentarm.operators.decision import Decision
+from latentarm.operators.density import CostModel, InputDensity, Lattice
+from latentarm.operators.foresight import Foresight
+from latentarm.operators.imagination import Imagination
+from latentarm.operators.moment import Moment
 from latentarm.operators.rationality import boltzmann
-from latentarm.robots.robot import Robot
-from latentarm.types import Context, FloatArray, Input, Pose
+from latentarm.types import FloatArray, Input
 
 
 @final
 @dataclass(frozen=True)
 class BoltzmannConfig:
-    """Parameters of the simulated person.
+    """Parameters of a simulated person who looks one step ahead; all values are assumptions.
 
     Attributes:
         beta: rationality of equation 24, 1/m², at the start of a drive; 0 acts at random, infinity always
@@ -26,21 +29,23 @@ class BoltzmannConfig:
         beta_per_s: m of ``beta(t) = beta + m t``, 1/(m² s): somebody who learns within the task.
         horizon_s: the look-ahead dt of equation 24, s: how far ahead an input is imagined.
         rotation_weight: what a radian of wrong orientation counts, m.
-        magnitudes: sizes ‖u‖ of the inputs that are considered, beside no input at all.
-        directions: how many equal angles are considered on a 2-axis input; one axis has two
-            directions, more than two axes have two along each axis.
         decision_s: a person decides this often and holds the input in between, s.
+        rest_share: how often a person without reason (beta = 0) lets go, if they do not switch, 0 to 1.
+        switch_share: how often they ask for another mode, where there is one, 0 to 1.
         switch_cost: a switch of mode must bring the tool this much closer to be worth it, m.
         switch_s: a switch takes this long, during which the input is zero, s.
+
+    Raises:
+        UserError: a figure is out of its range.
     """
 
     beta: float = 2000.0
     beta_per_s: float = 0.0
     horizon_s: float = 0.5
     rotation_weight: float = 0.2
-    magnitudes: tuple[float, ...] = (0.2, 0.6, 1.0)
-    directions: int = 8
     decision_s: float = 0.1
+    rest_share: float = 0.04
+    switch_share: float = 0.04
     switch_cost: float = 0.015
     switch_s: float = 0.8
 
@@ -62,76 +67,74 @@ class BoltzmannConfig:
                     f"The simulated person's {name} must be zero or more, and finite, "
                     f"not {getattr(self, name)}."
                 )
-        if not self.magnitudes or not all(0 < size <= 1 for size in self.magnitudes):
-            raise UserError(
-                f"The simulated person's magnitudes must be in (0, 1], at least one, not {self.magnitudes}."
-            )
-        if self.directions < 2:
-            raise UserError(
-                f"The simulated person needs at least 2 directions of input, not {self.directions}."
-            )
+        for name in ("rest_share", "switch_share"):
+            if not 0 <= getattr(self, name) < 0.5:
+                raise UserError(
+                    f"The simulated person's {name} must be in [0, 0.5), not {getattr(self, name)}."
+                )
 
 
 @final
 @dataclass(frozen=True, eq=False)
-class Options:
-    """What a simulated person can do at one moment, and how likely each is.
+class Outlook:
+    """What a simulated person can do at one moment.
 
     Attributes:
-        inputs: (K, d), inputs in the present mode; the first is zero.
-        input_probability: (K,).
-        switch_probability: of asking for the next mode; all probabilities together sum to one.
+        foresight: where they expect inputs to lead.
+        density: of inputs in the present mode.
+        left_m: how far from the target the best of some inputs leaves the tool, in any mode, m.
+        rest_m: how far it is now, m.
+        push: probability of pushing the stick somewhere.
+        rest: of letting go.
+        switch: of asking for the next mode. The three sum to one.
     """
 
-    inputs: FloatArray
-    input_probability: FloatArray
-    switch_probability: float
+    foresight: Foresight
+    density: InputDensity
+    left_m: float
+    rest_m: float
+    push: float
+    rest: float
+    switch: float
 
 
 @final
-class BoltzmannOperator(Operator):
-    """A simulated person who looks one step ahead and usually picks a helpful input.
+class OneStep(Decision):
+    """Looks one step ahead and usually picks a helpful input.
 
     Equation 24::
 
         p(u) ∝ exp(-beta(t) ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
 
-    over a grid of inputs: none, at which the arm stands still whatever the decoder makes of zero, and
-    every direction at every magnitude. A person who does not know Psi and phi uses a
-    `Foresight` instead. Distance between poses is
+    over all inputs of length 1 at most (see `latentarm.operators.density`), with the person's own
+    `Foresight` in place of Psi and phi where they do not know these. Distance between poses is
     ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks one step ahead only, as in the paper:
     they can get stuck where no single input brings the tool closer. ``beta(t)`` counts from `reset`, by
-    calls of `act`.
+    calls of `decide`.
 
-    Where the controller has several modes, asking for the next mode is one more option. It counts as
-    the best input of the best other mode, with ``switch_cost`` added to the distance that it leaves,
-    so that a switch happens only for a gain of more than ``switch_cost``.
+    A person can also let go, which leaves the tool where it is: one more input of equation 24, with a
+    probability of its own, ``rest_share``, where beta is zero.
+
+    Where the controller has several modes, they first decide whether to ask for the next one. To stay
+    counts as the best input of the present mode, and to switch as the best input of the best other one with
+    ``switch_cost`` added to the distance that it leaves, so that a switch is worth a gain of more than that.
 
     Args:
-        robot: the arm, for its forward kinematics.
         config: how the simulated person thinks.
-        period_s: time between calls of `act`, s.
-        foresight: where the person expects an input to lead; they know the arm and its decoder where None.
+        period_s: time between calls of `decide`, s.
 
     Raises:
         UserError: the period is not positive and finite.
     """
 
-    def __init__(
-        self,
-        robot: Robot,
-        config: BoltzmannConfig | None = None,
-        period_s: float = 0.05,
-        foresight: Foresight | None = None,
-    ) -> None:
+    def __init__(self, config: BoltzmannConfig, period_s: float) -> None:
         if not 0 < period_s < np.inf:
             raise UserError(f"The time between inputs must be positive and finite, not {period_s} s.")
-        self._foresight = KnowsTheArm(robot.chain) if foresight is None else foresight
-        self._config = config or BoltzmannConfig()
+        self._config = config
         self._period_s = period_s
-        self._hold_calls = max(round(self._config.decision_s / period_s), 1)
+        self._hold_calls = max(round(config.decision_s / period_s), 1)
         # The step that asks for the mode already has a zero input.
-        self._switch_calls = max(round(self._config.switch_s / period_s), 1)
+        self._switch_calls = max(round(config.switch_s / period_s), 1)
         self.reset()
 
     def reset(self) -> None:
@@ -140,67 +143,81 @@ class BoltzmannOperator(Operator):
         self._held_calls = 0
         self._calls = 0
 
-    def act(
-        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
-    ) -> Input:
-        """Hold the input of the last decision, or decide again."""
-        time_s = self._calls * self._period_s
-        self._calls += 1
-        if self._held_calls > 0:
-            self._held_calls -= 1
-            return Input(self._held)
-        options = self.options(context, controller, mode, target, time_s)
-        choice = int(
-            rng.choice(
-                len(options.inputs) + 1, p=np.append(options.input_probability, options.switch_probability)
-            )
-        )
-        switches = choice == len(options.inputs)
-        self._held = np.zeros(controller.input_dim) if switches else options.inputs[choice]
-        self._held_calls = (self._switch_calls if switches else self._hold_calls) - 1
-        return Input(self._held, switch_mode=switches)
-
-    def options(
-        self, context: Context, controller: Controller, mode: int, target: Pose, time_s: float = 0.0
-    ) -> Options:
-        """Equation 24 in the present context.
-
-        Args:
-            context: what the arm is at and believes.
-            controller: what the inputs go to.
-            mode: the controller's present mode.
-            target: the pose ``g*`` that the simulated person wants.
-            time_s: t of ``beta(t)``, since the drive began, s.
-
-        Returns:
-            Every option and its probability.
-        """
-        inputs = self._grid(controller.input_dim)
-        cost = self.costs(context, controller, target)
-        others = (float(best) for other, best in enumerate(cost.min(axis=-1)) if other != mode)
-        switch_cost = (np.sqrt(min(others, default=np.inf)) + self._config.switch_cost) ** 2
-        beta = self._config.beta + self._config.beta_per_s * time_s
-        probability = boltzmann(np.append(cost[mode], switch_cost), beta)
-        return Options(inputs, probability[:-1], float(probability[-1]))
-
     @property
     def holding(self) -> bool:
-        """Whether the next call of `act` holds an input, or waits for a mode, without deciding."""
+        """Whether the next call of `decide` holds an input, or waits for a mode, without deciding."""
         return self._held_calls > 0
 
-    def costs(self, context: Context, controller: Controller, target: Pose) -> FloatArray:
-        """Squared distances (M, K), m², that K inputs leave in each of M modes; the first is none."""
-        inputs = self._grid(controller.input_dim)
-        reached = self._foresight(inputs, context, controller, self._config.horizon_s)
-        angle = self._config.rotation_weight * angle_between(reached.rotation, target.rotation)
-        return ((reached.position - target.position) ** 2).sum(axis=-1) + angle**2
+    def decide(
+        self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
+    ) -> Input:
+        """Hold the input of the last decision, or decide again."""
+        if self.holding:
+            return self._hold()
+        return self.take(self.outlook(moment, controller, imagination, rng), moment, controller, rng)
 
-    def _grid(self, input_dim: int) -> FloatArray:
-        """The inputs that are considered, (K, d), the first of them zero."""
-        if input_dim == 2:
-            angle = np.arange(self._config.directions) * (2 * np.pi / self._config.directions)
-            directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    def outlook(
+        self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
+    ) -> Outlook:
+        """Equation 24 at a moment."""
+        config, mode = self._config, moment.mode
+        beta = config.beta + config.beta_per_s * self._calls * self._period_s
+        lattice = Lattice.of(controller.input_dim, rng)
+        inputs = np.concatenate([np.zeros((1, lattice.axes)), lattice.nodes])
+        modes = range(len(controller.modes))
+        foresight = imagination.foresight(rng)
+        cost = self._costs(inputs, moment, controller, modes, foresight)
+        models = [CostModel(lattice, one[1:]) for one in cost]
+        density = InputDensity(models[mode], beta)
+        best = np.fmin(cost[:, 0], [model.least for model in models])
+        other = np.delete(best, mode).min(initial=np.inf)
+        switched = np.square(np.sqrt(other) + config.switch_cost)
+        # What comes first is what they do if no cost is finite: stay, and let go.
+        stay, switch = _shared(boltzmann(np.array([best[mode], switched]), beta), config.switch_share)
+        push, rest = _shared(
+            boltzmann(np.array([cost[mode, 0], density.value]), beta)[::-1], config.rest_share
+        )
+        rest_m, left_m = float(np.sqrt(cost[mode, 0])), float(np.sqrt(best.min()))
+        return Outlook(foresight, density, left_m, rest_m, stay * push, stay * rest, switch)
+
+    def take(
+        self, outlook: Outlook, moment: Moment, controller: Controller, rng: np.random.Generator
+    ) -> Input:
+        """Choose among what there is to do, and begin to do it."""
+        chance = rng.random()
+        switches = chance < outlook.switch
+        if switches or chance < outlook.switch + outlook.rest:
+            self._held = np.zeros(controller.input_dim)
         else:
-            directions = np.concatenate([np.eye(input_dim), -np.eye(input_dim)])
-        sized = [size * directions for size in self._config.magnitudes]
-        return np.concatenate([np.zeros((1, input_dim)), *sized])
+            one = (moment.mode,)
+            self._held = outlook.density.draw(
+                lambda u: self._costs(u, moment, controller, one, outlook.foresight)[0], rng
+            )[0]
+        self._held_calls = self._switch_calls if switches else self._hold_calls
+        return Input(self._hold().u, switch_mode=switches)
+
+    def _hold(self) -> Input:
+        self._held_calls -= 1
+        self._calls += 1
+        return Input(self._held)
+
+    def _costs(
+        self,
+        inputs: FloatArray,
+        moment: Moment,
+        controller: Controller,
+        modes: Sequence[int],
+        foresight: Foresight,
+    ) -> FloatArray:
+        """Squared distances (M, K), m², that K inputs leave in each of M modes."""
+        reached = foresight(inputs, moment.context, controller, modes, self._config.horizon_s)
+        angle = self._config.rotation_weight * angle_between(reached.rotation, moment.target.rotation)
+        return np.square(reached.position - moment.target.position).sum(axis=-1) + np.square(angle)
+
+
+def _shared(likely: FloatArray, share: float) -> list[float]:
+    """Probabilities of two options: the second has this share where both are worth as much."""
+    weight = likely * np.array([1.0 - share, share])
+    if not weight.any():
+        weight = likely
+    return (weight / weight.sum()).tolist()

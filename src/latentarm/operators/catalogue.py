@@ -1,17 +1,23 @@
-"""The simulated operators by name, and the one place that constructs them."""
+"""The simulated people by name."""
 
 from typing import Final, Literal
 
-from latentarm.operators.boltzmann import BoltzmannConfig, BoltzmannOperator
-from latentarm.operators.foresight import Foresight
-from latentarm.operators.operator import Operator
-from latentarm.operators.planning import PlanningConfig, PlanningOperator
-from latentarm.robots.robot import Robot
+from latentarm.operators.hand import UNSTEADY
+from latentarm.operators.linear_guess import LinearGuessConfig
+from latentarm.operators.person import Person
+from latentarm.operators.planning import PlanningConfig
 
-OperatorName = Literal["greedy", "planning"]
+OperatorName = Literal["greedy", "learning", "unsteady", "planning"]
 
-PLANNING: Final[dict[OperatorName, PlanningConfig | None]] = {"greedy": None, "planning": PlanningConfig()}
-"""How far each operator plans: the greedy one of equation 24 looks one step ahead."""
+PEOPLE: Final[dict[OperatorName, Person]] = {
+    "greedy": Person(),
+    "learning": Person(imagines=LinearGuessConfig()),
+    "unsteady": Person(hand=UNSTEADY),
+    "planning": Person(plans=PlanningConfig()),
+}
+"""``greedy`` knows exactly what each input does and looks one step ahead (equation 24). ``learning`` decides
+alike, but has only a linear guess of that, learned while driving. ``unsteady`` is greedy with a reaction time
+and tremor. ``planning`` is greedy and plans up to 4 s ahead where one step leads no nearer."""
 
 
 def usual_operator(task: str) -> OperatorName:
@@ -24,24 +30,3 @@ def usual_operator(task: str) -> OperatorName:
         task: name of the task.
     """
     return "planning" if task == "held_out" else "greedy"
-
-
-def make_operator(
-    robot: Robot,
-    config: BoltzmannConfig,
-    planning: PlanningConfig | None,
-    foresight: Foresight | None,
-    period_s: float,
-) -> Operator:
-    """Construct a simulated operator.
-
-    Args:
-        robot: the arm.
-        config: how the operator thinks of one step (equation 24).
-        planning: how far the operator plans where one step leads no nearer; None never plans.
-        foresight: where a greedy operator expects an input to lead; the operator knows the arm where None.
-        period_s: time between two inputs, s.
-    """
-    if planning is None:
-        return BoltzmannOperator(robot, config, period_s=period_s, foresight=foresight)
-    return PlanningOperator(robot, config, planning, period_s=period_s)

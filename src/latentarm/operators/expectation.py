@@ -1,6 +1,7 @@
 """A simulated person who expects each axis of the stick to move the tool in one fixed direction."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self, final
 
@@ -68,12 +69,17 @@ class Expectation:
         return np.clip(moved @ self.directions.T / (self.speed_m_s * motions.duration_s), -1.0, 1.0)
 
     def __call__(
-        self, inputs: FloatArray, context: Context, controller: Controller, horizon_s: float
+        self,
+        inputs: FloatArray,
+        context: Context,
+        controller: Controller,
+        modes: Sequence[int],
+        horizon_s: float,
     ) -> Pose:
         """Where they expect inputs (K, d) to lead: straight on from here, in every mode alike."""
         now = self.chain.forward(context.state)
         ahead = now.position + horizon_s * self.speed_m_s * (inputs @ self.directions)
-        shape = (len(controller.modes), len(inputs))
+        shape = (len(modes), len(inputs))
         return Pose(
             position=np.broadcast_to(ahead, (*shape, 3)),
             rotation=np.broadcast_to(now.rotation, (*shape, 3, 3)),

@@ -1,6 +1,6 @@
 """Where a simulated person expects their inputs to lead."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import final
 
 import numpy as np
@@ -9,9 +9,9 @@ from latentarm.control.controller import Controller
 from latentarm.kinematics.chain import Chain
 from latentarm.types import Context, FloatArray, Pose
 
-Foresight = Callable[[FloatArray, Context, Controller, float], Pose]
-"""Inputs (K, d), the first of them zero, held in a context for a time, s, to poses (M, K) of the tool in the
-controller's M modes."""
+Foresight = Callable[[FloatArray, Context, Controller, Sequence[int], float], Pose]
+"""Inputs (K, d), held in a context for a time, s, to poses (M, K) of the tool in M modes of the controller.
+An input of zero leaves the tool where it is."""
 
 
 @final
@@ -26,13 +26,18 @@ class KnowsTheArm:
         self._chain = chain
 
     def __call__(
-        self, inputs: FloatArray, context: Context, controller: Controller, horizon_s: float
+        self,
+        inputs: FloatArray,
+        context: Context,
+        controller: Controller,
+        modes: Sequence[int],
+        horizon_s: float,
     ) -> Pose:
         """Where the controller takes the tool."""
-        modes = range(len(controller.modes))
         actions = np.stack(
             [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
         )
-        actions[:, 0] = 0.0  # the arm of a person who lets go stands still, whatever phi(0, c) is
+        # The arm of a person who lets go stands still, whatever phi(0, c) is.
+        actions[:, ~inputs.any(axis=1)] = 0.0
         # One call over all modes: (M, K, n).
         return self._chain.forward(context.state + horizon_s * actions)

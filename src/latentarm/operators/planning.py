@@ -8,8 +8,11 @@ import numpy as np
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.kinematics.rotations import rotation_vector
-from latentarm.operators.boltzmann import BoltzmannConfig, BoltzmannOperator
-from latentarm.operators.operator import Operator
+from latentarm.operators.boltzmann import BoltzmannConfig, OneStep
+from latentarm.operators.decision import Decision
+from latentarm.operators.hand import within_reach
+from latentarm.operators.imagination import Imagination
+from latentarm.operators.moment import Moment
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray, Input, IntArray, Pose
 
@@ -58,8 +61,8 @@ class PlanningConfig:
 
 
 @final
-class PlanningOperator(Operator):
-    """Steers like `BoltzmannOperator`, and plans when that gets stuck.
+class Planning(Decision):
+    """Decides like `OneStep`, and plans when that gets stuck.
 
     Stuck is where neither an input nor another mode brings the tool nearer by ``stuck_m``. Then the person
     imagines plans of 1, 2, ... pieces in the present mode, all bettered together by damped Gauss-Newton steps
@@ -72,24 +75,20 @@ class PlanningOperator(Operator):
         robot: the arm, for its forward kinematics.
         config: how the simulated person thinks of one step.
         planning: how far they plan.
-        period_s: time between calls of `act`, s.
+        period_s: time between calls of `decide`, s.
 
     Raises:
         UserError: the period is not positive and finite.
     """
 
     def __init__(
-        self,
-        robot: Robot,
-        config: BoltzmannConfig | None = None,
-        planning: PlanningConfig | None = None,
-        period_s: float = 0.05,
+        self, robot: Robot, config: BoltzmannConfig, planning: PlanningConfig, period_s: float
     ) -> None:
-        self._config = config or BoltzmannConfig()
-        self._planning = planning or PlanningConfig()
-        self._one_step = BoltzmannOperator(robot, self._config, period_s)
+        self._config = config
+        self._planning = planning
+        self._one_step = OneStep(config, period_s)
         self._chain = robot.chain
-        self._hold_calls = max(round(self._planning.piece_s / period_s), 1)
+        self._hold_calls = max(round(planning.piece_s / period_s), 1)
         self.reset()
 
     def reset(self) -> None:
@@ -99,27 +98,27 @@ class PlanningOperator(Operator):
         self._held = np.zeros(0)
         self._held_calls = 0
 
-    def act(
-        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
+    def decide(
+        self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
     ) -> Input:
         """Hold the piece of a plan, follow a plan, or take one step."""
         if self._held_calls > 0:
             self._held_calls -= 1
             return Input(self._held)
         if self._one_step.holding:
-            return self._one_step.act(context, controller, mode, target, rng)
+            return self._one_step.decide(moment, controller, imagination, rng)
+        outlook = self._one_step.outlook(moment, controller, imagination, rng)
         following = len(self._rest_of_plan) > 0
-        left = np.sqrt(self._one_step.costs(context, controller, target))  # (M, K), the first at rest
-        if following or left[mode, 0] - left.min() <= self._planning.stuck_m:
-            plan, leaves = self._plan(context, controller, mode, target, rng)
-            if following or left[mode, 0] - leaves > self._planning.stuck_m:
+        if following or outlook.rest_m - outlook.left_m <= self._planning.stuck_m:
+            plan, leaves = self._plan(moment, controller, rng)
+            if following or outlook.rest_m - leaves > self._planning.stuck_m:
                 self._held, self._rest_of_plan = plan[0], plan[1:]
                 self._held_calls = self._hold_calls - 1
                 return Input(self._held)
-        return self._one_step.act(context, controller, mode, target, rng)
+        return self._one_step.take(outlook, moment, controller, rng)
 
     def _plan(
-        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
+        self, moment: Moment, controller: Controller, rng: np.random.Generator
     ) -> tuple[FloatArray, float]:
         """Inputs (L, d), one for each of the L pieces of the plan that is taken, and what it leaves, m."""
         following = len(self._rest_of_plan) > 0
@@ -133,10 +132,10 @@ class PlanningOperator(Operator):
         pieces = len(starts[0])
         length = np.repeat(np.arange(1, pieces + 1), len(starts))
         plans = np.tile(np.stack(starts), (pieces, 1, 1))
-        plans, left = self._bettered(plans, length, context, controller, mode, target)
+        plans, left = self._bettered(plans, length, moment.context, controller, moment.mode, moment.target)
         arrives = np.flatnonzero(left < self._planning.arrived_m)
         taken = int(arrives[np.argmin(length[arrives])] if len(arrives) else np.argmin(left))
-        return plans[taken, : length[taken]], float(left[taken])
+        return within_reach(plans[taken, : length[taken]]), float(left[taken])
 
     def _bettered(
         self,
@@ -186,7 +185,7 @@ class PlanningOperator(Operator):
         state = np.broadcast_to(context.state, (*plans.shape[:2], len(context.state)))
         ends: list[FloatArray] = []
         for piece in range(plans.shape[2]):
-            u = plans[:, :, piece]
+            u = within_reach(plans[:, :, piece])
             for _ in range(self._planning.steps):
                 here = Context(state=state, belief=context.belief)
                 state = state + step_s * controller.action(controller.latent(u, here, mode), here, mode)

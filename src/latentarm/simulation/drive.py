@@ -12,13 +12,9 @@ from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.errors import UserError
 from latentarm.metrics.drives import Drive, measure_drive
 from latentarm.metrics.ending import Ending, why_it_ended
-from latentarm.operators.boltzmann import BoltzmannConfig
-from latentarm.operators.catalogue import make_operator
-from latentarm.operators.foresight import Foresight
-from latentarm.operators.planning import PlanningConfig
+from latentarm.operators.person import Person, SimulatedPerson
 from latentarm.tasks.task import Task, check_not_done
 from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
 
@@ -40,31 +36,19 @@ class Setup:
         task: the robot, the goals and when they are reached.
         controller: what the simulated operator steers with.
         arbitration: how much the robot helps towards its belief over the task's goals; None never helps.
-        operator: how the simulated operator thinks.
+        person: the simulated person who drives.
         time_limit_s: a drive that lasts longer has failed.
         rule: how inputs change the belief; without help too, for a decoder may look at it.
-        foresight: where the simulated operator expects an input to lead; they know the arm where None.
-        planning: how far a simulated operator who knows the arm plans where one step leads no nearer; None
-            never plans (see `latentarm.operators.catalogue`).
         arm: what moves, a simulated arm of `latentarm.arms.catalogue`.
-
-    Raises:
-        UserError: an operator who does not know the arm is asked to plan.
     """
 
     task: Task
     controller: Controller
     arbitration: Arbitration | None
-    operator: BoltzmannConfig
+    person: Person
     time_limit_s: float
     rule: Rule = BoltzmannBelief
-    foresight: Foresight | None = None
-    planning: PlanningConfig | None = None
     arm: str = DEFAULT_ARM
-
-    def __post_init__(self) -> None:
-        if self.foresight is not None and self.planning is not None:
-            raise UserError("Only a simulated person who knows the arm plans: give foresight or planning.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +105,7 @@ def simulate(
     start = task.sample_start(goal, rng)
     arm = make_simulated_arm(setup.arm, task.robot, start)
     step = _step(setup, dt_s)
-    operator = make_operator(task.robot, setup.operator, setup.planning, setup.foresight, dt_s)
+    operator = SimulatedPerson(task.robot, setup.person, dt_s)
     remaining = list(task.waypoints(goal, manner))
     since_s = 0.0
     check_not_done(task, start, remaining)

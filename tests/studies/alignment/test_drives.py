@@ -12,8 +12,8 @@ from matplotlib.image import imread
 from latentarm.alignment.contract import identity
 from latentarm.alignment.demonstrated import demonstrated_motions
 from latentarm.controllers.latent import LatentController
-from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.operators.expectation import Expectation
+from latentarm.operators.person import Person
 from latentarm.robots.catalogue import load_robot
 from latentarm.simulation.drive import Setup
 from latentarm.studies.alignment.drives import (
@@ -111,7 +111,7 @@ def perfect(u, context):
 
 def driven(alignment, person=TURNED):
     controller = LatentController(TwoDirections(), alignment)
-    setup = Setup(OneGoal(), controller, None, BoltzmannConfig(), 12.0, foresight=person)
+    setup = Setup(OneGoal(), controller, None, Person(imagines=person), 12.0)
     return drive(setup, 0, 0, "come", np.random.default_rng(0))
 
 

@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.controllers.latent import LatentController
-from latentarm.operators.boltzmann import BoltzmannConfig
+from latentarm.operators.person import Person
 from latentarm.simulation.drive import RATE_HZ, Setup, simulate
 from latentarm.simulation.drives import drive_plan
 from latentarm.studies.alignment.drives_learning import DriveCell, Learned, learn
@@ -156,7 +156,6 @@ def _setup(task: Task, learned: Learned, seed: int, condition: str, limit_s: flo
         task,
         LatentController(learned.model.decoder(seed), learned.alignments[seed][alignment]),
         FixedAlpha() if condition == HELPED else None,
-        BoltzmannConfig(),
+        Person(imagines=None if condition == KNOWS else learned.person),
         limit_s,
-        foresight=None if condition == KNOWS else learned.person,
     )

@@ -22,8 +22,7 @@ from latentarm.metrics.ending import Ending
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.undone import undone_share
 from latentarm.models.kind import Decoder
-from latentarm.operators.boltzmann import BoltzmannConfig
-from latentarm.operators.catalogue import PLANNING, usual_operator
+from latentarm.operators.catalogue import PEOPLE, usual_operator
 from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.simulation.drive import Setup, simulate
 from latentarm.studies.compare.cell import CellResult
@@ -138,9 +137,8 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
             task,
             controller,
             arbitration=None,
-            operator=BoltzmannConfig(),
+            person=PEOPLE[usual_operator(task.name)],
             time_limit_s=cell.limit_s,
-            planning=PLANNING[usual_operator(task.name)],
         )
         streams = sequence(cell.seed, cell.dataset.name, Stream.DRIVES, cell.episode)
         trace = simulate(setup, 0, task.manners[0], np.random.default_rng(streams))

@@ -1,0 +1,96 @@
+"""A simulated person: what they imagine, how they decide, and what their hand does."""
+
+from dataclasses import dataclass, field
+from typing import final
+
+import numpy as np
+
+from latentarm.control.controller import Controller
+from latentarm.errors import UserError
+from latentarm.operators.boltzmann import BoltzmannConfig, OneStep
+from latentarm.operators.decision import Decision
+from latentarm.operators.foresight import Foresight, KnowsTheArm
+from latentarm.operators.hand import Hand, HandConfig
+from latentarm.operators.imagination import Imagination, Settled
+from latentarm.operators.linear_guess import LinearGuess, LinearGuessConfig
+from latentarm.operators.moment import Moment
+from latentarm.operators.operator import Operator
+from latentarm.operators.planning import Planning, PlanningConfig
+from latentarm.robots.robot import Robot
+from latentarm.types import Context, Input, Pose
+
+
+@final
+@dataclass(frozen=True)
+class Person:
+    """A simulated person, put together from parts.
+
+    Attributes:
+        decides: how they think of one step (equation 24).
+        imagines: where they expect an input to lead: a foresight that never changes, or how they learn a
+            linear guess; None knows the arm and its decoder exactly.
+        plans: how far they plan where one step leads no nearer; None never plans.
+        hand: how late and how unsteady their hand is.
+
+    Raises:
+        UserError: they are to plan with an arm that they do not know.
+    """
+
+    decides: BoltzmannConfig = field(default_factory=BoltzmannConfig)
+    imagines: Foresight | LinearGuessConfig | None = None
+    plans: PlanningConfig | None = None
+    hand: HandConfig = field(default_factory=HandConfig)
+
+    def __post_init__(self) -> None:
+        if self.imagines is not None and self.plans is not None:
+            raise UserError("Only a simulated person who knows the arm plans: give foresight or planning.")
+
+
+@final
+class SimulatedPerson(Operator):
+    """The operator that a `Person` describes.
+
+    Args:
+        robot: the arm.
+        person: who drives it.
+        period_s: time between calls of `act`, s.
+
+    Raises:
+        UserError: the period is not positive and finite, or too long for the hand's tremor.
+    """
+
+    def __init__(self, robot: Robot, person: Person, period_s: float) -> None:
+        self._imagination = _imagination(robot, person, period_s)
+        self._decision = _decision(robot, person, period_s)
+        self._hand = Hand(person.hand, period_s)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything of the last drive."""
+        self._imagination.reset()
+        self._decision.reset()
+        self._hand.reset()
+        self._given: Input | None = None
+
+    def act(
+        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
+    ) -> Input:
+        """See, learn, decide and move the hand."""
+        u = np.zeros(controller.input_dim) if self._given is None else self._given.u
+        seen = self._hand.sees(Moment(context, mode, target, u))
+        self._imagination.saw(seen)
+        meant = self._decision.decide(seen, controller, self._imagination, rng)
+        self._given = self._hand.gives(meant, rng)
+        return self._given
+
+
+def _imagination(robot: Robot, person: Person, period_s: float) -> Imagination:
+    if isinstance(person.imagines, LinearGuessConfig):
+        return LinearGuess(robot.chain, person.imagines, period_s)
+    return Settled(person.imagines or KnowsTheArm(robot.chain))
+
+
+def _decision(robot: Robot, person: Person, period_s: float) -> Decision:
+    if person.plans is None:
+        return OneStep(person.decides, period_s)
+    return Planning(robot, person.decides, person.plans, period_s)
