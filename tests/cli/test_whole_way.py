@@ -40,6 +40,8 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
     expected = {
         "error_percent_of_pca",
         "noise_free_error_percent_of_pca",
+        "search_error_percent_of_pca",
+        "search_noise_free_error_percent_of_pca",
         "controllability_m",
         "r2",
         "r2_axis_0",

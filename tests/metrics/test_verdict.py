@@ -5,7 +5,7 @@ from latentarm.metrics.verdict import THRESHOLDS, findings
 from latentarm.types import Row
 
 GOOD = {
-    "error_percent_of_pca": (40.0, 3.0),
+    "search_error_percent_of_pca": (40.0, 3.0),
     "drift": (0.0, 0.0),
     "reversal": (0.04, 0.01),
     "r2_local_axis_0": (0.99, 0.01),
@@ -28,9 +28,9 @@ def test_a_good_model_misses_nothing():
 @pytest.mark.parametrize(
     ("measure", "figure", "said"),
     [
-        ("error_percent_of_pca", (130.0, 20.0), "no better than PCA"),
-        ("error_percent_of_pca", (100.0, 0.0), "no better than PCA"),
-        ("error_percent_of_pca", (90.0, 30.0), "not reliably better than PCA"),
+        ("search_error_percent_of_pca", (130.0, 20.0), "no better than PCA"),
+        ("search_error_percent_of_pca", (100.0, 0.0), "no better than PCA"),
+        ("search_error_percent_of_pca", (90.0, 30.0), "not reliably better than PCA"),
         ("drift", (0.64, 0.1), "moves at rest (64 ± 10 %"),
         ("reversal", (0.57, 0.15), "does not go back"),
         ("r2_local_axis_1", (0.0, 0.0), "axis 2"),

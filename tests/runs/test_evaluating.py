@@ -29,8 +29,8 @@ def test_with_few_episodes_each_is_held_out_once(run: Path, tmp_path: Path) -> N
     assert own == list(read_run(run).held_out)
     assert sorted([*own, *(one for fold in document["about"]["folds"] for one in fold)]) == list(range(6))
     over_folds = {row.measure: row for row in evaluation.rows if row.condition == OVER_FOLDS}
-    assert over_folds["noise_free_error"].n == 1 + len(document["about"]["folds"])
-    assert over_folds["noise_free_error"].sd
+    assert over_folds["search_noise_free_error"].n == 1 + len(document["about"]["folds"])
+    assert over_folds["search_noise_free_error"].sd
     # A plane of motions is PCA itself, so it cannot be better than that.
     assert "PCA" in evaluation.verdict
     assert document["verdict"]["sentence"] == evaluation.verdict

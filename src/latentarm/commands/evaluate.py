@@ -15,12 +15,20 @@ from tyro.conf import Positional, arg
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Jobs, Json, MovedDataset, Seed
 from latentarm.commands.output import print_renderables, say
-from latentarm.metrics.measures import ARROWS, AT_REST, PROPERTIES, RECONSTRUCTION, label_of, measure_of
+from latentarm.metrics.measures import (
+    ARROWS,
+    AT_REST,
+    ENCODED,
+    EXPRESSED,
+    PROPERTIES,
+    label_of,
+    measure_of,
+)
 from latentarm.metrics.table import format_figure, measure_name
 from latentarm.runs.evaluating import OVER_FOLDS, Evaluation, evaluate_run, findings_row
 from latentarm.types import Row
 
-GROUPS = ("", RECONSTRUCTION, PROPERTIES, AT_REST)
+GROUPS = ("", EXPRESSED, ENCODED, PROPERTIES, AT_REST)
 """Headings in the order of the table."""
 
 

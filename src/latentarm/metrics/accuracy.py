@@ -1,11 +1,19 @@
-"""Accuracy: how well encoding and decoding preserves actions (section 8.1), compared with PCA of equal d."""
+"""Accuracy: how well encoding and decoding preserve actions (section 8.1), compared with PCA of equal d.
 
-from collections.abc import Sequence
+There are two ways to encode. The encoder network, of models that have one, is what section 8.1 measures. The
+nearest input in the range of a person's stick (`latentarm.metrics.search`) says what the decoder can express,
+and asks the same of every model. Nobody needs an encoder to drive, so that is what counts for the person.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from latentarm.metrics.contract import DecodesActions, decode_all
-from latentarm.types import FloatArray
+from latentarm.metrics.contract import DecodesActions, EncodesActions, decode_all
+from latentarm.metrics.samples import evenly_spread
+from latentarm.metrics.search import nearest_latents
+from latentarm.types import FloatArray, Pairs
 
 
 def reconstruction_error(
@@ -49,3 +57,69 @@ def pca_error(train_action: FloatArray, action: FloatArray, latent_dim: int) -> 
 def percent_of(baseline: float, error: FloatArray) -> FloatArray:
     """Errors (S,) in percent of the baseline's; NaN where the baseline has none (PCA with d = m)."""
     return 100.0 * error / baseline if baseline > 0 else np.full_like(error, np.nan)
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Errors of S seeds, and what they leave for the other measures.
+
+    Attributes:
+        figures: measure -> (S,); NaN through an encoder network where the model has none.
+        decoders: of the S seeds.
+        z: (S, L, d), the nearest inputs without noise, for the pairs that were searched for.
+        context: (L, c), their contexts.
+        action: (L, m), the actions there, rad/s.
+    """
+
+    figures: Mapping[str, FloatArray]
+    decoders: Sequence[DecodesActions]
+    z: FloatArray
+    context: FloatArray
+    action: FloatArray
+
+
+def accuracy(
+    model: EncodesActions,
+    train_action: FloatArray,
+    pairs: Pairs,
+    *,
+    learns_encoder: bool,
+    searched: int,
+) -> Accuracy:
+    """Errors with both ways of encoding, with noise on the states and without.
+
+    Args:
+        model: of S seeds.
+        train_action: (M, m), actions that PCA, the baseline, is fitted to, rad/s.
+        pairs: held-out pairs; all of them go through an encoder network.
+        learns_encoder: whether the model has one.
+        searched: pairs, spread evenly, for which the nearest input is searched; PCA's error is then taken on
+            the same ones.
+    """
+    chosen = evenly_spread(searched, len(pairs.action))
+    action = pairs.action[chosen]
+    clean_codes, noisy_codes = (
+        model.encode(context, pairs.action) for context in (pairs.clean_context, pairs.context)
+    )
+    decoders = [model.decoder(seed) for seed in range(len(clean_codes))]
+    baseline, baseline_of_chosen = (
+        pca_error(train_action, of, clean_codes.shape[-1]) for of in (pairs.action, action)
+    )
+    figures: dict[str, FloatArray] = {}
+    nearest = np.zeros((0, 0, 0))
+    for name, context, codes in (
+        ("error", pairs.context, noisy_codes),
+        ("noise_free_error", pairs.clean_context, clean_codes),
+    ):
+        nearest = nearest_latents(decoders, context[chosen], action, codes[:, chosen])
+        expressed = reconstruction_error(decoders, nearest, context[chosen], action)
+        encoded = np.full_like(expressed, np.nan)
+        if learns_encoder:
+            encoded = reconstruction_error(decoders, codes, context, pairs.action)
+        figures |= {
+            f"search_{name}": expressed,
+            f"search_{name}_percent_of_pca": percent_of(baseline_of_chosen, expressed),
+            name: encoded,
+            f"{name}_percent_of_pca": percent_of(baseline, encoded),
+        }
+    return Accuracy(figures, decoders, nearest, pairs.clean_context[chosen], action)

@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, Protocol, final
+from typing import Final, Literal, Protocol, final
 
 import numpy as np
 
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
-from latentarm.metrics.accuracy import pca_error, percent_of, reconstruction_error
+from latentarm.metrics.accuracy import Accuracy, accuracy
 from latentarm.metrics.consistency import consistency, local_consistency
 from latentarm.metrics.contract import DecodesActions, EncodesActions
 from latentarm.metrics.controllability import ReachConfig, reach_goals
@@ -25,9 +25,13 @@ from latentarm.metrics.samples import (
     spread_contexts,
     start_goal_pairs,
 )
+from latentarm.metrics.state_change import state_change
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, Episode, FloatArray, Row
+
+HOLDS_S: Final = {"reversal_0_5_s": 0.5, "reversal_2_s": 2.0}
+"""Measure -> how long z and -z are each held for it, s: longer than any loss looks ahead."""
 
 
 class TrainedModel(EncodesActions, Protocol):
@@ -36,6 +40,11 @@ class TrainedModel(EncodesActions, Protocol):
     @property
     def latent_dim(self) -> int:
         """Number of latent axes d."""
+        ...
+
+    @property
+    def learns_encoder(self) -> bool:
+        """Whether `encode` is a network that was trained."""
         ...
 
     @property
@@ -66,11 +75,13 @@ class EvaluationConfig:
     Attributes:
         state_noise_rad: SD of the noise on held-out states for the noisy error, rad;
             None for the noise that the model was trained with.
-        step_s: dt of the transition s' = s + a dt, and how long z and -z are each held for reversal, s;
+        step_s: dt of the transition s' = s + a dt, and how long z and -z are each held for `reversal`, s;
             None for one sample of the demonstrations.
         states: states for consistency and disentanglement.
         grid: values of z in [-1, 1] on each axis, at each of these states.
-        latents: encoded held-out actions for drift and reversal.
+        latents: held-out pairs whose nearest inputs are searched for: for what the decoder can express, for
+            drift, reversal and change in state.
+        held_latents: of these, for reversal after longer holds.
         reach: what is asked for controllability.
         tool: which end-effector, where there are several.
     """
@@ -80,6 +91,7 @@ class EvaluationConfig:
     states: int = 25
     grid: int = 21
     latents: int = 2000
+    held_latents: int = 300
     reach: ReachConfig = field(default_factory=ReachConfig)
     tool: int = 0
 
@@ -127,12 +139,10 @@ def measure(
     """
     config = config or EvaluationConfig()
     episodes = moving_episodes(demonstrations, held_out)
-    accuracy = _measure_accuracy(model, demonstrations, held_out, rng, config.state_noise_rad)
-    chosen = evenly_spread(config.latents, len(accuracy.context))
-    samples = (accuracy.context[chosen], accuracy.action[chosen])
-    probe = _probe(model.context, episodes, demonstrations.rate_hz, config, *samples)
-    behaviour = measure_behaviour(accuracy.decoders, accuracy.z[:, chosen], probe, robot, config)
-    return replace(behaviour, per_seed={**accuracy.figures, **behaviour.per_seed})
+    found = _measure_accuracy(model, demonstrations, held_out, rng, config)
+    probe = _probe(model.context, episodes, demonstrations.rate_hz, config, found.context, found.action)
+    behaviour = measure_behaviour(found.decoders, found.z, probe, robot, config)
+    return replace(behaviour, per_seed={**found.figures, **behaviour.per_seed})
 
 
 @final
@@ -143,7 +153,7 @@ class Probe:
     Attributes:
         pairs: starts and goals for controllability.
         states: (K, c), contexts for consistency and disentanglement.
-        context: (L, c), contexts for drift and reversal.
+        context: (L, c), contexts for drift, reversal and change in state.
         action: (L, m), the actions there, rad/s.
         step_s: dt of the transition, s.
     """
@@ -186,7 +196,7 @@ def measure_behaviour(
 
     Args:
         decoders: S decoders.
-        z: (S, L, d), the probe's actions as the model encodes them.
+        z: (S, L, d), the inputs whose actions are nearest to the probe's, see `nearest_latents`.
         probe: what is measured on.
         robot: the arm.
         config: how the measures are taken.
@@ -208,6 +218,10 @@ def measure_behaviour(
     figures["disentanglement_deg"] = disentanglement_deg(effects)
     figures["drift"] = drift(decoders, z, probe.context)
     figures["reversal"] = reversal(decoders, z, probe.context, probe.step_s)
+    held = evenly_spread(config.held_latents, len(probe.context))
+    for name, hold_s in HOLDS_S.items():
+        figures[name] = reversal(decoders, z[:, held], probe.context[held], probe.step_s, hold_s)
+    figures["state_change"] = state_change(decoders, z, probe.context)
     return Figures(per_seed=figures, start_distance_m=reach.start_distance_m)
 
 
@@ -224,50 +238,21 @@ def _probe(
     return Probe(pairs, states, context, action, config.step_s or 1.0 / rate_hz)
 
 
-@dataclass(frozen=True)
-class _Accuracy:
-    """Errors (S,), and what they leave for the other measures.
-
-    Attributes:
-        figures: measure -> (S,).
-        decoders: S decoders.
-        z: (S, N, d), held-out actions as the encoder sees them without noise.
-        context: (N, c), their contexts.
-        action: (N, m), these actions, rad/s.
-    """
-
-    figures: Mapping[str, FloatArray]
-    decoders: Sequence[DecodesActions]
-    z: FloatArray
-    context: FloatArray
-    action: FloatArray
-
-
 def _measure_accuracy(
     model: TrainedModel,
     demonstrations: Demonstrations,
     held_out: Sequence[int],
     rng: np.random.Generator,
-    state_noise_rad: float | None,
-) -> _Accuracy:
-    """Reconstruction errors with and without state noise, beside PCA fitted to what is not held out."""
-    noise = model.state_noise_rad if state_noise_rad is None else state_noise_rad
+    config: EvaluationConfig,
+) -> Accuracy:
+    """Reconstruction errors with and without state noise, relative to PCA fitted to what is not held out."""
+    noise = model.state_noise_rad if config.state_noise_rad is None else config.state_noise_rad
     trained_on = [index for index in range(len(demonstrations.episodes)) if index not in set(held_out)]
     if not trained_on:
         raise UserError("Every episode is held out: leave at least one to fit PCA, the baseline, to.")
     how = (model.context, rng, model.actions)
     training = make_pairs(select_episodes(demonstrations, trained_on), model.window, 0.0, *how)
     pairs = make_pairs(select_episodes(demonstrations, held_out), model.window, noise, *how)
-    clean_z = model.encode(pairs.clean_context, pairs.action)
-    decoders = [model.decoder(seed) for seed in range(len(clean_z))]
-    noisy_z = model.encode(pairs.context, pairs.action)
-    baseline = pca_error(training.action, pairs.action, clean_z.shape[-1])
-    error = reconstruction_error(decoders, noisy_z, pairs.context, pairs.action)
-    clean_error = reconstruction_error(decoders, clean_z, pairs.clean_context, pairs.action)
-    figures = {
-        "error": error,
-        "noise_free_error": clean_error,
-        "error_percent_of_pca": percent_of(baseline, error),
-        "noise_free_error_percent_of_pca": percent_of(baseline, clean_error),
-    }
-    return _Accuracy(figures, decoders, clean_z, pairs.clean_context, pairs.action)
+    return accuracy(
+        model, training.action, pairs, learns_encoder=model.learns_encoder, searched=config.latents
+    )

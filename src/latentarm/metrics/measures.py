@@ -28,32 +28,63 @@ class Measure:
     group: str = ""
 
 
-RECONSTRUCTION: Final = "reconstruction"
+EXPRESSED: Final = "what the decoder can express"
+ENCODED: Final = "through the encoder network"
 PROPERTIES: Final = "the four properties"
 AT_REST: Final = "rest and reversal"
 
 MEASURES: Final[dict[str, Measure]] = {
+    "search_error": Measure(
+        "rad^2/s^2",
+        "error, nearest input",
+        "lower",
+        "mean squared error of decoding the nearest input: of all z in [−1, 1] on each axis, the one whose"
+        " action is nearest, found by the same search for every model; on held-out pairs, with noise on the"
+        " states; actions are taken before the noise is added",
+        EXPRESSED,
+    ),
+    "search_noise_free_error": Measure(
+        "rad^2/s^2",
+        "noise-free error, nearest input",
+        "lower",
+        "the same on clean states",
+        EXPRESSED,
+    ),
+    "search_error_percent_of_pca": Measure(
+        "%",
+        "error, nearest input, of PCA's",
+        "lower",
+        "mean squared error of decoding the nearest input: of all z in [−1, 1] on each axis, the one whose"
+        " action is nearest, found by the same search for every model; in % of the error of PCA with as many"
+        " components and any z, fitted to all other episodes' actions; actions are taken before noise is"
+        " added to the states",
+        EXPRESSED,
+    ),
+    "search_noise_free_error_percent_of_pca": Measure(
+        "%", "noise-free error, nearest input, of PCA's", "lower", "the same on clean states", EXPRESSED
+    ),
     "error": Measure(
         "rad^2/s^2",
         "error",
         "lower",
-        "mean squared error of encode-decode on held-out pairs, with noise on the states; actions are taken"
-        " before the noise is added",
-        RECONSTRUCTION,
+        "mean squared error of decoding what the encoder network makes of held-out pairs, with noise on the"
+        " states; actions are taken before the noise is added; a dash for models without such a network",
+        ENCODED,
     ),
     "noise_free_error": Measure(
-        "rad^2/s^2", "noise-free error", "lower", "the same on clean states", RECONSTRUCTION
+        "rad^2/s^2", "noise-free error", "lower", "the same on clean states", ENCODED
     ),
     "error_percent_of_pca": Measure(
         "%",
         "error, of PCA's",
         "lower",
-        "mean squared error of encode-decode on held-out pairs, in % of that of PCA with as many components,"
-        " fitted to all other episodes' actions; actions are taken before noise is added to the states",
-        RECONSTRUCTION,
+        "mean squared error of decoding what the encoder network makes of held-out pairs, in % of that of PCA"
+        " with as many components, fitted to all other episodes' actions; actions are taken before noise is"
+        " added to the states",
+        ENCODED,
     ),
     "noise_free_error_percent_of_pca": Measure(
-        "%", "noise-free error, of PCA's", "lower", "the same on clean states", RECONSTRUCTION
+        "%", "noise-free error, of PCA's", "lower", "the same on clean states", ENCODED
     ),
     "controllability_m": Measure(
         "m",
@@ -115,7 +146,7 @@ MEASURES: Final[dict[str, Measure]] = {
         "drift, of motion",
         "lower",
         "how fast the arm is told to move with the stick at rest, ‖φ(0, s)‖, relative to how fast the"
-        " person moved it, ‖φ(z, s)‖; both means over held-out pairs",
+        " person moved it, ‖φ(z, s)‖; both means over held-out pairs; here and below z is the nearest input",
         AT_REST,
     ),
     "reversal": Measure(
@@ -125,6 +156,29 @@ MEASURES: Final[dict[str, Measure]] = {
         "z for one sample, then −z for one: what is left, ‖s₂ − s₀‖ over ‖s₁ − s₀‖; both means over"
         " held-out pairs; 0 is a motion undone, 1 leaves as much to go back as the motion was long",
         AT_REST,
+    ),
+    "reversal_0_5_s": Measure(
+        "1",
+        "left after 0.5 s of z, 0.5 s of -z",
+        "lower",
+        "the same with z held for half a second, then −z for as long",
+        AT_REST,
+    ),
+    "reversal_2_s": Measure(
+        "1",
+        "left after 2 s of z, 2 s of -z",
+        "lower",
+        "the same with z held for two seconds, then −z for as long",
+        AT_REST,
+    ),
+    "state_change": Measure(
+        "1",
+        "change of motion in 0.1 rad",
+        "lower",
+        "how much the same input means something else close by: ‖φ(z, s₂) − φ(z, s₁)‖ over ‖φ(z, s₁)‖ with s₂"
+        " 0.1 rad from s₁ in any direction; both means over held-out pairs; the paper's consistency (equation"
+        " 5) wants little of it",
+        PROPERTIES,
     ),
     "motion_turn": Measure(
         "1",

@@ -10,8 +10,8 @@ from latentarm.metrics.measures import unit_of
 from latentarm.types import Row
 
 HEADLINE: tuple[str, ...] = (
-    "error_percent_of_pca",
-    "noise_free_error_percent_of_pca",
+    "search_error_percent_of_pca",
+    "search_noise_free_error_percent_of_pca",
     "controllability_m",
     "r2",
     "r2_local",

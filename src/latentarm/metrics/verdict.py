@@ -34,7 +34,11 @@ class Threshold:
 
 THRESHOLDS: Final = (
     Threshold(
-        "error_percent_of_pca", 100.0, False, "reconstructs no better than PCA", unit=" % of its error"
+        "search_error_percent_of_pca",
+        100.0,
+        False,
+        "expresses the actions no better than PCA",
+        unit=" % of its error",
     ),
     Threshold("drift", 0.10, False, "moves at rest", 100.0, " % of the speed of motion"),
     Threshold("reversal", 0.30, False, "the opposite push does not go back", 100.0, " % is left"),
@@ -74,10 +78,10 @@ def findings(rows: Sequence[Row]) -> list[Finding]:
         row = found.get(threshold.measure)
         if row is not None and row.mean is not None and threshold.missed_by(row.mean):
             missed.append(Finding(threshold.measure, f"{threshold.meaning} ({_shown(row, threshold)})"))
-    error = found.get("error_percent_of_pca")
+    error = found.get("search_error_percent_of_pca")
     if error is not None and error.mean is not None and error.mean < 100.0 <= error.mean + (error.sd or 0.0):
         said = f"not reliably better than PCA ({error.mean:.0f} ± {error.sd:.0f} % of its error)"
-        missed.insert(0, Finding("error_percent_of_pca", said))
+        missed.insert(0, Finding("search_error_percent_of_pca", said))
     left, start = found.get("controllability_m"), found.get("start_distance_m")
     if left and start and left.mean is not None and start.mean and left.mean > REACH_SHARE * start.mean:
         said = f"does not reach goals ({1e3 * left.mean:.0f} mm of {1e3 * start.mean:.0f} mm are left)"

@@ -94,6 +94,11 @@ class ModelKind:
         """Whether it looks at the arm's tools and their Jacobians, so that fitting needs a known arm."""
         return self.damping_m2 is not None
 
+    @property
+    def learns_encoder(self) -> bool:
+        """Whether its encoder is a network, rather than a search for the nearest action."""
+        return self.encoder in ("deterministic", "gaussian")
+
     def weight_shapes(self, dimensions: Dimensions) -> dict[str, Shape]:
         """Shape, with the leading seed axis, of every learned tensor by name (``decoder.0.weight``, ...)."""
         inputs, d = dimensions.context + dimensions.action, dimensions.latent

@@ -268,6 +268,11 @@ class LatentActionModel(BaseEstimator, ABC):
         return tuple(range(self.seed, self.seed + self.seeds))
 
     @property
+    def learns_encoder(self) -> bool:
+        """Whether `encode` is a network; the other models project, or search for the nearest action."""
+        return self.kind.learns_encoder
+
+    @property
     def collapsed_(self) -> BoolArray:
         """Latent dimensions that move nothing, (S, d)."""
         return self._fitted().summary.collapsed

@@ -34,7 +34,7 @@ def next_step(model: str, run: str, dataset: str, missed: frozenset[str]) -> str
         return f"Next: latentarm drive {run}"
     if missed & {"drift", "reversal"} and not KINDS[model].reverses:
         return f"Next: latentarm train --demonstrations {dataset} --model homogeneous (rests and goes back)"
-    if "error_percent_of_pca" in missed:
+    if "search_error_percent_of_pca" in missed:
         return (
             "Next: record more demonstrations of the same motions, or compare all models:"
             f" latentarm compare --demonstrations {dataset}"

@@ -27,6 +27,7 @@ from latentarm.metrics.latent_effect_figure import latent_effect_figure
 from latentarm.metrics.properties_figure import properties_figure
 from latentarm.metrics.results import as_document
 from latentarm.metrics.samples import evenly_spread, moving_episodes, spread_contexts
+from latentarm.metrics.search import nearest_latents
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.verdict import THRESHOLDS, Finding, findings
 from latentarm.models.kind import Decoder
@@ -208,8 +209,10 @@ def _measure_all(
 
 
 def _measure_kept(model: LatentActionModel, probe: Probe, robot: Robot) -> _Measured:
-    z = model.encode(probe.context, probe.action)
-    figures = measure_behaviour([model.decoder(index) for index in range(len(z))], z, probe, robot)
+    decoders = [model.decoder(index) for index in range(model.seeds)]
+    codes = model.encode(probe.context, probe.action)
+    z = nearest_latents(decoders, probe.context, probe.action, codes)
+    figures = measure_behaviour(decoders, z, probe, robot)
     return _Measured(figures, probe, probe.states[evenly_spread(DRAWN_STATES, len(probe.states))])
 
 

@@ -19,6 +19,7 @@ def tiny() -> Preset:
         folds=2,
         seeds=2,
         epochs=1,
+        searched_pairs=20,
         reach_pairs=3,
         planned_pairs=2,
         planned_seeds=1,

@@ -58,6 +58,7 @@ def test_the_table_shows_both_spreads_and_lengths_in_millimetres() -> None:
         ),
         "pour",
         0.01,
+        ["controllability_m"],
     )
     assert "reaches goals to (mm)" in table
     assert "10.0 [2.8]" in table

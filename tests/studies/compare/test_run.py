@@ -54,9 +54,23 @@ def test_every_model_has_every_measure_under_every_noise(done: tuple[list[Row], 
 def test_the_noisy_error_is_the_noise_free_one_without_noise(done: tuple[list[Row], Path]) -> None:
     rows, _ = done
     at = {(row.measure, row.condition): row.mean for row in rows if row.model == "cae"}
-    noisy, clean = "error_percent_of_pca", "noise_free_error_percent_of_pca"
-    assert at[noisy, "noise 0 rad"] == pytest.approx(at[clean, "noise 0 rad"])
-    assert at[noisy, "noise 0.05 rad"] != at[clean, "noise 0.05 rad"]
+    for encoded in ("", "search_"):
+        noisy, clean = f"{encoded}error_percent_of_pca", f"{encoded}noise_free_error_percent_of_pca"
+        assert at[noisy, "noise 0 rad"] == pytest.approx(at[clean, "noise 0 rad"])
+        assert at[noisy, "noise 0.05 rad"] != at[clean, "noise 0.05 rad"]
+
+
+def test_the_two_ways_of_encoding_are_in_tables_of_their_own(done: tuple[list[Row], Path]) -> None:
+    rows, out = done
+    at = {(row.model, row.measure): row for row in rows if row.condition == "noise 0 rad"}
+    assert at["pca", "error_percent_of_pca"].mean is None
+    assert at["pca", "search_error_percent_of_pca"].mean is not None
+    assert at["cae", "error_percent_of_pca"].mean is not None
+    tables = (out / "results.md").read_text().split("\n\n")
+    nearest = [part for part in tables if "| error, nearest input, of PCA's (%) |" in part]
+    network = [part for part in tables if "| error, of PCA's (%) | – |" in part]  # a dash for PCA
+    assert len(nearest) == len(network) == 2  # noises
+    assert not set(nearest) & set(network)
 
 
 def test_pca_neither_drifts_nor_forgets(done: tuple[list[Row], Path]) -> None:
@@ -88,7 +102,7 @@ def test_drives_are_told_from_measurements_and_called_simulated(done: tuple[list
     assert driven == {"cae", "end_effector"}
     page = (out / "results.md").read_text()
     assert "A **simulated** operator follows" in page
-    assert "![Error against reversal and reach](pareto.png)" in page
+    assert "![Turning against error and reach](turning.png)" in page
 
 
 @pytest.mark.skipif(not POUR.exists(), reason="the recorded demonstrations are not beside this clone")
@@ -97,6 +111,6 @@ def test_recorded_demonstrations_are_compared_on(tmp_path: Path, tiny: Preset) -
     small = replace(tiny, models=("pca", "scl"), noises_rad=(0.01,), seeds=1, demonstrations=(), drives=0)
     rows = compared(tmp_path / "pour", small, tmp_path / "out", "homogeneous").rows
     at = {(row.model, row.measure): row.mean for row in rows if row.condition == "noise 0.01 rad"}
-    assert at["pca", "error_percent_of_pca"] == pytest.approx(100.0, abs=5.0)
+    assert at["pca", "search_error_percent_of_pca"] == pytest.approx(100.0, abs=5.0)
     assert at["scl", "drift"] == pytest.approx(0.0, abs=1e-9)
     assert "No targets are judged" in (tmp_path / "out" / "results.md").read_text()

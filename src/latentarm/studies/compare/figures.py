@@ -1,6 +1,7 @@
-"""The comparison's figures: error against reversal and reach, and fewer demonstrations."""
+"""The comparison's figures: error against reversal and reach, turning against both, fewer demonstrations."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from latentarm.metrics.looks import look_of
@@ -36,20 +37,45 @@ HEIGHT_MM: Final = 120.0
 FILLS: Final = ("full", "none", "bottom", "top", "left", "right")
 """Of the markers, by noise."""
 
-AGAINST: Final = {
-    "reversal": ("left after z, then −z (%)", 100.0),
-    "controllability_m": ("greedy reach (mm)", 1e3),
-}
-"""Measure -> its axis' label, and what it is multiplied by."""
+
+@dataclass(frozen=True)
+class Axis:
+    """How a measure is drawn.
+
+    Attributes:
+        measure: its name.
+        label: of the axis.
+        scale: what figures are multiplied by.
+        logarithmic: whether the scale is, with zero on it.
+    """
+
+    measure: str
+    label: str
+    scale: float = 1.0
+    logarithmic: bool = False
 
 
-def pareto_figure(rows: Sequence[Row], datasets: Sequence[str], noises_rad: Sequence[float]) -> "Figure":
-    """Best is at the lower left.
+ERROR: Final = Axis("search_error_percent_of_pca", "error (% of PCA's)")
+REVERSAL: Final = Axis("reversal", "left after z, then −z (%)", 100.0, logarithmic=True)
+REACH: Final = Axis("controllability_m", "greedy reach (mm)", 1e3, logarithmic=True)
+TURNING: Final = Axis("motion_turn", "joints' turn per stick's")
+
+
+def pareto_figure(
+    rows: Sequence[Row],
+    datasets: Sequence[str],
+    noises_rad: Sequence[float],
+    across: Axis = ERROR,
+    up: Sequence[Axis] = (REVERSAL, REACH),
+) -> "Figure":
+    """Models in two measures at a time, best at the lower left.
 
     Args:
         rows: see `rows_of`.
         datasets: names, a column each.
         noises_rad: rad; the first is filled, the second open.
+        across: what is drawn from left to right.
+        up: what is drawn upwards, a line of panels each.
     """
     figure = new_figure(HEIGHT_MM, TWO_COLUMNS_MM)
     said = ", ".join(
@@ -59,41 +85,52 @@ def pareto_figure(rows: Sequence[Row], datasets: Sequence[str], noises_rad: Sequ
     figure.suptitle(
         f"Models on held-out episodes, mean ± SD over seeds; noise on states, {said}", fontsize=FONT_SIZE
     )
-    panels = figure.subplots(len(AGAINST), len(datasets), sharex="col", sharey="row", squeeze=False)
-    for line, measure in zip(panels, AGAINST, strict=True):
+    panels = figure.subplots(len(up), len(datasets), sharex="col", sharey="row", squeeze=False)
+    for line, axis in zip(panels, up, strict=True):
         for axes, dataset in zip(line, datasets, strict=True):
             for noise_rad, fill in zip(noises_rad, FILLS, strict=False):
-                _draw_pareto(axes, rows, dataset, noise_rad, measure, fill)
+                _draw_pareto(axes, rows, dataset, noise_rad, across, axis, fill)
             tidy(axes)
-        line[0].set_ylabel(AGAINST[measure][0], fontsize=FONT_SIZE)
-        logarithmic_with_zero(line[0])
+        line[0].set_ylabel(axis.label, fontsize=FONT_SIZE)
+        if axis.logarithmic:
+            logarithmic_with_zero(line[0])
     for axes, dataset in zip(panels[0], datasets, strict=True):
         title(axes, literal(dataset))
     for axes in panels[-1]:
-        axes.set_xlabel("error (% of PCA's)", fontsize=FONT_SIZE)
+        axes.set_xlabel(across.label, fontsize=FONT_SIZE)
     handles, labels = panels[0, 0].get_legend_handles_labels()
     legend_below(figure, handles, labels)
     return figure
 
 
+def turning_figure(rows: Sequence[Row], datasets: Sequence[str], noises_rad: Sequence[float]) -> "Figure":
+    """Error and reach against how fast the motion turns; a model that turns with the stick is at 1."""
+    return pareto_figure(rows, datasets, noises_rad, TURNING, (ERROR, REACH))
+
+
 def _draw_pareto(
-    axes: "Axes", rows: Sequence[Row], dataset: str, noise_rad: float, measure: str, fill: str
+    axes: "Axes",
+    rows: Sequence[Row],
+    dataset: str,
+    noise_rad: float,
+    across: Axis,
+    up: Axis,
+    fill: str,
 ) -> None:
     here = {
         (row.model or "", row.measure): row
         for row in rows
         if (row.task, row.condition) == (dataset, condition(noise_rad))
     }
-    scale = AGAINST[measure][1]
     for model in dict.fromkeys(model for model, _ in here):
-        error, other, look = here[model, "error_percent_of_pca"], here[model, measure], look_of(model)
-        if error.mean is None or other.mean is None:
+        x, y, look = here[model, across.measure], here[model, up.measure], look_of(model)
+        if x.mean is None or y.mean is None:
             continue
         axes.errorbar(
-            error.mean,
-            scale * other.mean,
-            xerr=error.sd or 0.0,
-            yerr=scale * (other.sd or 0.0),
+            across.scale * x.mean,
+            up.scale * y.mean,
+            xerr=across.scale * (x.sd or 0.0),
+            yerr=up.scale * (y.sd or 0.0),
             color=look.colour,
             marker=look.marker,
             fillstyle=fill,
@@ -106,8 +143,8 @@ def _draw_pareto(
 
 LINE_MM: Final = 38.0
 MEASURES: Final = {
-    "error_percent_of_pca": ("error\n(% of PCA's)", 1.0),
-    "noise_free_error_percent_of_pca": ("noise-free error\n(% of PCA's)", 1.0),
+    "search_error_percent_of_pca": ("error\n(% of PCA's)", 1.0),
+    "search_noise_free_error_percent_of_pca": ("noise-free error\n(% of PCA's)", 1.0),
     "controllability_m": ("greedy reach\n(mm)", 1e3),
     "reversal": ("left after z, −z\n(%)", 100.0),
 }

@@ -22,11 +22,18 @@ from latentarm.types import Demonstrations, FloatArray
 JUMPY: Final = 95.0
 """The percentile of turning that is reported with the mean."""
 
-MEASURED: Final = (
-    "error_percent_of_pca",
-    "noise_free_error_percent_of_pca",
+EXPRESSED: Final = ("search_error_percent_of_pca", "search_noise_free_error_percent_of_pca")
+"""What the decoder can express: the nearest input, of every model."""
+
+ENCODED: Final = ("error_percent_of_pca", "noise_free_error_percent_of_pca")
+"""Through the encoder network, of models that have one."""
+
+BEHAVIOUR: Final = (
     "drift",
     "reversal",
+    "reversal_0_5_s",
+    "reversal_2_s",
+    "state_change",
     "r2_local_axis_0",
     "r2_local_axis_1",
     "r2_axis_0",
@@ -41,6 +48,16 @@ MEASURED: Final = (
     "tool_turn_p95",
     "nonlinearity",
 )
+"""How the decoder behaves; no encoder is asked."""
+
+TABLES: Final = {
+    "What the decoder can express": EXPRESSED,
+    "Through the encoder network": ENCODED,
+    "Behaviour": BEHAVIOUR,
+}
+"""Heading -> measures of a table. The two ways of encoding are never in one."""
+
+MEASURED: Final = (*EXPRESSED, *ENCODED, *BEHAVIOUR)
 """Every measure in the order of the tables."""
 
 
@@ -86,7 +103,7 @@ def measure_model(
     """
     began = perf_counter()
     reach = ReachConfig(pairs=preset.reach_pairs)
-    config = EvaluationConfig(reach=reach)
+    config = EvaluationConfig(reach=reach, latents=preset.searched_pairs)
     measured = measure(model, demonstrations, held_out, robot, rng=rng, config=config)
     figures = dict(measured.per_seed)
     episodes = moving_episodes(demonstrations, held_out)

@@ -12,7 +12,13 @@ OURS: Final = "homogeneous"
 """The model that is judged against the targets by default."""
 
 REFERENCE: Final = "cae"
-"""The model that the targets are relative to."""
+"""The paper's model, to which reach and error are compared."""
+
+BASELINE: Final = "homogeneous"
+"""The best model so far, which a new one has to match in error and to undercut in time."""
+
+CHOSEN_ON: Final = "pour_coffee"
+"""Ending of the name of the recording that hyper-parameters were chosen on; frozen for the others."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +34,7 @@ class Preset:
         epochs: passes over the training pairs, at most; the model's own number where None.
         batch_size: pairs per step: faster for every model than its own, and no worse.
         hidden: units of each hidden layer, for every model.
+        searched_pairs: held-out pairs per fold, spread evenly, whose nearest inputs are searched for.
         reach_pairs: pairs of start and goal per fold for the greedy operator.
         planned_pairs: of these, how many the operator who plans is asked; 0 asks none.
         planned_seeds: of the seeds, for how many.
@@ -46,6 +53,7 @@ class Preset:
     epochs: int | None = None
     batch_size: int = 128
     hidden: tuple[int, ...] = (64, 64)
+    searched_pairs: int = 2000
     reach_pairs: int = 40
     planned_pairs: int = 12
     planned_seeds: int = 2
@@ -70,6 +78,7 @@ PRESETS: Final[dict[str, Preset]] = {
         folds=2,
         seeds=1,
         epochs=3,
+        searched_pairs=100,
         reach_pairs=4,
         planned_pairs=2,
         planned_seeds=1,

@@ -64,6 +64,13 @@ def rows_of_fewer(results: Sequence[CellResult], all_of: Mapping[str, int]) -> l
     return rows
 
 
+def fit_times(results: Sequence[CellResult]) -> dict[tuple[str, float, str], float]:
+    """Dataset, noise and model -> processor time of a fit of all seeds, mean over folds, s."""
+    return {
+        place: float(np.mean([cell.fit_s for cell in cells])) for place, cells in _grouped(results).items()
+    }
+
+
 def seeds_of(results: Sequence[CellResult]) -> list[dict[str, object]]:
     """Every figure of every seed."""
     return [

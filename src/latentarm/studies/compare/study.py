@@ -24,12 +24,14 @@ from latentarm.studies.compare.drives import (
     measure_drive_cell,
     rows_of_drives,
 )
-from latentarm.studies.compare.figures import FILLS, fewer_figure, pareto_figure
-from latentarm.studies.compare.measures import MEASURED, meaning_of, without_planning
-from latentarm.studies.compare.preset import OURS, PRESETS, REFERENCE, Preset
-from latentarm.studies.compare.rows import STUDY, condition, rows_of, rows_of_fewer, seeds_of
+from latentarm.studies.compare.figures import FILLS, fewer_figure, pareto_figure, turning_figure
+from latentarm.studies.compare.hypotheses import compared, said
+from latentarm.studies.compare.measures import TABLES, meaning_of, without_planning
+from latentarm.studies.compare.preset import BASELINE, CHOSEN_ON, OURS, PRESETS, REFERENCE, Preset
+from latentarm.studies.compare.rows import STUDY, condition, fit_times, rows_of, rows_of_fewer, seeds_of
 from latentarm.studies.compare.tables import CORNER, drive_table, page_table, target_table, terminal_tables
 from latentarm.studies.compare.targets import verdicts
+from latentarm.studies.hypotheses import Comparison, comparison_table
 from latentarm.studies.page import render_page
 from latentarm.studies.study import Grid, Report, Request, Study
 from latentarm.types import Row
@@ -99,7 +101,7 @@ def compare_study(
         simulated=("drives",),
         measure=partial(_measure, asked),
         report=partial(_report, asked),
-        figures=("pareto", "fewer"),
+        figures=("pareto", "turning", "fewer"),
         documents=("seeds.json", "drives.json"),
         depends_on=lambda request: {
             "datasets": {one.name: fingerprint(one.demonstrations) for one in asked.datasets},
@@ -193,22 +195,34 @@ def _report(asked: Asked, request: Request[Preset], measured: Measured) -> Repor
     fewer = rows_of_fewer([one for one in results if one.place.model in fewer_models], all_of)
     counts = sorted({min(one.place.demonstrations, all_of[one.place.dataset]) for one in results})
     driven = rows_of_drives(STUDY, condition(preset.noises_rad[0], "driven"), drives)
-    figures: dict[str, Figure] = {"pareto": pareto_figure(main, names, preset.noises_rad)}
+    tests = compared(measured.whole)
+    figures: dict[str, Figure] = {
+        "pareto": pareto_figure(main, names, preset.noises_rad),
+        "turning": turning_figure(main, names, preset.noises_rad),
+    }
     if fewer_models:
         figures["fewer"] = fewer_figure(fewer, names, preset.noises_rad, counts)
     return Report(
         rows=[*main, *fewer, *driven],
-        page=_page(asked, main, driven, counts),
+        page=_page(asked, measured.whole, main, tests, driven, counts),
         figures=figures,
+        tests=tests,
         documents={"seeds.json": seeds_of(results), "drives.json": [asdict(one) for one in drives]},
         timings=_timings(results, drives),
         tables=terminal_tables(main, names, preset.noises_rad, VisibleConsole().width),
     )
 
 
-def _page(asked: Asked, main: Sequence[Row], driven: Sequence[Row], counts: Sequence[int]) -> str:
+def _page(
+    asked: Asked,
+    whole: Sequence[CellResult],
+    main: Sequence[Row],
+    tests: Sequence[Comparison],
+    driven: Sequence[Row],
+    counts: Sequence[int],
+) -> str:
     preset, names = asked.preset, [one.name for one in asked.datasets]
-    found = verdicts(main, asked.ours, names, preset.noises_rad)
+    found = verdicts(main, asked.ours, names, preset.noises_rad, fit_times(whole))
     return render_page(
         "compare/page.md",
         command=_command(asked),
@@ -220,14 +234,23 @@ def _page(asked: Asked, main: Sequence[Row], driven: Sequence[Row], counts: Sequ
         seed=asked.seed,
         ours=asked.ours,
         reference=REFERENCE,
+        baseline=BASELINE,
+        chosen_on=[name for name in names if name.endswith(CHOSEN_ON)],
         verdicts=found,
         target_table=target_table(found),
-        meanings={label_of(name): meaning_of(name) for name in MEASURED},
-        tables={
-            f"{name}, {condition(noise_rad)}": page_table(main, name, noise_rad)
+        meanings={
+            heading: {label_of(name): meaning_of(name) for name in measures}
+            for heading, measures in TABLES.items()
+        },
+        sections={
+            f"{name}, {condition(noise_rad)}": {
+                heading: page_table(main, name, noise_rad, measures) for heading, measures in TABLES.items()
+            }
             for name in names
             for noise_rad in preset.noises_rad
         },
+        h1=said(tests),
+        h1_table=comparison_table(tests) if tests else "",
         fewer=_given_fewer(asked),
         counts=counts,
         driven=list(dict.fromkeys(row.model or "" for row in driven)),

@@ -8,6 +8,7 @@ from rich.console import RenderableType
 
 from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import ABSENT, format_figure, measure_name, rich_figures
+from latentarm.studies.compare.measures import TABLES
 from latentarm.studies.compare.rows import OVER_FOLDS, condition
 from latentarm.studies.compare.targets import Verdict
 from latentarm.studies.page import markdown_table
@@ -29,22 +30,23 @@ def in_millimetres(row: Row) -> Row:
 def terminal_tables(
     rows: Sequence[Row], datasets: Sequence[str], noises_rad: Sequence[float], width: int
 ) -> list[RenderableType]:
-    """One table per dataset and noise: measures down, models across."""
+    """A table per dataset, noise and kind of measure: measures down, models across."""
     return [
         rich_figures(
-            *_arranged(rows, dataset, noise_rad),
+            *_arranged(rows, dataset, noise_rad, measures),
             corner=CORNER,
-            title=f"{dataset}, {condition(noise_rad)}",
+            title=f"{dataset}, {condition(noise_rad)}: {name[0].lower()}{name[1:]}",
             width=width,
         )
         for dataset in datasets
         for noise_rad in noises_rad
+        for name, measures in TABLES.items()
     ]
 
 
-def page_table(rows: Sequence[Row], dataset: str, noise_rad: float) -> str:
-    """The same for a page."""
-    measures, models, figures = _arranged(rows, dataset, noise_rad)
+def page_table(rows: Sequence[Row], dataset: str, noise_rad: float, of: Sequence[str]) -> str:
+    """The same for a page, of some measures."""
+    measures, models, figures = _arranged(rows, dataset, noise_rad, of)
     lines = [[measure, *(figures.get((measure, model), ABSENT) for model in models)] for measure in measures]
     return markdown_table([CORNER, *models], lines)
 
@@ -77,10 +79,10 @@ def drive_table(rows: Sequence[Row], dataset: str) -> str:
 
 
 def _arranged(
-    rows: Sequence[Row], dataset: str, noise_rad: float
+    rows: Sequence[Row], dataset: str, noise_rad: float, of: Sequence[str]
 ) -> tuple[list[str], list[str], dict[tuple[str, str], str]]:
     """Names of measures and of models, and the figure of each pair with its two SDs."""
-    here = [in_millimetres(row) for row in rows if row.task == dataset]
+    here = [in_millimetres(row) for row in rows if row.task == dataset and row.measure in of]
     seeds = [row for row in here if row.condition == condition(noise_rad)]
     folds = {
         (row.measure, row.model): row.sd for row in here if row.condition == condition(noise_rad, OVER_FOLDS)
