@@ -105,20 +105,25 @@ def test_the_same_seed_gives_the_same_figures(run: Run, eat: Path) -> None:
 def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from latentarm.commands import demo
     from latentarm.commands.demo import DemoOptions, Sizes, run_demo
+    from latentarm.operators.catalogue import PEOPLE
 
-    monkeypatch.setattr(demo, "TIME_LIMIT_S", 3.0)  # models of one epoch drive until the time is over
+    monkeypatch.setattr(demo, "TIME_LIMIT_S", 1.0)  # models of one epoch drive until the time is over
     config = DemoOptions(Path("demo"), drives=1, jobs=1, json=True)
     sizes = Sizes(episodes=9, seeds=1, epochs=1)
     rows = run_demo(config, sizes)
-    assert {(row.model, row.condition) for row in rows} == {
-        ("cvae", "latent"),
-        ("cvae", "latent_assist"),
-        ("scl", "latent"),
-        ("scl", "latent_assist"),
-        (None, "end_effector"),
+    alone = {("cvae", "latent"), ("scl", "latent"), (None, "end_effector")}
+    helped = {("cvae", "latent_assist"), ("scl", "latent_assist")}
+    others = {
+        (model, f"{condition}, {person}")
+        for model, condition in alone
+        for person in PEOPLE
+        if person != "greedy"
     }
+    assert {(row.model, row.condition) for row in rows} == alone | helped | others
     page = Path("demo/results.md").read_text()
     assert "simulated operator" in page
+    for person in PEOPLE:
+        assert f"## The {person} operator" in page
     for figure in ("task.png", "paths.png", "inputs.png"):
         assert figure in page
         assert (Path("demo") / figure).stat().st_size > 10_000

@@ -2,11 +2,11 @@
 
 import shutil
 import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import numpy as np
 from tyro.conf import arg
@@ -29,9 +29,10 @@ from latentarm.metrics.drives import drive_rows
 from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject, headline
 from latentarm.metrics.table import markdown_table
+from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.saving import load_decoder
 from latentarm.models.training import epoch_bar
-from latentarm.operators.person import Person
+from latentarm.operators.catalogue import PEOPLE, OperatorName
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.runs.evaluating import evaluate_run
 from latentarm.runs.results_folder import ResultsFolder, vacant_name
@@ -48,8 +49,13 @@ from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.server.addresses import TeleopConfig
 from latentarm.web.server.app import serve
 
-MODELS = ("cvae", "scl")
+MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae", "scl")))
+"""The default model, the paper's and the linear one."""
+
 TIME_LIMIT_S = 60.0
+
+SHOWN: Final[OperatorName] = "greedy"
+"""Whose drives the figures show, and who is helped as well: the paper's simulated person (equation 24)."""
 
 MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png", "task.png")
 """Every file of the folder except its options, the dataset and the runs."""
@@ -66,7 +72,7 @@ class DemoOptions:
     out: Annotated[Path, arg(metavar="DIR", help="Folder for datasets, runs, table and figures.")] = Path(
         "demo"
     )
-    drives: Annotated[int, arg(help="Simulated drives for each goal and condition.")] = 20
+    drives: Annotated[int, arg(help="Simulated drives for each goal, person and condition.")] = 7
     arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM
     seed: Seed = 0
     jobs: Annotated[int, arg(help="Processes that drive side by side; -1 is one per core.")] = -1
@@ -122,18 +128,21 @@ def run_demo(config: DemoOptions, sizes: Sizes = USUAL) -> list[Row]:
         properties += _train(config, sizes, model)
     conditions = _conditions(task, config, sizes.seeds)
     traces: dict[str, list[Trace]] = {}
-    rows: list[Row] = []
-    for number, (subject, setups) in enumerate(conditions, start=1):
+    tables: dict[OperatorName, list[Row]] = {person: [] for person in PEOPLE}
+    for number, (person, subject, setups) in enumerate(conditions, start=1):
         drives = config.drives * len(task.goals)
         name = " ".join(part for part in (subject.model, subject.condition) if part)
         console.print(
-            f"3/3  {number} of {len(conditions)}: a simulated operator drives {drives} times, {name}."
+            f"3/3  {number} of {len(conditions)}: the {person} simulated operator drives {drives} times,"
+            f" {name}."
         )
         driven = drive_all(setups, config.drives, config.seed, config.jobs, bars=config.bars)
-        rows += drive_rows(subject, [trace.figures for trace in driven])
-        if subject.model in (MODELS[0], None):
+        tables[person] += drive_rows(subject, [trace.figures for trace in driven])
+        if person == SHOWN and subject.model in (MODELS[0], None):
             traces[str(subject.condition)] = driven
-    _write(config, sizes, task, rows, properties, traces)
+    rows = [_named(person, row) for person, table in tables.items() for row in table]
+    write_results(config.out / "results.json", [*rows, *properties], _about(config, sizes))
+    _write_page(config, sizes, task, tables, properties, traces)
     return rows
 
 
@@ -153,37 +162,43 @@ def _train(config: DemoOptions, sizes: Sizes, model: str) -> list[Row]:
     return evaluate_run(run, run, config.seed, folds=0).rows
 
 
-def _conditions(task: TableTop, config: DemoOptions, seeds: int) -> list[tuple[Subject, list[Setup]]]:
-    """Latent actions of each model (all its seeds in turn), alone and assisted, and mode switching."""
-    conditions: list[tuple[Subject, list[Setup]]] = []
-
-    def add(
-        model: str | None, condition: str, controllers: Sequence[Controller], arbitration: Arbitration | None
-    ) -> None:
-        setups = [
-            Setup(task, one, arbitration, Person(), TIME_LIMIT_S, arm=config.arm) for one in controllers
-        ]
-        conditions.append((Subject("demo", task=task.name, model=model, condition=condition), setups))
-
+def _conditions(
+    task: TableTop, config: DemoOptions, seeds: int
+) -> list[tuple[OperatorName, Subject, list[Setup]]]:
+    """Each person with each model (all its seeds in turn), alone and assisted, and with mode switching."""
+    steered: list[tuple[str | None, str, Sequence[Controller], Arbitration | None]] = []
     for model in MODELS:
         run = config.out / "runs" / model
         controllers = [LatentController(load_decoder(run, seed)) for seed in range(seeds)]
-        add(model, "latent", controllers, None)
-        add(model, "latent_assist", controllers, FixedAlpha())
-    add(None, "end_effector", [EndEffectorController(task.robot)], None)
-    return conditions
+        steered.append((model, "latent", controllers, None))
+        steered.append((model, "latent_assist", controllers, FixedAlpha()))
+    steered.append((None, "end_effector", [EndEffectorController(task.robot)], None))
+    return [
+        (
+            person,
+            Subject("demo", task=task.name, model=model, condition=condition),
+            [Setup(task, one, help_by, PEOPLE[person], TIME_LIMIT_S, arm=config.arm) for one in controllers],
+        )
+        for person in PEOPLE
+        for model, condition, controllers, help_by in steered
+        if person == SHOWN or help_by is None
+    ]
 
 
-def _write(
+def _named(person: OperatorName, row: Row) -> Row:
+    """The row with the person in its condition, unless it is the one whose drives are shown."""
+    return row if person == SHOWN else replace(row, condition=f"{row.condition}, {person}")
+
+
+def _write_page(
     config: DemoOptions,
     sizes: Sizes,
     task: TableTop,
-    rows: Sequence[Row],
+    tables: Mapping[OperatorName, Sequence[Row]],
     properties: Sequence[Row],
     traces: dict[str, list[Trace]],
 ) -> None:
     out = config.out
-    write_results(out / "results.json", [*rows, *properties], _about(config, sizes))
     draw_drives(traces, task, out / "paths.png")
     save_figure(comparison_figure(headline(properties)), out / "properties.png")
     draw_inputs(traces, out / "inputs.png")
@@ -195,14 +210,20 @@ def _write(
         f" {len(task.goals)} goals; the {sizes.seeds} trained models of a kind take turns),"
         f" seed {config.seed}; mean ± SD over the drives, failed ones included"
         f" (they end after {TIME_LIMIT_S:g} s). No person took part.\n\n"
-        f"{markdown_table(rows)}\n"
-        f"The figures show the {MODELS[0]}. ![Paths of the tool](paths.png)\n\n"
+        f"{_people_tables(tables)}"
+        f"The figures show the {MODELS[0]}, driven by the {SHOWN} operator."
+        " ![Paths of the tool](paths.png)\n\n"
         "![Inputs over time](inputs.png)\n\n"
         "## The latent spaces, on held-out episodes\n\n"
         f"Mean ± SD over {sizes.seeds} seeds.\n\n{markdown_table(properties)}\n"
         "![The properties of the latent spaces](properties.png)\n\n"
         "![The task](task.png)\n",
     )
+
+
+def _people_tables(tables: Mapping[OperatorName, Sequence[Row]]) -> str:
+    """A table of drives under the name of each simulated person."""
+    return "".join(f"## The {person} operator\n\n{markdown_table(rows)}\n" for person, rows in tables.items())
 
 
 def _about(config: DemoOptions, sizes: Sizes) -> dict[str, object]:
@@ -247,7 +268,7 @@ def demo(options: DemoOptions) -> int:
     write_options(out, "demo")
     show(rows, json)
     say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
-    run = out / "runs" / "cvae"
+    run = out / "runs" / MODELS[0]
     if json or not (sys.stdin.isatty() and sys.stdout.isatty()):
         say(f"To drive the arm yourself: latentarm teleop {run}", json)
         return 0

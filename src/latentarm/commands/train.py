@@ -10,11 +10,12 @@ from latentarm.commands.choices import ModelName, TaskName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Dataset, EndEffector, Json, Seed
 from latentarm.commands.output import say, show
+from latentarm.models.catalogue import DEFAULT_MODEL
 
 
 def train(
     demonstrations: Dataset,
-    model: Annotated[ModelName, arg(help="The latent action model.")] = "cvae",
+    model: Annotated[ModelName, arg(help="The latent action model.")] = DEFAULT_MODEL,
     latent_dim: Annotated[int, arg(help="d, the number of axes of the person's interface.")] = 2,
     context: Annotated[
         Literal["state", "state_belief"], arg(help="What the decoder sees: c = s, or c = (s, b).")

@@ -43,6 +43,9 @@ KINDS: Final = Catalogue(
 )
 """What each kind is, in the order in which tables and figures show them. Needs no torch."""
 
+DEFAULT_MODEL: Final = "cvae"
+"""What `train`, the demo and the page use unless another is named; docs/decisions/0031 has the rule."""
+
 
 @final
 class _Estimators(Mapping[str, "type[LatentActionModel]"]):

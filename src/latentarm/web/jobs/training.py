@@ -14,7 +14,7 @@ from pydantic import Field, TypeAdapter
 
 from latentarm.control.export import ImplausibleWarning, demonstrations_of
 from latentarm.control.journal import read_journal
-from latentarm.models.catalogue import KINDS
+from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
 from latentarm.types import Demonstrations
 from latentarm.web.jobs.job import Job, Wire
 from latentarm.web.protocol.learning_messages import Training, TrainingPhase
@@ -32,7 +32,7 @@ SHORTEST_S: Final = 1.0
 STATE_NOISE_RAD: Final = 0.01
 """As in `latentarm train`."""
 
-_FIRST_MODELS: Final = ("cvae", "cae", "homogeneous", "pca")
+_FIRST_MODELS: Final = (DEFAULT_MODEL, "cvae", "cae", "homogeneous", "pca")
 """The models that people most likely want."""
 
 _NAME: Final = re.compile(r"\w[\w .-]{0,58}\w|\w")
