@@ -7,7 +7,8 @@ and ``V = ‖e‖² / 2`` with ``e = g* - s`` (equation 11). The sum holds ``b(g
 
 where ``others`` is what the help towards the other goals may do; the paper has alpha = 1/2 and k = 1/s.
 There are three forms of it, each at most as large as the one before: `furthest` (equation 14), `weighted`
-(equation 13) and `known_help`.
+(equation 13) and `known_help`. All three let the person do anything up to sigma_h; `certified_along` asks what
+the decoder can do against the goal, which is less, and measures the distance in any metric.
 
 All arguments broadcast over leading axes:
 
@@ -108,6 +109,52 @@ def certified(
     wanted = ~_is_other(goals, goal)
     pull = np.vecdot(belief * wanted, _length(goals - state[..., None, :]))
     return pull > delta(sigma_h, state, belief, goals, goal, alpha, gain_per_s, others)
+
+
+def certified_along(
+    most_against: FloatArray,
+    direction: FloatArray,
+    state: FloatArray,
+    belief: FloatArray,
+    goals: FloatArray,
+    alpha: ArrayLike,
+    gain_per_s: ArrayLike = 1.0,
+) -> BoolArray:
+    """Where the distance to ``g*`` shrinks whatever the person does, with decoder and help known.
+
+    The distance is that of any constant metric, ``V = e^T M e / 2`` with M symmetric and positive definite:
+    the identity for joint space (equation 11), the metric of the tools at the goal for what people see.
+
+    Proof. ``e = g* - s`` and ``ds/dt = a``, so with ``w = M e``, by equation 10::
+
+        dV/dt = -w·a = (1 - alpha) (-w·phi) - alpha k Σ_g b(g) w·(g - s)
+              <= (1 - alpha) sup_z (-w·phi(z, c)) - alpha k Σ_g b(g) w·(g - s)
+
+    which is below zero wherever this certifies. It is also the tightest: up to the slack of ``most_against``,
+    wherever it does not certify some input makes ``dV/dt >= 0``. For M = 1 it certifies whatever `known_help`
+    does, because ``sup_z (-e·phi) <= ‖e‖ sigma_h``.
+
+    Args:
+        most_against: (...,), upper bound of ``-w·phi(z, c)`` over all inputs (`Enclosure.furthest` of -w).
+        direction: (..., n), w.
+        state: (..., n), rad.
+        belief: (..., G), probability over goals.
+        goals: (..., G, n), configurations, rad.
+        alpha: (...,), in [0, 1].
+        gain_per_s: (...,), k, 1/s, positive.
+
+    Returns:
+        (...,); false where alpha is zero or a number is not finite.
+
+    Raises:
+        UserError: alpha or the gain is out of its range.
+    """
+    _, share, gain = _checked(0.0, alpha, gain_per_s)
+    with np.errstate(over="ignore", invalid="ignore"):
+        helped = (
+            share * gain * np.vecdot(belief, np.vecdot(goals - state[..., None, :], direction[..., None, :]))
+        )
+        return (share > 0.0) & (helped > (1.0 - share) * most_against)
 
 
 def radius(

@@ -272,6 +272,24 @@ MEASURES: Final[dict[str, Measure]] = {
     "certified_share_known_help": Measure(
         "1", "steps certified, help known", "higher", "share of the steps certified with the help known"
     ),
+    "certified_share_decoder": Measure(
+        "1",
+        "steps certified, help and decoder known",
+        "higher",
+        "share of the steps certified with the help and what the decoder can do against the goal known",
+    ),
+    "certified_share_tools": Measure(
+        "1",
+        "steps certified, in the metric of the tools",
+        "higher",
+        "share of the steps certified with help and decoder known, the distance in the metric of the tools",
+    ),
+    "bound_slack": Measure(
+        "1",
+        "slack of sigma_h",
+        "lower",
+        "how far the proven sigma_h is above the largest action among a few inputs, relative to it",
+    ),
 }
 """Every measure by name; that of a single latent axis (``r2_axis_0``) is that of the measure."""
 

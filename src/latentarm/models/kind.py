@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Literal, cast, final
 
 from latentarm.errors import UserError
+from latentarm.models.enclosure import Enclosure
 from latentarm.models.scaling import Normaliser
 from latentarm.models.tool_contexts import ToolContexts, tool_shapes
 from latentarm.style import Look
@@ -47,6 +48,14 @@ class Runtime(ABC):
     @abstractmethod
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
         """Joint velocities (..., m), rad/s, of inputs (..., d) in contexts (..., c), which broadcast."""
+
+    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure | None:
+        """A proven enclosure of what all inputs in [-1, 1]^d together can do in contexts (..., c).
+
+        None where none is proven, as here: then nothing is claimed about how far help constrains the arm.
+        A finer one is tighter and takes longer; ``fineness`` is 1 for a control loop.
+        """
+        return None
 
 
 @final
@@ -256,3 +265,12 @@ class Decoder:
             (..., m), rad/s.
         """
         return self._runtime(z, context)
+
+    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure | None:
+        """A proven enclosure of `decode` over all latent actions in [-1, 1]^d; None where none is known.
+
+        Args:
+            context: (..., c).
+            fineness: 1 for a control loop; more is tighter and takes longer.
+        """
+        return self._runtime.enclose(context, fineness)

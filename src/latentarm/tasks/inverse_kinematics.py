@@ -1,5 +1,7 @@
 """Configurations that put the tool at a given pose."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from latentarm.errors import UserError
@@ -14,7 +16,7 @@ _POSTURE_COST = 1e-3
 """Weight of the preferred posture relative to the tool's pose; it resolves redundancy."""
 
 
-def solve(robot: Robot, pose: Pose, posture: FloatArray) -> FloatArray:
+def solve(robot: Robot, pose: Pose, posture: FloatArray, held: Sequence[int] = ()) -> FloatArray:
     """The configuration near a preferred posture that puts the robot's first tool at a pose.
 
     Differential inverse kinematics (mink) from the posture on, within the joint limits.
@@ -23,6 +25,7 @@ def solve(robot: Robot, pose: Pose, posture: FloatArray) -> FloatArray:
         robot: the arm; its tool is a site of its model.
         pose: wanted, in the base frame.
         posture: (n,), where the search begins and what redundant joints stay close to, rad.
+        held: indices of joints that stay exactly where the posture has them.
 
     Returns:
         (n,), rad.
@@ -40,11 +43,14 @@ def solve(robot: Robot, pose: Pose, posture: FloatArray) -> FloatArray:
     near = mink.PostureTask(model, _POSTURE_COST)
     near.set_target(posture)
     limits = [mink.ConfigurationLimit(model)]
+    constraints = [mink.DofFreezingTask(model, list(held))] if held else None
     configuration = mink.Configuration(model, posture)
     for _ in range(_STEPS):
         if np.linalg.norm(tool.compute_error(configuration)) < _CLOSE:
             return np.array(configuration.q)
-        velocity = mink.solve_ik(configuration, [tool, near], _STEP_S, "daqp", limits=limits)
+        velocity = mink.solve_ik(
+            configuration, [tool, near], _STEP_S, "daqp", limits=limits, constraints=constraints
+        )
         configuration.integrate_inplace(velocity, _STEP_S)
     place = ", ".join(f"{x:.2f}" for x in pose.position)
     raise UserError(

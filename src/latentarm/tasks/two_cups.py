@@ -7,6 +7,9 @@ chosen here, once and for every model:
 - a goal is the configuration just before a cup, from where both grasps begin;
 - the two grasps part from there to opposite sides, as a hand does that comes in from the side or over the
   top, and end 0.4 to 0.9 rad from the goal in joint space, less than the goals are apart;
+- joint 1 turns the arm to a cup and rests during a grasp, so that a grasp leads neither to the other cup nor
+  away from it: as the paper says, inputs then choose the manner and no longer the goal;
+- every demonstration shows both grasps, out and back: at a cup, either direction of the input has a meaning;
 - the simulated person moves at one speed. With real hands most of what differs between two actions is how
   fast they are, and a one-dimensional latent action would be spent on that.
 """
@@ -40,6 +43,12 @@ SPEED_RAD_S: Final = 0.3
 
 START_SPREAD_RAD: Final = 0.05
 """SD of where a joint starts."""
+
+_TURN: Final = 0
+"""Index of the joint that turns the arm about its base."""
+
+_TURNED: Final = 0.3
+"""How far the other joints have come when the arm has turned to a cup, of their way to it."""
 
 _VIA: Final = 3
 """Configurations along a grasp, so that the tool follows a line."""
@@ -124,7 +133,9 @@ class TwoCups(Task, ABC):
         return within(pose, waypoint)
 
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Reach and grasp, cups and manners in turn, with the actions that were taken.
+        """Reach, grasp and let go in both manners, with the actions that were taken.
+
+        Cups take turns, and so does the manner that comes first.
 
         Raises:
             UserError: fewer than one episode is asked for.
@@ -134,9 +145,17 @@ class TwoCups(Task, ABC):
 
     def _episode(self, index: int, hand: Hand, rng: np.random.Generator) -> Episode:
         goal = index % len(CUPS)
-        manner = self.manners[index // len(CUPS) % len(self.manners)]
-        strokes = (self.goals[goal].configuration[None], self._strokes[goal, manner])
-        led = demonstrate(self.robot.chain, self.sample_start(goal, rng), strokes, hand, rng)
+        first = index // len(CUPS) % len(self.manners)
+        manners = (*self.manners[first:], *self.manners[:first])
+        start, end = self.sample_start(goal, rng), self.goals[goal].configuration
+        turned = start + _TURNED * (end - start)
+        turned[_TURN] = end[_TURN]
+        grasps = [self._strokes[goal, manner] for manner in manners]
+        # The same way back, and then to where the grasp began.
+        backs = [np.concatenate([out[-2::-1], end[None]]) for out in grasps]
+        grasping = [stroke for out_and_back in zip(grasps, backs, strict=True) for stroke in out_and_back]
+        strokes = [np.stack([turned, end]), *grasping]
+        led = demonstrate(self.robot.chain, start, strokes, hand, rng)
         state = _at_one_speed(led, SPEED_RAD_S / hand.rate_hz)
         velocity = np.diff(state, axis=0) * hand.rate_hz
         return Episode(
@@ -144,7 +163,7 @@ class TwoCups(Task, ABC):
             # Nothing is done at the last state.
             action=np.concatenate([velocity, np.zeros_like(velocity[:1])]),
             timestamp=np.arange(len(state)) / hand.rate_hz,
-            task=f"grasp the {CUPS[goal]} from the {manner}",
+            task=f"grasp the {CUPS[goal]} from the {' and then from the '.join(manners)}",
         )
 
     @cached_property
@@ -170,7 +189,7 @@ class TwoCups(Task, ABC):
         via = [self.goals[cup].configuration]
         for share in np.linspace(0.0, 1.0, _VIA + 1)[1:]:
             place = Place(*(a + share * (b - a) for a, b in zip(self.before, end, strict=True)))
-            via.append(solve(self.robot, self.pose(_bearing(cup), place), via[-1]))
+            via.append(solve(self.robot, self.pose(_bearing(cup), place), via[-1], held=(_TURN,)))
         return np.stack(via[1:])
 
 

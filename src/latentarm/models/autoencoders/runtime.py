@@ -8,6 +8,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.models.enclosure import Enclosure, network_enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import (
     halve_hidden,
@@ -38,6 +39,11 @@ class LatentDecoder(Runtime):
         shape = np.broadcast_shapes(action.shape[:-1], context.shape[:-1])
         return np.broadcast_to(action, (*shape, action.shape[-1]))
 
+    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
+        """See `Runtime`."""
+        offset = np.broadcast_to(self._bias, (*context.shape[:-1], len(self._bias)))
+        return network_enclosure(self._weight, offset, self._rest, fineness)
+
 
 @final
 class ConditionedDecoder(Runtime):
@@ -58,6 +64,11 @@ class ConditionedDecoder(Runtime):
         """See `Runtime`."""
         first = z @ self._from_latent + (context @ self._from_context + self._bias)
         return propagate(first, self._rest)
+
+    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
+        """See `Runtime`."""
+        offset = context @ self._from_context + self._bias
+        return network_enclosure(self._from_latent, offset, self._rest, fineness)
 
 
 def _latent_sizes(dimensions: Dimensions) -> dict[str, Shape]:

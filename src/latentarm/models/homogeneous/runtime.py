@@ -4,6 +4,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.models.enclosure import Enclosure, linear_enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, propagate, scale_context
 from latentarm.style import Look
@@ -15,6 +16,10 @@ ORDERS: Final = (3, 5, 7)
 
 BEND_SIZE: Final = 0.3
 """Factor of the network's bends, so that they start small."""
+
+
+CELLS: Final = 64
+"""Cells that half of all directions are cut into for the enclosure; 45 degrees lie between two of them."""
 
 
 @final
@@ -37,6 +42,66 @@ class _Runtime(Runtime):
         twist = np.matvec(jacobian, led)
         size = np.vecdot(twist, twist) + self._contexts.damping * np.vecdot(led, led)
         return self._speed * radius * led / np.sqrt(size + NORM_FLOOR)[..., None]
+
+    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
+        """See `Runtime`; exact for d = 1, cells of the input's angle for d = 2, the metric's bound beyond.
+
+        ``‖phi‖_G <= v ‖z‖``, so by Cauchy and Schwarz in the metric ``|phi_j| <= v ‖z‖ sqrt((G^-1)_jj)``. That
+        is loose where hardly any tool shows a joint's motion.
+        """
+        jacobian = self._contexts.jacobian(context[..., : self._joints])
+        if self._latents == 1:
+            full = self(np.ones(1), context)
+            return linear_enclosure(full[..., None, :], np.zeros(full.shape))
+        if self._latents == 2:
+            return self._enclosed_by_angle(self._columns(context, jacobian), jacobian, fineness * CELLS)
+        metric = jacobian.mT @ jacobian + self._contexts.damping * np.eye(self._joints)
+        most = np.sqrt(np.linalg.inv(metric).diagonal(axis1=-2, axis2=-1))[..., None, :]
+        remainder = self._speed * np.sqrt(self._latents) * most
+        return Enclosure(
+            np.zeros(remainder.shape), np.zeros((*remainder.shape[:-1], 0, self._joints)), remainder
+        )
+
+    def _enclosed_by_angle(self, columns: FloatArray, jacobian: FloatArray, cells: int) -> Enclosure:
+        """The enclosure for d = 2, in cells of the angle theta of z with a half width w.
+
+        The direction that is brought to unit length, ``led(theta)``, is a sum of columns times cos(n theta) or
+        sin(n theta): within a cell it is ``led_c + δ w led'_c`` up to ``w² / 2 Σ n² |column|``. What it is
+        divided by, its length in the metric, is at least that of the nearest point of this line less the
+        remainder's. The input is at most as long as the square reaches, and may have either sign.
+        """
+        width = np.pi / (2 * cells)
+        ends = np.pi / cells * np.arange(cells + 1)
+        degrees = np.repeat((1, *ORDERS), 2)
+        phase = (
+            degrees
+            * np.stack(np.broadcast_arrays(ends[:-1] + width, 0.5 * np.pi - ends[:-1] - width), -1)[
+                :, np.arange(len(degrees)) % 2
+            ]
+        )
+        signs = np.where(np.arange(len(degrees)) % 2, 1.0, -1.0)
+        wave, slope = np.cos(phase), signs * degrees * np.sin(phase)
+        twists = jacobian @ columns
+        led, turned = wave @ columns.mT, width * slope @ columns.mT
+        led_twist, turned_twist = wave @ twists.mT, width * slope @ twists.mT
+        left = 0.5 * width**2 * np.square(degrees)
+
+        def inner(a: FloatArray, a_twist: FloatArray, b: FloatArray, b_twist: FloatArray) -> FloatArray:
+            return np.vecdot(a_twist, b_twist) + self._contexts.damping * np.vecdot(a, b)
+
+        along = inner(led, led_twist, turned, turned_twist)
+        turning = inner(turned, turned_twist, turned, turned_twist)
+        nearest = np.clip(-along / (turning + NORM_FLOOR), -1.0, 1.0)[..., None]
+        closest, closest_twist = led + nearest * turned, led_twist + nearest * turned_twist
+        lengths = np.sqrt(inner(columns.mT, twists.mT, columns.mT, twists.mT)) @ left
+        least = np.sqrt(inner(closest, closest_twist, closest, closest_twist)) - lengths[..., None]
+        size = np.sqrt(np.square(np.maximum(least, 0.0)) + NORM_FLOOR)
+        reach = np.maximum(np.abs(np.cos(ends)), np.abs(np.sin(ends)))
+        longest = 1.0 / np.minimum(reach[:-1], reach[1:])
+        factor = (self._speed * longest / size)[..., None]
+        remainder = factor * np.matvec(np.abs(columns), left)[..., None, :]
+        spread = factor[..., None] * np.stack([led, turned], axis=-2)
+        return Enclosure(np.zeros(remainder.shape), spread, remainder)
 
     def _columns(self, context: FloatArray, jacobian: FloatArray) -> FloatArray:
         """M_1(c) and the bends M_3(c), M_5(c), ..., (..., m, (1 + orders) d)."""

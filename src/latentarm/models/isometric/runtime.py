@@ -4,6 +4,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.models.enclosure import ROUNDING, Enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, network_output
 from latentarm.models.tool_contexts import PLACE, TWIST
@@ -14,6 +15,9 @@ DAMPING_M2: Final = 1e-2
 
 BEND_SIZE: Final = 0.3
 """Factor of the network's bend, so that it starts small."""
+
+CELLS: Final = 8
+"""Cells that the length of an input is cut into for the enclosure."""
 
 
 @final
@@ -40,6 +44,29 @@ class _Runtime(Runtime):
         led = np.matvec(straight, direction) + turn * aside
         speed = self._speed * np.tanh(self._saturation * radius)
         return speed * led / np.sqrt(1 + turn**2 * aside_size[..., None])
+
+    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
+        """See `Runtime`; exact for d = 1 but for the cells, at most sqrt(d) too large for more axes.
+
+        With a direction x of length 1 and ``t = 2 min(r, 1) - 1`` the action is ``g(r) / q`` times
+        ``Σ_i x_i (M_i + t N_i)``. In a cell of half width w, t is ``t_c + δ w``, so the coefficients ``x_i`` and
+        ``x_i δ`` are in [-1, 1]; g(r) is at most that of the cell's end, and ``q² = 1 + t² ‖N x‖_G²`` at
+        least 1 plus the cell's least t² times the smallest eigenvalue of ``N^T G N``.
+        """
+        straight, bend, bend_twist = self._geometry(context)
+        count = fineness * CELLS
+        middle = (2.0 * np.arange(count) + 1.0) / count - 1.0
+        longest = 0.5 * (middle + 1.0 / count + 1.0)
+        longest[-1] = np.sqrt(self._latents)
+        metric = bend_twist.mT @ bend_twist + self._contexts.damping * (bend.mT @ bend)
+        least = np.maximum(np.linalg.eigvalsh(metric)[..., :1], 0.0) * (1.0 - ROUNDING)
+        slowed = np.sqrt(1.0 + np.square(np.maximum(np.abs(middle) - 1.0 / count, 0.0)) * least)
+        speed = (self._speed * np.tanh(self._saturation * longest) / slowed)[..., None, None]
+        along, aside = straight.mT[..., None, :, :], bend.mT[..., None, :, :]
+        led = along + middle[:, None, None] * aside
+        spread = speed * np.concatenate([led, np.broadcast_to(aside / count, led.shape)], axis=-2)
+        nothing = np.zeros((*spread.shape[:-2], spread.shape[-1]))
+        return Enclosure(nothing, spread, nothing)
 
     def _geometry(self, context: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """M (..., m, d), N (..., m, d) and the tools' weighted twists (..., 6 k, d) along N."""

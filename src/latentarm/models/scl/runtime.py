@@ -4,6 +4,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.models.enclosure import Enclosure, linear_enclosure
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, propagate, scale_context
 from latentarm.style import Look
@@ -23,13 +24,22 @@ class _Runtime(Runtime):
         self._gain: FloatArray = trained.latents.scale[seed, 0] * trained.actions.scale
 
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        raw = propagate(context @ self._weight + self._bias, self._rest)
-        columns = _orthonormal([raw[..., part] for part in self._parts])
+        columns = self._columns(context)
         scaled = z * self._gain
         action = scaled[..., :1] * columns[0]
         for axis in range(1, len(columns)):
             action = action + scaled[..., axis : axis + 1] * columns[axis]
         return action
+
+    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
+        """See `Runtime`; linear in z, so exact."""
+        columns = np.stack(self._columns(context), axis=-2) * self._gain[:, None]
+        return linear_enclosure(columns, np.zeros((*columns.shape[:-2], columns.shape[-1])))
+
+    def _columns(self, context: FloatArray) -> list[FloatArray]:
+        """The d columns of M(c), each (..., m)."""
+        raw = propagate(context @ self._weight + self._bias, self._rest)
+        return _orthonormal([raw[..., part] for part in self._parts])
 
 
 def _orthonormal(columns: list[FloatArray]) -> list[FloatArray]:

@@ -250,8 +250,9 @@ def _outcomes(
         starts = _generator(cell, Stream.STARTS, seed)
         start = np.stack([task.sample_start(int(goal), starts) for goal in target])
         chances = [_chances(cell, seed, person) for person in people]
+        decoder = model.decoder(seed)
         drives = drive(
-            model.decoder(seed),
+            decoder,
             scene,
             [person for person in people for _ in target],
             METHODS[method],
@@ -259,7 +260,7 @@ def _outcomes(
             np.tile(target, len(people)),
             np.concatenate(chances),
         )
-        of_seeds.append((measure(drives, scene), state_error(drives, scene), true_belief(drives)))
+        of_seeds.append((measure(drives, scene, decoder), state_error(drives, scene), true_belief(drives)))
     outcomes: list[Outcome] = []
     for index, person in enumerate(people):
         own = slice(index * cell.drives, (index + 1) * cell.drives)

@@ -14,6 +14,7 @@ from latentarm.studies.drawing import draw_arm as draw_planar_arm
 from latentarm.studies.shared_autonomy.ablations import weight_label
 from latentarm.studies.shared_autonomy.cell import METHODS, CellResult, Outcome
 from latentarm.studies.shared_autonomy.drive import STEP_S
+from latentarm.studies.shared_autonomy.hypotheses import MEASURE
 from latentarm.studies.shared_autonomy.intervals import Interval, band, interval
 from latentarm.studies.shared_autonomy.preset import Ablation, Preset, changing, learner, of_fixed_expertise
 from latentarm.studies.shared_autonomy.rows import MODEL, RECONSTRUCTION, Figure
@@ -128,6 +129,30 @@ def learners_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequen
         for axes in alike:
             axes.set_ylim(0.0 if what == "error" else -0.03, top)
     _label(panels[-1], x="time (s)")
+    name_series(figure, panels[0, 0])
+    return figure
+
+
+def slopes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence[str]) -> "Drawing":
+    """Final error over the slope of learning, a row per arm and a column per model."""
+    figure = _figure(
+        ROW_MM * len(tasks) + FRAME_MM,
+        "Learners, β = m t, by slope with each model, mean with 95 % interval; people and arms simulated",
+    )
+    models = list(dict.fromkeys(result.cell.model for result in results))
+    panels = figure.subplots(len(tasks), len(models), sharex=True, sharey=True, squeeze=False)
+    people = preset.by_slope
+    for line, task in zip(panels, tasks, strict=True):
+        for axes, model in zip(line, models, strict=True):
+            draw_over(
+                axes, outcomes_of(results, task, model), [person.label for person in people.values()], MEASURE
+            )
+            axes.set_xticks(np.arange(len(people)), [f"{slope:.3g}" for slope in people])
+            axes.set_ylim(bottom=0.0)
+            tidy(axes)
+            title(axes, f"{look_of(model).label}, {look_of(task).label}")
+    _label(panels[:, 0], y="final state error")
+    _label(panels[-1], x="slope m (1/m² per s)")
     name_series(figure, panels[0, 0])
     return figure
 

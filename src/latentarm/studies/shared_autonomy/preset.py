@@ -49,6 +49,11 @@ def learner(name: str, beta_per_s: float) -> Person:
     return Person(f"{name} learner", 0.0, beta_per_s=beta_per_s)
 
 
+def of_slope(beta_per_s: float) -> Person:
+    """A learner whom only the sweep of the slope m knows."""
+    return learner(f"m = {beta_per_s:g}", beta_per_s)
+
+
 def changing(after_s: float) -> Person:
     """Someone near-optimal who drives to the wrong cup first, and after a while to the right one."""
     return Person(f"change after {after_s:g} s", NEAR_OPTIMAL, changes_at_s=after_s, drive_s=CHANGING_DRIVE_S)
@@ -69,10 +74,10 @@ class Ablation:
         joints_alone: whether to take progress by the joints alone as well, without the tool.
     """
 
-    seeds: int = 5
-    drives: int = 50
-    weights: tuple[float, ...] = (0.0, 0.3, 1.0, 5.0, 20.0, 100.0)
-    sharpness: tuple[float, ...] = (1.0, 2.0, 4.0, 8.0)
+    seeds: int = 3
+    drives: int = 20
+    weights: tuple[float, ...] = (0.0, 0.3, 5.0, 20.0)
+    sharpness: tuple[float, ...] = (1.0, 4.0, 8.0)
     contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")
     without_no_goal: bool = True
     joints_alone: bool = True
@@ -93,30 +98,31 @@ class Preset:
         hidden: units of each hidden layer.
         state_noise_rad: SD of the noise on training states, rad.
         kl_weight: lambda_1 of equation 16, for the cVAE.
-        entropy_weights: lambda_2 of equation 16, by model. The isometric model has less: it is odd in z, so
-            that the way back is always open, and more weight only bends it.
+        entropy_weight: lambda_2 of equation 16.
         betas: rationalities of people of fixed expertise, 1/m²; the first and the last are the extremes.
-        learners: how fast people learn, 1/m² per s, by name.
+        learners: how fast people learn, 1/m² per s, by name: the slowest and the fastest slope of a sweep at
+            which help with entropy and without it separated in development (planar arm, cAE, two models of 30
+            demonstrations).
+        slopes: of further learners, for the sweep, 1/m² per s.
         changes_s: after how long people change their mind, s.
         ablation: what is varied about the entropy, or None.
     """
 
     name: str
-    demonstrations: int = 100
+    demonstrations: int = 60
     test_demonstrations: int = 20
     seeds: int = 5
-    drives: int = 100
-    epochs: int = 60
+    drives: int = 24
+    epochs: int = 40
     batch_size: int = 100
     hidden: tuple[int, ...] = (64, 64)
     state_noise_rad: float = 0.02
     kl_weight: float = 0.05
-    entropy_weights: Mapping[str, float] = field(
-        default_factory=lambda: {"cae": 5.0, "cvae": 5.0, "isometric": 0.5}
-    )
-    betas: tuple[float, ...] = (0.0, 3.0, 10.0, 30.0, 75.0, 200.0, 1000.0, 10000.0)
-    learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 10.0, "fast": 100.0})
-    changes_s: tuple[float, ...] = (0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0)
+    entropy_weight: float = 5.0
+    betas: tuple[float, ...] = (0.0, 10.0, 30.0, 75.0, 1000.0, 10000.0)
+    learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 2.5, "fast": 25.0})
+    slopes: tuple[float, ...] = (0.5, 8.0, 80.0, 250.0, 1000.0)
+    changes_s: tuple[float, ...] = (0.0, 2.0, 4.0, 8.0)
     ablation: Ablation | None = field(default_factory=Ablation)
 
     @property
@@ -125,8 +131,15 @@ class Preset:
         return (
             *(of_fixed_expertise(beta) for beta in self.betas),
             *(learner(name, slope) for name, slope in self.learners.items()),
+            *(of_slope(slope) for slope in self.slopes),
             *(changing(after_s) for after_s in self.changes_s),
         )
+
+    @property
+    def by_slope(self) -> dict[float, Person]:
+        """Everyone who learns, from the slowest to the fastest."""
+        known = {slope: learner(name, slope) for name, slope in self.learners.items()}
+        return dict(sorted((known | {slope: of_slope(slope) for slope in self.slopes}).items()))
 
     @property
     def latest_change(self) -> Person:
@@ -161,6 +174,7 @@ PRESETS: Final[dict[str, Preset]] = {
         drives=8,
         epochs=8,
         betas=(0.0, 75.0, 10000.0),
+        slopes=(),
         changes_s=(2.0, 8.0),
         ablation=None,
     ),

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from latentarm.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm.studies.page import render_page
-from latentarm.studies.shared_autonomy import drive
+from latentarm.studies.shared_autonomy import choice, drive
+from latentarm.studies.shared_autonomy import measures as measures_of
 from latentarm.studies.shared_autonomy import preset as people
 from latentarm.studies.shared_autonomy.ablations import variants
 from latentarm.studies.shared_autonomy.cell import (
@@ -23,6 +24,7 @@ from latentarm.studies.shared_autonomy.figures import (
     expertise_figure,
     learners_figure,
     models_figure,
+    slopes_figure,
     task_figure,
     weights_figure,
 )
@@ -33,14 +35,15 @@ from latentarm.studies.shared_autonomy.preset import PRESETS, Preset
 from latentarm.studies.shared_autonomy.rows import MODEL, Figure, figures, rows_of
 from latentarm.studies.shared_autonomy.rows import STUDY as NAME
 from latentarm.studies.shared_autonomy.tables import Tables, summary_tables
+from latentarm.studies.shared_autonomy.targets import target_table, targets
 from latentarm.studies.statistics import LEVEL
 from latentarm.studies.study import Grid, Report, Request, Study, again
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-MODELS: Final = (MODEL, "cvae", "isometric")
-"""The paper's model, that of its equation 16 in full, and ours."""
+MODELS: Final = (MODEL, "cvae")
+"""The paper's model, and that of its equation 16 in full."""
 
 MAIN: Final = (MEASURE, "time_s")
 """Measures that are shown of the paper's model at once; the others are to be unfolded."""
@@ -63,7 +66,7 @@ def cells_of(request: Request[Preset]) -> list[Cell]:
             seed=request.seed,
         )
         for model in reversed(MODELS)
-        for entropy in (None, Entropy(preset.entropy_weights[model]))
+        for entropy in (None, Entropy(preset.entropy_weight))
         for task in request.tasks
     ]
     return [*proper, *(cell for task in request.tasks for cell in _varied(request, task))]
@@ -87,7 +90,7 @@ def _varied(request: Request[Preset], task: str) -> list[Cell]:
             preset=preset,
             seed=request.seed,
         )
-        for name, entropy in variants(ablation, preset.entropy_weights[MODEL]).items()
+        for name, entropy in variants(ablation, preset.entropy_weight).items()
     ]
 
 
@@ -143,6 +146,7 @@ def _drawings(
         "fixed_expertise": expertise_figure(results, preset, tasks),
         "change_of_mind": changes_figure(results, preset, tasks),
         "learners": learners_figure(results, preset, tasks),
+        "learner_slopes": slopes_figure(results, preset, tasks),
         "models": models_figure(results, preset, tasks),
     }
     if preset.ablation is not None:
@@ -173,12 +177,16 @@ def _page(
         main=MAIN,
         others=[measure for measure in measures if measure not in MAIN],
         measures=list(measures),
-        proper=Entropy(preset.entropy_weights[MODEL]),
+        proper=Entropy(preset.entropy_weight),
         few_seeds=preset.seeds < FEWEST_SEEDS,
         arrived=ARRIVED,
         reached=REACHED,
         trapped=TRAPPED,
         level=LEVEL,
+        target_table=target_table(targets(found, preset)),
+        choice=choice,
+        measures_of=measures_of,
+        belief=drive.RULE.keywords,
         tests=tests,
         test_table=comparison_table(tests),
     )
@@ -228,6 +236,14 @@ STUDY: Final = Study(
     simulated=("arms", "people"),
     measure=_measure,
     report=_report,
-    figures=("fixed_expertise", "change_of_mind", "learners", "models", "entropy_weight", *TASKS),
+    figures=(
+        "fixed_expertise",
+        "change_of_mind",
+        "learners",
+        "learner_slopes",
+        "models",
+        "entropy_weight",
+        *TASKS,
+    ),
     documents=("seeds.json", "courses.json"),
 )
