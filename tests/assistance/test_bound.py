@@ -11,6 +11,7 @@ from latentarm.assistance import bound
 from latentarm.assistance.blending import assistive_action, blend
 from latentarm.assistance.bound import furthest, known_help, weighted
 from latentarm.errors import UserError
+from latentarm.models.enclosure import linear_enclosure
 
 MOMENTS = 100_000
 FORMS = (furthest, weighted, known_help)
@@ -133,6 +134,66 @@ def test_with_known_help_no_smaller_delta_would_hold(seed):
         excess = drawn.sure * length - bound.delta(*drawn.bounded, drawn.gain, known_help)
         scale = length * (drawn.alpha * np.linalg.norm(drawn.help, axis=1) + drawn.sigma_h)
         assert (abs(rate + drawn.alpha * drawn.gain * length * excess) <= 1e-9 * scale).all()
+
+
+def against(drawn, seed):
+    """A decoder for each moment, linear in two inputs, a metric, and what the person does: the worst or any.
+
+    Returns:
+        Its enclosure, the metric (N, n, n), and phi (N, n).
+    """
+    rng = np.random.default_rng(seed)
+    count, joints = drawn.state.shape
+    offset = 0.5 * drawn.sigma_h[:, None] * rng.normal(size=(count, joints))
+    columns = drawn.sigma_h[:, None, None] * rng.normal(size=(count, 2, joints))
+    root = rng.normal(size=(count, joints, joints)) * rng.uniform(0.01, 1.0, (count, 1, joints))
+    metric = root @ root.mT + 1e-3 * np.eye(joints)
+    metric[rng.random(count) < 0.3] = np.eye(joints)
+    w = np.matvec(metric, drawn.wanted - drawn.state)
+    worst = -np.sign(np.matvec(columns, w))
+    z = np.where(rng.random((count, 1)) < 0.5, worst, rng.uniform(-1, 1, (count, 2)))
+    return linear_enclosure(columns, offset), metric, offset + np.vecmat(z, columns)
+
+
+def test_with_the_decoder_known_it_certifies_only_what_comes_nearer_in_any_metric():
+    held = refused = 0
+    for index, drawn in enumerate(all_moments(5)):
+        decoder, metric, phi = against(drawn, index)
+        w = np.matvec(metric, drawn.wanted - drawn.state)
+        sure = bound.certified_along(
+            decoder.furthest(-w), w, drawn.state, drawn.belief, drawn.goals, drawn.alpha, drawn.gain
+        )
+        # dV/dt of V = e^T M e / 2.
+        rate = -(w * replace(drawn, phi=phi).action).sum(axis=-1)
+        assert (rate[sure] < 0).all()
+        held += sure.sum()
+        refused += np.count_nonzero(~sure)
+        # In joint space it certifies all that is certified with sigma_h, and more.
+        flat = (metric == np.eye(metric.shape[-1])).all(axis=(1, 2))
+        ball = bound.certified(decoder.largest(), *drawn.bounded[1:], drawn.gain, known_help)
+        assert (ball[flat] <= sure[flat]).all()
+    assert min(held, refused) > 10_000
+
+
+def test_with_the_decoder_known_a_moment_worked_by_hand():
+    """The goal 2 rad ahead, b = 1, alpha = 0.5: help does 2; w = e = (2, 0), so that it brings 4."""
+    goals, belief, state = np.array([[2.0, 0.0]]), np.ones(1), np.zeros(2)
+    w = np.array([2.0, 0.0])
+    # An input can do 1.9 against it: 3.8 of 4. At 2.1 it holds no more, and to the side it may do anything.
+    for against_it, sure in ((1.9, True), (2.1, False)):
+        decoder = linear_enclosure(np.array([[against_it, 0.0], [0.0, 50.0]]), np.zeros(2))
+        assert bound.certified_along(decoder.furthest(-w), w, state, belief, goals, 0.5) == sure
+        assert not bound.certified(decoder.largest(), state, belief, goals, 0, 0.5, others=known_help)
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf])
+def test_with_the_decoder_known_what_is_no_number_certifies_nothing(number):
+    goals, belief, w = np.array([[2.0, 0.0]]), np.ones(1), np.array([2.0, 0.0])
+    assert not bound.certified_along(number, w, np.zeros(2), belief, goals, 0.5)
+    assert not bound.certified_along(0.0, w, np.full(2, np.nan), belief, goals, 0.5)
+    assert not bound.certified_along(-1.0, w, np.zeros(2), belief, goals, 0.0)
+    with pytest.raises(UserError):
+        bound.certified_along(0.0, w, np.zeros(2), belief, goals, 1.1)
 
 
 def test_a_moment_worked_by_hand():

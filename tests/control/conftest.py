@@ -6,6 +6,7 @@ import pytest
 from latentarm.control.controller import Controller
 from latentarm.kinematics.distances import segment_distance
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+from latentarm.models.enclosure import linear_enclosure
 from latentarm.robots.assemble import assemble
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.panda import panda
@@ -72,6 +73,9 @@ class Scripted(Controller):
         if self.answer is not None:
             return self.answer(context)  # type: ignore[return-value]
         return z @ self.matrix
+
+    def speed_bound(self, context: Context, mode: int) -> float:
+        return float(linear_enclosure(self.matrix, np.zeros(self.matrix.shape[1])).largest())
 
 
 @pytest.fixture(scope="session")

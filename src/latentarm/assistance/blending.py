@@ -49,7 +49,10 @@ class Arbitration(ABC):
 @final
 @dataclass(frozen=True)
 class FixedAlpha(Arbitration):
-    """The paper's constant alpha, faded out as the person lets go of the input.
+    """The same alpha whatever the robot believes, faded out as the person lets go of the input.
+
+    The paper's alpha (equation 10) does not fade, and it names no value but 0.5, in equations 12 to 14 and for
+    simplicity of notation. The default is ours and lower: it leaves most to the person.
 
     Attributes:
         value: alpha in [0, 1] at inputs of ``full_at`` and more.

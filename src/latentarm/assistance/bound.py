@@ -7,8 +7,8 @@ and ``V = ‖e‖² / 2`` with ``e = g* - s`` (equation 11). The sum holds ``b(g
 
 where ``others`` is what the help towards the other goals may do; the paper has alpha = 1/2 and k = 1/s.
 There are three forms of it, each at most as large as the one before: `furthest` (equation 14), `weighted`
-(equation 13) and `known_help`. All three let the person do anything up to sigma_h; `certified_along` asks what
-the decoder can do against the goal, which is less, and measures the distance in any metric.
+(equation 13) and `known_help`. All three let the person do anything up to sigma_h; `certified_along` asks
+what the decoder can do against the goal, which is less, and measures the distance in any metric.
 
 All arguments broadcast over leading axes:
 

@@ -48,3 +48,16 @@ class Controller(ABC):
         Returns:
             (..., n), joint velocities, rad/s.
         """
+
+    def speed_bound(self, context: Context, mode: int) -> float | None:
+        """sigma_h of equation 14: what no input in [-1, 1]^d exceeds in this context.
+
+        Args:
+            context: the state and the belief, for one moment.
+            mode: index into `modes`.
+
+        Returns:
+            A proven upper bound of ``‖a_h‖``, rad/s; None where none is known, as here: no bound on the help
+            is then recorded.
+        """
+        return None

@@ -1,6 +1,5 @@
 """The robot's part of Algorithm 1: belief over goals, assistance, and the bound on that assistance."""
 
-import itertools
 import math
 from collections.abc import Sequence
 from typing import final
@@ -13,9 +12,6 @@ from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.types import Context, FloatArray, Goal
 
-_MOST_CORNERS_OF = 6
-"""Up to this many input axes, all 2^d corners of the stick are considered."""
-
 
 @final
 class Choices:
@@ -27,18 +23,16 @@ class Choices:
         controller: what turns inputs into actions.
         context: of this moment.
         mode: index of the controller's mode.
-        beside: (K, d), inputs to decode along with the first ones asked about; may be empty.
     """
 
-    __slots__ = ("_actions", "_asked", "_beside", "_context", "_controller", "_latents", "_mode")
+    __slots__ = ("_actions", "_asked", "_context", "_controller", "_latents", "_mode")
 
-    def __init__(self, controller: Controller, context: Context, mode: int, beside: FloatArray) -> None:
+    def __init__(self, controller: Controller, context: Context, mode: int) -> None:
         self._controller = controller
         self._context = context
         self._mode = mode
-        self._beside = beside
         self._asked: FloatArray | None = None
-        self._latents = self._actions = beside
+        self._latents = self._actions = context.state[:0]
 
     def __call__(self, inputs: FloatArray) -> FloatArray:
         """Inputs (K, d) to actions (K, n), rad/s.
@@ -46,12 +40,11 @@ class Choices:
         Raises:
             ValueError: the controller gave arrays of other shapes.
         """
-        asked = np.concatenate([inputs, self._beside]) if len(self._beside) else inputs
-        z, actions = self._decoded(asked)
-        if z.shape != asked.shape or actions.shape != (len(asked), len(self._context.state)):
-            raise ValueError(f"{len(asked)} inputs gave actions of shape {actions.shape}")
-        self._asked, self._latents, self._actions = asked, z, actions
-        return actions[: len(inputs)]
+        z, actions = self._decoded(inputs)
+        if z.shape != inputs.shape or actions.shape != (len(inputs), len(self._context.state)):
+            raise ValueError(f"{len(inputs)} inputs gave actions of shape {actions.shape}")
+        self._asked, self._latents, self._actions = inputs, z, actions
+        return actions
 
     def chosen(self, u: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Latent action and action of the person's own input.
@@ -66,32 +59,9 @@ class Choices:
             return self._latents[0], self._actions[0]
         return self._decoded(u)
 
-    def largest_beside(self) -> float:
-        """Largest ‖a‖ of the additional inputs, rad/s; NaN if an action is not finite."""
-        if self._asked is None:
-            self(self._beside[:0])
-        actions = self._actions[len(self._actions) - len(self._beside) :]
-        squared = np.vecdot(actions, actions).tolist()
-        return math.sqrt(max(squared)) if math.isfinite(sum(squared)) else math.nan
-
     def _decoded(self, inputs: FloatArray) -> tuple[FloatArray, FloatArray]:
         z = np.asarray(self._controller.latent(inputs, self._context, self._mode), dtype=np.float64)
         return z, np.asarray(self._controller.action(z, self._context, self._mode), dtype=np.float64)
-
-
-def full_deflections(input_dim: int) -> FloatArray:
-    """Inputs at the edge of what a person can give: both ends of every axis, and every corner.
-
-    Args:
-        input_dim: d, axes of the input.
-
-    Returns:
-        (K, d), entries in {-1, 0, 1}; corners for up to six axes.
-    """
-    axes = np.concatenate([np.eye(input_dim), -np.eye(input_dim)])
-    if not 1 < input_dim <= _MOST_CORNERS_OF:
-        return axes
-    return np.concatenate([axes, np.array(list(itertools.product((-1.0, 1.0), repeat=input_dim)))])
 
 
 _BOUND_PERIOD_S = 0.05
@@ -131,8 +101,6 @@ class SharedAutonomy:
         self._goals = np.array([goal.configuration for goal in goals], dtype=np.float64).reshape(-1, dof)
         self._rule = belief
         self._arbitration = arbitration
-        self._full_inputs = full_deflections(controller.input_dim)
-        self._no_inputs = self._full_inputs[:0]
         # The belief counts evidence per its own period, whatever the loop's.
         period_s = _BOUND_PERIOD_S if belief is None else belief.period_s
         self._ticks_per_update = max(1, round(period_s / dt_s))
@@ -196,7 +164,7 @@ class SharedAutonomy:
 
         Returns:
             What is known of inputs at this moment, and the radius of the bound about the likeliest goal
-            (equation 14), rad, held in between; NaN without help.
+            (equation 14), rad, held in between; NaN without help, or where sigma_h is not known.
 
         Raises:
             ValueError: the controller or the belief gave something that cannot be.
@@ -209,14 +177,14 @@ class SharedAutonomy:
             bounding = False
         else:
             bounding = self._bound_rad is None or self._updates_since_bound >= self._updates_per_bound
-        beside = self._full_inputs if bounding else self._no_inputs
-        choices = Choices(self._controller, context, mode, beside)
+        choices = Choices(self._controller, context, mode)
         if due:
             self._since_update = 0
             self._learn(u, context, choices)
         if bounding:
             self._updates_since_bound %= self._updates_per_bound
-            self._bound_rad = self._bound(choices.largest_beside(), context, alpha)
+            sigma_h = self._controller.speed_bound(context, mode)
+            self._bound_rad = math.nan if sigma_h is None else self._bound(sigma_h, context, alpha)
         return choices, math.nan if self._bound_rad is None else self._bound_rad
 
     def _learn(self, u: FloatArray, context: Context, choices: Choices) -> None:

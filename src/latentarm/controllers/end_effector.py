@@ -7,6 +7,7 @@ import numpy as np
 
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
+from latentarm.models.enclosure import linear_enclosure
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray
 
@@ -106,3 +107,8 @@ class EndEffectorController(Controller):
         twists = np.concatenate([shifts, turns], axis=-1)
         inverse = self._damping.inverse(singular)[..., None, :]
         return np.vecmat(z, twists @ (left * inverse) @ right)
+
+    def speed_bound(self, context: Context, mode: int) -> float:
+        """Exact: the action is linear in the input."""
+        columns = self.action(np.eye(self.input_dim), context, mode)
+        return float(linear_enclosure(columns, np.zeros(columns.shape[-1])).largest())

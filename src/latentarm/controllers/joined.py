@@ -55,3 +55,8 @@ class JoinedController(Controller):
         """What the mode's own controller does."""
         controller, own = self._parts[mode]
         return controller.action(z[..., : controller.input_dim], context, own)
+
+    def speed_bound(self, context: Context, mode: int) -> float | None:
+        """That of the mode's own controller."""
+        controller, own = self._parts[mode]
+        return controller.speed_bound(context, own)

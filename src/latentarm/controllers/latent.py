@@ -50,6 +50,17 @@ class LatentController(Controller):
         """
         return self._decoder.decode(z, self._vector(context))
 
+    def speed_bound(self, context: Context, mode: int) -> float | None:
+        """That of the decoder's enclosure; None with an alignment, whose z may lie outside [-1, 1]^d.
+
+        Raises:
+            UserError: the decoder was trained for another arm or another number of goals.
+        """
+        if self._alignment is not identity:
+            return None
+        enclosure = self._decoder.enclose(self._vector(context))
+        return None if enclosure is None else float(enclosure.largest())
+
     def _vector(self, context: Context) -> FloatArray:
         """The context as the decoder was trained on it, (..., c)."""
         if self._decoder.context == "state":

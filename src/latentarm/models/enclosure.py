@@ -1,24 +1,26 @@
 """Proven enclosures of what a decoder can do over all inputs (Taylor models of first order).
 
-Dense sampling does not bound a decoder: between two samples it may do more. Here all inputs
-``Z = [-1, 1]^d`` are cut into cells, and in each cell k the decoder is an affine map with a remainder::
+Sampling does not bound a decoder: between two samples it may do more. Here all inputs ``Z = [-1, 1]^d`` are
+cut into cells, and in each cell k the decoder is an affine map with a remainder::
 
     |phi(z, c) - centre_k - Σ_i δ_i spread_k,i| <= remainder_k    for some δ in [-1, 1]^g, entry by entry
 
 An affine map on a box takes its largest norm at a corner, so `Enclosure.largest` is an upper bound of
-``‖phi‖``, and `Enclosure.furthest` one of ``w·phi`` for a given w. Both are exact where the decoder is linear.
+``‖phi‖``, and `Enclosure.furthest` one of ``w·phi`` for a given w. Both are exact where the decoder is
+linear.
 
-How a network's remainder follows, with ``s(h) = h + h tanh h``, which is SiLU of 2 h: if the pre-activation is
-``h_c + J δ`` up to ``e``, it lies within ``r = Σ|J| + e`` of ``h_c``, and by Taylor's theorem ``s`` of it within
-``|s'(h_c)| e + C r² / 2`` of ``s(h_c) + s'(h_c) J δ``, with ``C`` the largest ``|s''|`` in between
-(`curvature`). A linear layer maps centre and spread as they are, and the remainder by its absolute weights.
-Makino and Berz, "Taylor models and other validated functional inclusion methods", 2003.
+How the remainder of a network follows, with ``s(h) = h + h tanh h``, which is SiLU of 2 h: where the
+pre-activation is ``h_c + J δ`` up to ``e``, it lies within ``r = Σ|J| + e`` of ``h_c``. By Taylor's theorem
+its activation is then ``s(h_c) + s'(h_c) J δ`` up to ``|s'(h_c)| e + C r² / 2``, with ``C`` the largest
+``|s''|`` in between (`curvature`). A linear map acts on centre and spread as on any vector, and on the
+remainder by its absolute entries. Makino and Berz, "Taylor models and other validated functional inclusion
+methods", 2003.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Final, final
+from typing import Final, Self, final
 
 import numpy as np
 
@@ -38,6 +40,9 @@ TURNING_POINT: Final = 1.19967
 
 BEYOND: Final = 0.15
 """|s''| stays below this beyond the turning point; its maximum there is 0.1477."""
+
+TANH_CURVATURE: Final = 0.7699
+"""Just above the largest |tanh''|, 4 / (3 sqrt 3)."""
 
 
 @final
@@ -72,15 +77,57 @@ class Enclosure:
             direction: (..., m), w.
         """
         w = direction[..., None, :]
-        reach = np.abs(np.vecdot(w[..., None, :], self.spread)).sum(axis=-1) + np.vecdot(
-            np.abs(w), self.remainder
-        )
+        sides = np.abs(np.vecdot(w[..., None, :], self.spread)).sum(axis=-1)
+        reach = sides + np.vecdot(np.abs(w), self.remainder)
         middle = np.vecdot(w, self.centre)
         return (middle + reach + ROUNDING * (np.abs(middle) + reach)).max(axis=-1)
 
+    def mapped(self, matrix: FloatArray) -> Self:
+        """The enclosure of ``phi @ matrix``, with a matrix (..., 1, m, m') or (m, m')."""
+        flat = matrix if matrix.ndim == 2 else matrix[..., 0, :, :]
+        return type(self)(self.centre @ flat, self.spread @ matrix, self.remainder @ np.abs(flat))
+
+    def shifted(self, offset: FloatArray) -> Self:
+        """The enclosure of ``phi + offset``, (..., m)."""
+        return type(self)(self.centre + offset[..., None, :], self.spread, self.remainder)
+
+    def minus(self, other: Self) -> Self:
+        """The enclosure of the difference of two decoders that are enclosed in the same cells of z."""
+        return type(self)(
+            self.centre - other.centre, self.spread - other.spread, self.remainder + other.remainder
+        )
+
+    def bent(self, value: FloatArray, slope: FloatArray, curvature: FloatArray | float) -> Self:
+        """The enclosure after an activation of every entry.
+
+        Args:
+            value: (..., K, m), the activation of the centre.
+            slope: (..., K, m), its derivative there.
+            curvature: (..., K, m), upper bound of its second derivative within `radius` of the centre.
+        """
+        rest = np.abs(slope) * self.remainder + 0.5 * curvature * np.square(self.radius)
+        return type(self)(value, slope[..., None, :] * self.spread, rest)
+
+    @property
+    def radius(self) -> FloatArray:
+        """(..., K, m), how far an entry may be from the centre's."""
+        return np.abs(self.spread).sum(axis=-2) + self.remainder
+
+
+def cells(d: int, fineness: int) -> tuple[FloatArray, float]:
+    """Centres (K, d) of the cells of ``[-1, 1]^d``, and half their width.
+
+    Args:
+        d: axes of z.
+        fineness: times `CELLS_PER_AXIS`.
+    """
+    per_axis = fineness * CELLS_PER_AXIS.get(d, 1)
+    middles = (2.0 * np.arange(per_axis) + 1.0) / per_axis - 1.0
+    return np.array(list(product(middles, repeat=d))), 1.0 / per_axis
+
 
 def linear_enclosure(columns: FloatArray, offset: FloatArray) -> Enclosure:
-    """The enclosure of ``offset + Σ z_i columns_i``, exact.
+    """The enclosure of ``offset + Σ z_i columns_i``, exact and in one cell.
 
     Args:
         columns: (..., d, m), rad/s.
@@ -88,6 +135,14 @@ def linear_enclosure(columns: FloatArray, offset: FloatArray) -> Enclosure:
     """
     centre = offset[..., None, :]
     return Enclosure(centre, columns[..., None, :, :], np.zeros(centre.shape))
+
+
+def celled(columns: FloatArray, offset: FloatArray, fineness: int) -> Enclosure:
+    """As `linear_enclosure`, in the `cells` of z."""
+    middles, half = cells(columns.shape[-2], fineness)
+    centre = middles @ columns + offset[..., None, :]
+    spread = np.broadcast_to(half * columns[..., None, :, :], (*centre.shape[:-1], *columns.shape[-2:]))
+    return Enclosure(centre, spread, np.zeros(centre.shape))
 
 
 def network_enclosure(
@@ -98,7 +153,7 @@ def network_enclosure(
 ) -> Enclosure:
     """The enclosure of a network as `numpy_networks.propagate` runs it.
 
-    Half the width of a cell leaves about a quarter of the remainder.
+    Cells half as wide leave about a quarter of the remainder.
 
     Args:
         from_latent: (d, h), from inputs to the first layer's pre-activations, halved where an activation
@@ -108,26 +163,15 @@ def network_enclosure(
         fineness: times `CELLS_PER_AXIS`.
     """
     if not layers:
-        return linear_enclosure(
-            np.broadcast_to(from_latent, (*offset.shape[:-1], *from_latent.shape)), offset
-        )
-    d = len(from_latent)
-    per_axis = fineness * CELLS_PER_AXIS.get(d, 1)
-    middles = (2.0 * np.arange(per_axis) + 1.0) / per_axis - 1.0
-    cells = np.array(list(product(middles, repeat=d)))
-    centre = cells @ from_latent + offset[..., None, :]
-    # The first layer is linear in z: the same spread everywhere, and nothing remains.
-    spread: FloatArray = np.broadcast_to(from_latent / per_axis, (*centre.shape[:-1], *from_latent.shape))
-    remainder = np.zeros(centre.shape)
+        columns = np.broadcast_to(from_latent, (*offset.shape[:-1], *from_latent.shape))
+        return linear_enclosure(columns, offset)
+    found = celled(from_latent, offset, fineness)
     for weight, bias in layers:
-        radius = np.abs(spread).sum(axis=-2) + remainder
-        tanh = np.tanh(centre)
-        slope = 1.0 + tanh + centre * (1.0 - tanh * tanh)
-        bent = 0.5 * curvature(centre, radius) * radius * radius
-        remainder = (np.abs(slope) * remainder + bent) @ np.abs(weight)
-        spread = (slope[..., None, :] * spread) @ weight
-        centre = (centre + centre * tanh) @ weight + bias
-    return Enclosure(centre, spread, remainder)
+        tanh = np.tanh(found.centre)
+        value = found.centre * (1.0 + tanh)
+        slope = 1.0 + tanh + found.centre * (1.0 - tanh * tanh)
+        found = found.bent(value, slope, curvature(found.centre, found.radius)).mapped(weight).shifted(bias)
+    return found
 
 
 def curvature(centre: FloatArray, radius: FloatArray) -> FloatArray:

@@ -3,6 +3,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
+from latentarm.models.enclosure import TANH_CURVATURE, celled, linear_enclosure
 from latentarm.studies.shared_autonomy.cell import TASKS
 from latentarm.studies.shared_autonomy.drive import RULE, STEP_S, Scene
 
@@ -17,6 +18,11 @@ class Straight:
     def decode(self, z, context):
         shape = np.broadcast_shapes(z.shape[:-1], context.shape[:-1])
         return np.broadcast_to(z * self.line, (*shape, len(self.line)))
+
+    def enclose(self, context, fineness=1):
+        lead = context.shape[:-1]
+        columns = np.broadcast_to(self.line, (*lead, 1, len(self.line)))
+        return linear_enclosure(columns, np.zeros((*lead, len(self.line))))
 
 
 @dataclass(frozen=True)
@@ -37,6 +43,11 @@ class Wild:
         shape = np.broadcast_shapes(z.shape[:-1], context.shape[:-1])
         parts = [np.broadcast_to(part, (*shape, part.shape[-1])) for part in (z, context)]
         return 0.4 * np.tanh(np.concatenate(parts, axis=-1) @ self.weight)
+
+    def enclose(self, context, fineness=1):
+        before = celled(self.weight[:1], context @ self.weight[1:], fineness)
+        tanh = np.tanh(before.centre)
+        return before.bent(tanh, 1.0 - tanh**2, TANH_CURVATURE).mapped(0.4 * np.eye(self.joints))
 
 
 @pytest.fixture(scope="session")

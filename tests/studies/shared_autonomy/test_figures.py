@@ -10,6 +10,7 @@ from latentarm.studies.shared_autonomy.figures import (
     expertise_figure,
     learners_figure,
     models_figure,
+    slopes_figure,
     task_figure,
     weights_figure,
 )
@@ -62,6 +63,7 @@ def test_every_figure_fits_its_column_and_names_the_methods(tmp_path, preset, ta
         changes_figure(results, preset, tasks): TWO_COLUMNS_MM,
         learners_figure(results, preset, tasks): TWO_COLUMNS_MM,
         models_figure(results, preset, tasks): TWO_COLUMNS_MM,
+        slopes_figure(results, preset, tasks): TWO_COLUMNS_MM,
     }
     for figure, width_mm in drawings.items():
         assert_well_drawn(figure, width_mm)
@@ -99,7 +101,5 @@ def test_one_seed_has_no_bars_and_is_drawn_all_the_same(tmp_path):
     preset = Preset("tiny", seeds=1, betas=(0.0, 75.0, 1e4), ablation=None)
     results = results_of(tmp_path, preset, drives=1)
     assert_well_drawn(expertise_figure(results, preset, tuple(TASKS)), COLUMN_MM)
-    assert any(
-        result.cell.entropy == Entropy(preset.entropy_weights[result.cell.model]) for result in results
-    )
+    assert any(result.cell.entropy == Entropy(preset.entropy_weight) for result in results)
     assert all(isinstance(result.cell, Cell) and result.cell.model in MODELS for result in results)

@@ -15,7 +15,7 @@ from latentarm.studies.study import ALWAYS_MADE, Request, run_study
 
 TINY = Preset(
     "tiny",
-    demonstrations=6,
+    demonstrations=4,
     test_demonstrations=2,
     seeds=3,
     drives=2,
@@ -23,6 +23,7 @@ TINY = Preset(
     hidden=(8,),
     betas=(0.0, 75.0, 1e4),
     learners={"slow": 10.0},
+    slopes=(),
     changes_s=(0.0, 1.0),
     ablation=Ablation(seeds=2, drives=2, weights=(0.0, 2.0), sharpness=(8.0,), contexts=("demonstrated",)),
 )
@@ -70,7 +71,7 @@ def test_without_help_nothing_is_certified(done):
 def test_every_variant_of_the_entropy_has_its_rows(done):
     rows, _ = done
     known = {(row.condition, row.measure) for row in rows if row.model == "cae"}
-    names = variants(TINY.ablation, TINY.entropy_weights["cae"])
+    names = variants(TINY.ablation, TINY.entropy_weight)
     assert list(names) == [
         "lambda_2 0",
         "lambda_2 2",
@@ -128,7 +129,7 @@ def test_the_folder_holds_what_is_promised(done):
 
 
 def test_sizes_that_make_no_sense_name_the_cell(tmp_path):
-    with pytest.raises(UserError, match=r"planar_two_cups, isometric, without entropy: .*demonstration"):
+    with pytest.raises(UserError, match=r"planar_two_cups, cvae, without entropy: .*demonstration"):
         run_study(STUDY, tiny(tmp_path, preset=replace(TINY, demonstrations=0)))
 
 

@@ -46,8 +46,8 @@ class _Runtime(Runtime):
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
         """See `Runtime`; exact for d = 1, cells of the input's angle for d = 2, the metric's bound beyond.
 
-        ``‖phi‖_G <= v ‖z‖``, so by Cauchy and Schwarz in the metric ``|phi_j| <= v ‖z‖ sqrt((G^-1)_jj)``. That
-        is loose where hardly any tool shows a joint's motion.
+        ``‖phi‖_G <= v ‖z‖``, so by Cauchy and Schwarz in the metric ``|phi_j| <= v ‖z‖ sqrt((G^-1)_jj)``.
+        That is loose where hardly any tool shows a joint's motion.
         """
         jacobian = self._contexts.jacobian(context[..., : self._joints])
         if self._latents == 1:
@@ -65,9 +65,9 @@ class _Runtime(Runtime):
     def _enclosed_by_angle(self, columns: FloatArray, jacobian: FloatArray, cells: int) -> Enclosure:
         """The enclosure for d = 2, in cells of the angle theta of z with a half width w.
 
-        The direction that is brought to unit length, ``led(theta)``, is a sum of columns times cos(n theta) or
-        sin(n theta): within a cell it is ``led_c + δ w led'_c`` up to ``w² / 2 Σ n² |column|``. What it is
-        divided by, its length in the metric, is at least that of the nearest point of this line less the
+        The direction that is brought to unit length, ``led(theta)``, is a sum of columns times cos(n theta)
+        or sin(n theta): within a cell it is ``led_c + δ w led'_c`` up to ``w² / 2 Σ n² |column|``. What it
+        is divided by, its length in the metric, is at least that of the nearest point of this line less the
         remainder's. The input is at most as long as the square reaches, and may have either sign.
         """
         width = np.pi / (2 * cells)

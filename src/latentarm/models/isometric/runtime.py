@@ -49,8 +49,8 @@ class _Runtime(Runtime):
         """See `Runtime`; exact for d = 1 but for the cells, at most sqrt(d) too large for more axes.
 
         With a direction x of length 1 and ``t = 2 min(r, 1) - 1`` the action is ``g(r) / q`` times
-        ``Σ_i x_i (M_i + t N_i)``. In a cell of half width w, t is ``t_c + δ w``, so the coefficients ``x_i`` and
-        ``x_i δ`` are in [-1, 1]; g(r) is at most that of the cell's end, and ``q² = 1 + t² ‖N x‖_G²`` at
+        ``Σ_i x_i (M_i + t N_i)``. In a cell of half width w, t is ``t_c + δ w``, so the coefficients ``x_i``
+        and ``x_i δ`` are in [-1, 1]; g(r) is at most that of the cell's end, and ``q² = 1 + t² ‖N x‖_G²`` at
         least 1 plus the cell's least t² times the smallest eigenvalue of ``N^T G N``.
         """
         straight, bend, bend_twist = self._geometry(context)

@@ -5,6 +5,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.models.autoencoders.runtime import conditioned_sizes
+from latentarm.models.enclosure import Enclosure, network_enclosure
 from latentarm.models.kind import ModelKind, Runtime, TrainedModel
 from latentarm.models.numpy_networks import halve_hidden, layers_of, propagate, scale_context, scale_output
 from latentarm.style import Look
@@ -32,6 +33,15 @@ class _Runtime(Runtime):
         push, here = z @ self._from_latent, context @ self._from_context + self._bias
         forth, back = propagate(np.stack([here + push, here - push]), self._rest)
         return forth - back
+
+    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
+        """See `Runtime`; both halves in the same cells of z, so that what they have in common cancels."""
+        here = context @ self._from_context + self._bias
+        forth, back = (
+            network_enclosure(from_latent, here, self._rest, fineness)
+            for from_latent in (self._from_latent, -self._from_latent)
+        )
+        return forth.minus(back)
 
 
 ODD_CAE: Final = ModelKind(

@@ -4,6 +4,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.models.enclosure import TANH_CURVATURE, Enclosure, celled
 from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
 from latentarm.models.numpy_networks import halve_hidden, layers_of, propagate, scale_context
 from latentarm.style import Look
@@ -35,11 +36,22 @@ class _Runtime(Runtime):
 
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
         """See `Runtime`."""
+        first, second = self._matrices(context)
+        return np.vecmat(np.tanh(np.vecmat(z, first)), second)
+
+    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
+        """See `Runtime`."""
+        first, second = self._matrices(context)
+        before = celled(first, np.zeros((*first.shape[:-2], UNITS)), fineness)
+        tanh = np.tanh(before.centre)
+        return before.bent(tanh, 1.0 - tanh * tanh, TANH_CURVATURE).mapped(second[..., None, :, :])
+
+    def _matrices(self, context: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """W_1 (..., d, k) and W_2 (..., k, m)."""
         weights = propagate(context @ self._weight + self._bias, self._rest)
         lead = weights.shape[:-1]
         first = weights[..., : self._split].reshape(*lead, self._inputs, UNITS)
-        second = weights[..., self._split :].reshape(*lead, UNITS, self._joints)
-        return np.vecmat(np.tanh(np.vecmat(z, first)), second)
+        return first, weights[..., self._split :].reshape(*lead, UNITS, self._joints)
 
 
 def _sizes(dimensions: Dimensions) -> dict[str, Shape]:

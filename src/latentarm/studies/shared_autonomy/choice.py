@@ -1,9 +1,9 @@
 """What a simulated person presses on one axis that is continuous (equation 24), drawn exactly.
 
-``p(u) ∝ exp(-beta cost(u))`` over u in [-1, 1]. The cost is known at a few inputs and taken as linear between
-two of them, so that the density integrates in closed form and its distribution function inverts in closed form:
-no input is favoured by where a grid happens to lie. Within `DEAD_ZONE` of zero the stick is at rest, as the
-control loop takes it to be: there the cost is that of standing still.
+``p(u) ∝ exp(-beta cost(u))`` over u in [-1, 1]. The cost is known at a few inputs and taken as linear
+between two of them, so that the density integrates and its distribution function inverts in closed form: no
+input is favoured by where a grid happens to lie. Within `DEAD_ZONE` of zero the person lets go of the stick:
+there the cost is that of standing still.
 """
 
 from typing import Final

@@ -8,9 +8,9 @@ What the paper leaves open is chosen here once, the same for every model and eve
   makes of z = 0, and the robot does not help.
 - alpha grows with the robot's confidence up to 0.8 and fades out below |u| = 0.3 (`ConfidenceAlpha`). Help is
   ``k Σ b(g) (g - s)``, k = 1/s.
-- The robot takes people to be Boltzmann-rational with 5/rad². Along a demonstration its belief is then above 0.9
-  after one second and 0.99 from two seconds on: open while the arm turns to a cup, certain when it grasps. No
-  goal falls below 1 %.
+- The robot takes people to be Boltzmann-rational with 5/rad². Along a demonstration its belief is then above
+  0.9 after one second and 0.99 from two seconds on: open while the arm turns to a cup, certain when it
+  grasps. No goal falls below 1 %.
 """
 
 from collections.abc import Sequence

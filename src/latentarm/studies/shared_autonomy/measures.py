@@ -40,7 +40,7 @@ BALLS: Final[dict[str, Others]] = {
     "certified_share_eq_13": weighted,
     "certified_share_known_help": known_help,
 }
-"""Forms of the bound in which the person may do anything up to sigma_h, each at least as tight as the one before."""
+"""Forms of the bound in which the person may do anything up to sigma_h, from the loosest to the tightest."""
 
 
 def measure(drives: Drives, scene: Scene, decoder: Decoder) -> dict[str, FloatArray]:
@@ -57,8 +57,8 @@ def measure(drives: Drives, scene: Scene, decoder: Decoder) -> dict[str, FloatAr
 
     - ``goal_entropy``: of ``p_c(g)``, nats. ``goal_open_share``: where the wanted goal is reached or open.
     - ``certified_share_...``: where the bound says that the distance to the goal of that moment shrinks,
-      whatever the person does with the help as it is: by equation 14, by equation 13, with the help known, with
-      the decoder known as well, and the last in the metric of the tools.
+      whatever the person does with the help as it is: by equation 14, by equation 13, with the help known,
+      with the decoder known as well, and the last in the metric of the tools.
     - ``bound_slack``: sigma_h over the largest ‖a_h‖ of a few inputs, less one.
     """
     one, other = scene.goals
@@ -109,13 +109,14 @@ def looked_at(drives: Drives, scene: Scene, decoder: Decoder) -> dict[str, Float
     return {
         "goal_entropy": entropy,
         "goal_open_share": (goal_open(drives, progress) | reached).astype(float),
-        "bound_slack": sigma_h / most - 1.0,
+        # A decoder that does nothing leaves no slack.
+        "bound_slack": np.divide(sigma_h - most, most, out=np.zeros_like(most), where=most > 0.0),
         **{name: share.astype(float) for name, share in certificates.items()},
     }
 
 
 def goal_open(drives: Drives, progress: FloatArray) -> BoolArray:
-    """Whether an input leads to the wanted goal, from the fastest progress to each goal: (P, T, G) to (P, T)."""
+    """Whether an input leads to the wanted goal, by the fastest progress to each: (P, T, G) to (P, T)."""
     return np.take_along_axis(progress, drives.target[:, None, None], axis=-1)[..., 0] >= OPEN
 
 
@@ -129,7 +130,8 @@ def certify(drives: Drives, scene: Scene, decoder: Decoder) -> tuple[FloatArray,
         TypeError: no enclosure of the decoder is known.
     """
     at = drives.moments
-    state, belief, wanted, alpha = (part[:, ::EVERY] for part in (at.state, at.belief, at.wanted, at.alpha))
+    state, belief, alpha = (part[:, ::EVERY] for part in (at.state, at.belief, at.alpha))
+    wanted = at.wanted[:, ::EVERY]
     enclosure = decoder.enclose(np.concatenate([state, belief], axis=-1), FINENESS)
     if enclosure is None:
         raise TypeError(f"no enclosure of the {decoder.kind} decoder is known")

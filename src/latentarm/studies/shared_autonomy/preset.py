@@ -121,7 +121,7 @@ class Preset:
     entropy_weight: float = 5.0
     betas: tuple[float, ...] = (0.0, 10.0, 30.0, 75.0, 1000.0, 10000.0)
     learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 2.5, "fast": 25.0})
-    slopes: tuple[float, ...] = (0.5, 8.0, 80.0, 250.0, 1000.0)
+    slopes: tuple[float, ...] = (0.5, 8.0, 80.0, 250.0)
     changes_s: tuple[float, ...] = (0.0, 2.0, 4.0, 8.0)
     ablation: Ablation | None = field(default_factory=Ablation)
 
