@@ -51,8 +51,8 @@ class Arbitration(ABC):
 class FixedAlpha(Arbitration):
     """The same alpha whatever the robot believes, faded out as the person lets go of the input.
 
-    The paper's alpha (equation 10) does not fade, and it names no value but 0.5, in equations 12 to 14 and for
-    simplicity of notation. The default is ours and lower: it leaves most to the person.
+    The paper's alpha (equation 10) does not fade, and it names no value but 0.5, in equations 12 to 14 for
+    simplicity. The default is ours and lower: it leaves most to the person.
 
     Attributes:
         value: alpha in [0, 1] at inputs of ``full_at`` and more.

@@ -42,18 +42,11 @@ class _Runtime(Runtime):
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
         """See `Runtime`."""
         here = context @ self._from_context + self._shift_bias
-<<<<<<< HEAD
         shift = propagate(z @ self._from_latent + here, self._shifts) - propagate(here, self._shifts)
         d = len(self._gain)
         action = np.empty((*shift.shape[:-1], self._joints))
         action[..., :d] = z * self._gain
         action[..., d:] = shift
-=======
-        pushed = z @ self._from_latent + here
-        pushed, still = propagate(np.stack([pushed, np.broadcast_to(here, pushed.shape)]), self._shifts)
-        action = np.concatenate(
-            [np.broadcast_to(z * self._gain, (*pushed.shape[:-1], len(self._gain))), pushed - still], axis=-1
-        )
         return self._turned(action, context)
 
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
@@ -68,11 +61,11 @@ class _Runtime(Runtime):
             np.concatenate([steered.spread, moved.spread], axis=-1),
             np.concatenate([steered.remainder, moved.remainder], axis=-1),
         )
-        return joined.mapped(self._turned(np.eye(self._joints), context[..., None, :])[..., None, :, :])
+        axes = np.broadcast_to(np.eye(self._joints), (*here.shape[:-1], self._joints, self._joints)).copy()
+        return joined.mapped(self._turned(axes, context[..., None, :])[..., None, :, :])
 
     def _turned(self, action: FloatArray, context: FloatArray) -> FloatArray:
-        """Q(c) of vectors (..., m), one reflection for each axis of z."""
->>>>>>> 9d35547 (Prove the bound on help, and certify with the decoder known)
+        """Q(c) of vectors (..., m), one reflection for each axis of z; changes them in place."""
         normals = propagate(context @ self._turn + self._turn_bias, self._turns)
         for part in self._mirrors:
             normal = normals[..., part]
