@@ -6,7 +6,7 @@ from latentarm.commands import bench
 
 
 def test_bench_gives_every_figure_and_equal_losses(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, value in (("SEEDS", 3), ("EPOCHS", 2), ("WARM_UP", 50)):
+    for name, value in (("SEEDS", 3), ("EPOCHS", 2), ("WARM_UP", 50), ("PLAIN_RUNS", 1)):
         monkeypatch.setattr(bench, name, value)
     all_rows = bench.run_bench(repeats=70, seed=0, progress=False, pairs=300)
     rows = {row.measure: row for row in all_rows if row.condition is None}
@@ -24,3 +24,7 @@ def test_bench_gives_every_figure_and_equal_losses(monkeypatch: pytest.MonkeyPat
     assert rows["online_step_median_us"].n == many["online_step_median_us"].n == 70
     ratio = many["online_step_median_us"].mean / rows["online_step_median_us"].mean
     assert many["online_step_over_3_goals"].mean == ratio
+    plain = {row.measure: row for row in all_rows if row.condition and row.condition.startswith("cAE, 30-30")}
+    ratio = 3 * plain["plain_run_s"].mean / plain["fit_of_3_seeds_s"].mean
+    assert plain["plain_run_over_fit_per_seed"].mean == ratio
+    assert plain["plain_run_to_that_loss_s"].mean <= plain["plain_run_s"].mean

@@ -29,6 +29,10 @@ from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Input, Ro
 PAIRS = 10_000
 SEEDS = 10
 EPOCHS = 10
+PLAIN_PAIRS = 26_000
+"""Pairs for the comparison with a plain loop: 65 of its batches."""
+
+PLAIN_RUNS = 3
 RATE_HZ = 1000.0
 WARM_UP = 500
 TORCH_EVERY = 10
@@ -65,7 +69,10 @@ def run_bench(repeats: int, seed: int, progress: bool, pairs: int = PAIRS) -> li
     task = TableTop()
     demonstrations = task.demonstrate(12, np.random.default_rng(seed))
     fits, model = _time_fits(_about(demonstrations, pairs), seed, progress)
-    return [*_time_step(task, model, repeats, seed), *fits]
+    from latentarm.commands.bench_training import time_training
+
+    plain = time_training(_about(demonstrations, PLAIN_PAIRS * pairs // PAIRS), SEEDS, EPOCHS, PLAIN_RUNS)
+    return [*_time_step(task, model, repeats, seed), *fits, *plain]
 
 
 def _time_step(task: TableTop, model: CVAE, repeats: int, seed: int) -> list[Row]:

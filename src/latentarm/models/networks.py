@@ -26,8 +26,8 @@ follows the weight directly, so that the two can be one matrix."""
 def mlp(layers: Sequence[Layer], *inputs: Tensor) -> Tensor:
     """S perceptrons with SiLU hidden units, x sigmoid(x), and a linear output.
 
-    SiLU is smooth, so the arm follows the stick smoothly. In training the gradient is written out and can be
-    taken once; for a loss that has a gradient in it see `mlp_along`.
+    SiLU is smooth, so the arm follows the stick smoothly. The gradient with respect to weights that are being
+    trained is written out and can be taken once; for a loss that has a gradient in it see `mlp_along`.
 
     Args:
         layers: at least one.
@@ -36,7 +36,7 @@ def mlp(layers: Sequence[Layer], *inputs: Tensor) -> Tensor:
     Returns:
         (S, B, out).
     """
-    if torch.is_grad_enabled() and layers[0][0].requires_grad:
+    if layers[0][0].requires_grad or not torch.is_grad_enabled():
         parameters = [parameter for layer in layers for parameter in layer]
         return cast(Tensor, Perceptrons.apply(len(inputs), *inputs, *parameters))
     *hidden, (weight, bias) = layers

@@ -139,7 +139,7 @@ def train(
             for _ in batches.epoch(state.epoch + 1):
                 fill_gradient()
                 adam.step(networks.values, networks.gradient, rate)
-            state.record(_validation_loss(objective, networks, batches), adam.steps, config.patience)
+            state.record(validation_loss(objective, networks, batches), adam.steps, config.patience)
             report(state.epoch, config.epochs, float(state.best_loss.mean()))
             if checkpoint is not None and monotonic() - written >= config.checkpoint_interval_s:
                 write_checkpoint(checkpoint, print_of, state)
@@ -190,7 +190,7 @@ def _gradient(
 
 
 @torch.no_grad()
-def _validation_loss(
+def validation_loss(
     objective: Callable[[Networks, Batch], Tensor], networks: FlatNetworks, batches: Batches
 ) -> FloatArray:
     """Mean over all validation pairs, (S,)."""
