@@ -11,11 +11,11 @@ the range that a person's stick has (inputs are scaled so that the demonstration
 
 Nothing but `decode` is used. A decoder that is affine in z, which is checked, has a convex problem and its
 exact solution. Any other is tried at a fixed set of inputs: an even grid, which finds the valleys of smooth
-decoders; points along rays from rest, where rays are scaled as if the action grew in proportion to them,
-which finds the slow motions of decoders whose direction matters more than their size; and, where they are
+decoders; rays from rest at full and half length, which find those that turn fast with the stick, and at the
+length that would be best if the action grew in proportion, which finds slow motions; and, where they are
 given, an encoder's codes, brought into the range, so that the result is never worse than these. The best of
 them that lie apart are refined by Levenberg-Marquardt steps within the box (Nocedal and Wright, Numerical
-Optimization, section 10.3), first all, then the best few until they stop.
+Optimization, section 10.3), in rounds after each of which only the better ones go on.
 """
 
 import itertools
@@ -37,7 +37,7 @@ RAYS: Final = 48
 
 SCATTERED: Final = 128
 
-ROUNDS: Final = ((8, 2), (4, 4), (2, 6), (1, 30))
+ROUNDS: Final = ((12, 2), (6, 3), (3, 6), (1, 40))
 """Of each pair, how many of the best searches go on, and for how many steps at most."""
 
 APART: Final = 0.35
@@ -132,7 +132,7 @@ def _nearest(
     solved = _if_affine(decode, fixed, context, action)
     if solved is not None:
         return solved
-    rows = max(1, AT_ONCE // (len(fixed.grid) + 2 * len(fixed.rim)))
+    rows = max(1, AT_ONCE // (len(fixed.grid) + 3 * len(fixed.rim)))
     parts = [slice(first, first + rows) for first in range(0, len(action), rows)]
     starts = [
         _starts(decode, fixed, context[part], action[part], None if codes is None else codes[part])
@@ -150,7 +150,8 @@ def _starts(
 ) -> tuple[FloatArray, FloatArray]:
     """Inputs (N, K, d) to refine, and what they decode to (N, K, m)."""
     dim, rays = fixed.rim.shape[1], len(fixed.rim)
-    tried = _repeated(np.concatenate([np.zeros((1, dim)), fixed.rim, fixed.grid]), len(context))
+    inputs = np.concatenate([np.zeros((1, dim)), fixed.rim, fixed.rim / 2.0, fixed.grid])
+    tried = _repeated(inputs, len(context))
     came = decode(tried, context[:, None])
     rest, swing = came[:, 0], came[:, 1 : 1 + rays] - came[:, :1]
     along = np.vecdot(swing, (action - rest)[:, None])

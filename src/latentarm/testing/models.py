@@ -16,6 +16,7 @@ from sklearn.utils.validation import check_is_fitted
 
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.errors import UserError
+from latentarm.metrics.search import nearest_latents
 from latentarm.models.catalogue import KINDS
 from latentarm.models.model import LatentActionModel
 from latentarm.models.saving import load_decoder, load_model
@@ -289,6 +290,30 @@ class ModelContract:
             # The same in every direction: the longest latent action, not each axis, reaches 1.
             longest = np.quantile(np.linalg.norm(used, axis=-1), 0.99, axis=1)
             assert ((longest > 0.6) & (longest < 1.2)).all()
+
+    def test_the_search_for_the_nearest_input_is_right_for_it(self, model: LatentActionModel) -> None:
+        pairs = make_pairs(demonstrations(), SMALL["window"], 0.0, "state", np.random.default_rng(0))
+        rows = np.linspace(0, len(pairs.action) - 1, 30).astype(int)
+        seen, action = pairs.context[rows], pairs.action[rows]
+        codes = model.encode(seen, action)
+        decoders = [model.decoder(seed) for seed in range(2)]
+        values = np.linspace(-1.0, 1.0, 41)
+        grid = np.stack(np.meshgrid(values, values), axis=-1).reshape(-1, 2)
+        found = nearest_latents(decoders, seen, action)
+        assert np.abs(found).max() <= 1.0
+        for decoder, z, code in zip(decoders, found, codes, strict=True):
+            error = np.square(decoder.decode(z, seen) - action).sum(axis=-1)
+            own = np.square(decoder.decode(np.clip(code, -1.0, 1.0), seen) - action).sum(axis=-1)
+            # Not told the code, it does as well but for rounding; told, by construction.
+            assert error.sum() <= 1.001 * own.sum() + 1e-12
+            came = decoder.decode(grid, seen[:, None])
+            least = np.square(came - action[:, None]).sum(axis=-1).min(axis=1)
+            assert error.sum() <= 1.001 * least.sum() + 1e-12
+        told = nearest_latents(decoders, seen, action, codes)
+        for decoder, z, code in zip(decoders, told, codes, strict=True):
+            error = np.square(decoder.decode(z, seen) - action).sum(axis=-1)
+            own = np.square(decoder.decode(np.clip(code, -1.0, 1.0), seen) - action).sum(axis=-1)
+            assert (error <= own + 1e-12).all()
 
     def test_at_rest_it_rests_and_reverses_where_its_kind_says_so(
         self, model: LatentActionModel, z: FloatArray, context: FloatArray
