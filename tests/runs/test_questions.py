@@ -35,7 +35,7 @@ def scene():
     task = TableTop()
     demonstrations = task.demonstrate(4, np.random.default_rng(0))
     chain, rng = task.robot.chain, np.random.default_rng(1)
-    motions, _ = shown(demonstrations, "state", chain, rng)
+    motions = shown(demonstrations, "state", chain, rng)
     return Scene(PCA(latent_dim=2).fit(demonstrations), 0, chain, motions)
 
 

@@ -20,9 +20,6 @@ CANDIDATES: Final = 100
 KEPT: Final = 1000
 """Motions that say which directions a place has; those that may be asked about are the first of them."""
 
-UNLABELLED: Final = 1000
-"""Contexts in which the priors are to hold."""
-
 
 def demonstrated_motions(
     demonstrations: Demonstrations,
@@ -65,8 +62,8 @@ def shown(
     context: Literal["state", "state_belief"],
     chain: Chain,
     rng: np.random.Generator,
-) -> tuple[Motions, FloatArray]:
-    """Motions that a person can tell from standing still, and contexts (M, c) without an answer.
+) -> Motions:
+    """Motions that a person can tell from standing still; the first `CANDIDATES` may be asked about.
 
     Args:
         demonstrations: those that trained the model, so that others can still judge it.
@@ -78,8 +75,7 @@ def shown(
         UserError: no demonstration moves for long enough, or a belief is asked for and missing.
     """
     many = demonstrated_motions(demonstrations, KEPT, rng, context=context)
-    unlabelled = demonstrated_motions(demonstrations, UNLABELLED, rng, context=context).context
-    return many[np.flatnonzero(noticeable(many, chain))], unlabelled
+    return many[np.flatnonzero(noticeable(many, chain))]
 
 
 def _motions(

@@ -129,12 +129,21 @@ def _gauss_newton(
     metric: FloatArray, wanted: FloatArray, action: FloatArray, slope: FloatArray, ridge: float, z: FloatArray
 ) -> FloatArray:
     """One step (..., d)."""
-    pulled = slope.mT @ metric
-    gradient = (slope.mT @ wanted[..., None])[..., 0] - (pulled @ action[..., None])[..., 0] - ridge * z
-    curvature = pulled @ slope + ridge * np.eye(z.shape[-1])
-    return np.asarray(np.linalg.solve(curvature, gradient[..., None])[..., 0], dtype=np.float64)
+    missing = wanted - (metric @ action[..., None])[..., 0]
+    gradient = (missing[..., None, :] @ slope)[..., 0, :] - ridge * z
+    curvature = slope.mT @ (metric @ slope)
+    if z.shape[-1] != 2:
+        damped = curvature + ridge * np.eye(z.shape[-1])
+        return np.asarray(np.linalg.solve(damped, gradient[..., None])[..., 0], dtype=np.float64)
+    # By hand for a stick: NumPy's solver costs more than all the rest of a step.
+    first, second = curvature[..., 0, 0] + ridge, curvature[..., 1, 1] + ridge
+    mixed = curvature[..., 0, 1]
+    one, other = gradient[..., 0], gradient[..., 1]
+    step = np.empty_like(gradient)
+    step[..., 0], step[..., 1] = second * one - mixed * other, first * other - mixed * one
+    return step / (first * second - mixed * mixed)[..., None]
 
 
 def _limited(step: FloatArray) -> FloatArray:
     """A step shortened smoothly to `REACH` at most."""
-    return step / np.sqrt(1.0 + np.square(step).sum(axis=-1, keepdims=True) / REACH**2)
+    return step / np.sqrt(1.0 + np.vecdot(step, step)[..., None] / REACH**2)

@@ -102,7 +102,7 @@ def alignable(folder: Path, seed_index: int = 0, seed: int = 0, dataset: Path | 
     else:
         demonstrations = prepared(run.dataset(dataset, "motions to ask about"), run.context)
         training = np.setdiff1d(np.arange(len(demonstrations.episodes)), run.held_out)
-        motions, _ = shown(select_episodes(demonstrations, training), model.context, chain, rng)
+        motions = shown(select_episodes(demonstrations, training), model.context, chain, rng)
     scene = Scene(model, seed_index, chain, motions)
     return Alignable(run, fingerprint, scene, seed)
 

@@ -31,7 +31,7 @@ MOST_ROWS: Final = 100_000
 """Of an array; a run of ours keeps some thousands."""
 
 _WIDTHS: Final = {
-    "unlabelled": "context",
+    "unlabelled": "context",  # runs of earlier versions have it
     "motions.start": "action",
     "motions.end": "action",
     "motions.belief": "belief",
@@ -50,12 +50,10 @@ class Samples:
 
     Attributes:
         motions: that a person may be asked about; None where no demonstration moves for long enough.
-        unlabelled: (M, c), contexts in which the priors of an alignment are to hold.
         probe: held-out samples for `latentarm evaluate`; None where nothing moves in the held-out episodes.
     """
 
     motions: Motions | None
-    unlabelled: FloatArray
     probe: Probe | None
 
 
@@ -77,13 +75,13 @@ def take_samples(
         chain: the arm.
         rng: decides which motions.
     """
-    motions, unlabelled, probe = None, np.empty((0, model.trained_.dimensions.context)), None
+    motions = probe = None
     # What cannot be taken is not kept; `align` and `evaluate` say why once they need it.
     with suppress(UserError):
-        motions, unlabelled = shown(select_episodes(demonstrations, training), model.context, chain, rng)
+        motions = shown(select_episodes(demonstrations, training), model.context, chain, rng)
     with suppress(UserError):
         probe = take_probe(model, demonstrations, held_out.tolist())
-    return Samples(motions, unlabelled, probe)
+    return Samples(motions, probe)
 
 
 def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
@@ -95,7 +93,7 @@ def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
     Raises:
         UserError: the file cannot be written.
     """
-    tensors = {"unlabelled": samples.unlabelled}
+    tensors: dict[str, FloatArray] = {}
     motions, probe = samples.motions, samples.probe
     if motions is not None:
         tensors |= {
@@ -153,6 +151,6 @@ def load_samples(folder: Path) -> Samples | None:
             pairs = StartGoalPairs(tensors["probe.start"], tensors["probe.goal"])
             states, context, action = (tensors[f"probe.{name}"] for name in ("states", "context", "action"))
             probe = Probe(pairs, states, context, action, float(section.array("step_s", ())))
-        return Samples(motions, tensors["unlabelled"], probe)
+        return Samples(motions, probe)
     except KeyError as error:
         raise UserError(f"{folder / SAMPLES_NAME} lacks {error}: the run is damaged.") from error

@@ -106,6 +106,5 @@ def ideal_config(preset: Preset) -> FitConfig:
     return FitConfig(
         NO_PRIORS,
         steps=preset.ideal_steps,
-        learning_rate=preset.ideal_rate,
         held_out=preset.ideal_held_out,
     )

@@ -154,7 +154,8 @@ def _alignments(
 ) -> dict[str, Alignment]:
     """Every alignment of one model: with priors and without, from the same answers."""
     drawing = _generator(cell, Stream.CANDIDATES, seed_index)
-    motions, unlabelled = shown(training, "state", person.chain, drawing)
+    motions = shown(training, "state", person.chain, drawing)
+    unlabelled = demonstrated_motions(training, cell.preset.unlabelled, drawing).context
     scene = Scene(model, seed_index, person.chain, motions)
     count = cell.preset.drives.answers
     # Asking never stops early, so that every model has the same number of answers.

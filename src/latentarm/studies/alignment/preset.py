@@ -89,7 +89,6 @@ class Preset:
         steps: of Adam, for each alignment.
         ideal_runs: alignments of Ideal Align, which hardly differ.
         ideal_steps: of Adam, for each of them.
-        ideal_rate: its learning rate at the start.
         ideal_held_out: share of its answers that decide which weights are kept.
         surroundings: demonstrated motions that say which directions a place has.
         curves: how error falls with the number of answers.
@@ -113,8 +112,7 @@ class Preset:
     runs: int = 10
     steps: int = 400
     ideal_runs: int = 3
-    ideal_steps: int = 5000
-    ideal_rate: float = 0.02
+    ideal_steps: int = 10_000
     ideal_held_out: float = 0.1
     surroundings: int = 1000
     curves: Curves = field(default_factory=Curves)
