@@ -38,6 +38,7 @@ KINDS: Final = Catalogue(
         "scn": "latentarm.models.scn.runtime:SCN",
         "isometric": "latentarm.models.isometric.runtime:ISOMETRIC",
         "homogeneous": "latentarm.models.homogeneous.runtime:HOMOGENEOUS",
+        "low_turning": "latentarm.models.low_turning.runtime:LOW_TURNING",
     },
     _as_kind,
 )

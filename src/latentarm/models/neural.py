@@ -37,6 +37,9 @@ class NeuralModel(LatentActionModel, ABC):
     start: ClassVar[Start | None] = None
     """Initial values of some weights; the others are drawn at random."""
 
+    jitters: ClassVar[bool] = False
+    """Whether the loss adds noise to contexts: it then takes as many numbers per pair as a context has."""
+
     @abstractmethod
     def _loss(self, networks: Networks, batch: Batch) -> Tensor:
         """What training minimises, (S,)."""
@@ -107,7 +110,7 @@ class NeuralModel(LatentActionModel, ABC):
         return train(
             self._objective(term),
             self.kind.weight_shapes(dimensions),
-            dimensions.latent if self.kind.encoder == "gaussian" else 0,
+            self._noise_dim(dimensions),
             data,
             self.seed_numbers,
             TrainingConfig(
@@ -123,6 +126,12 @@ class NeuralModel(LatentActionModel, ABC):
             identity=json.dumps({"kind": self.kind.name, **identity}, sort_keys=True),
             report=report,
         )
+
+    def _noise_dim(self, dimensions: Dimensions) -> int:
+        """Standard normal numbers that the loss takes per pair."""
+        if self.jitters:
+            return dimensions.context
+        return dimensions.latent if self.kind.encoder == "gaussian" else 0
 
     def _objective(self, term: ScaledTerm | None) -> Callable[[Networks, Batch], Tensor]:
         """The model's own loss, plus the term's if there is one."""
