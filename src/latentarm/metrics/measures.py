@@ -86,6 +86,14 @@ MEASURES: Final[dict[str, Measure]] = {
     "noise_free_error_percent_of_pca": Measure(
         "%", "noise-free error, of PCA's", "lower", "the same on clean states", ENCODED
     ),
+    "median_error_percent_of_pca": Measure(
+        "%",
+        "median error, of PCA's",
+        "lower",
+        "median over held-out episodes of an episode's mean squared error of decoding what the encoder makes"
+        " of its pairs, in % of the same median of PCA's",
+        ENCODED,
+    ),
     "controllability_m": Measure(
         "m",
         "reaches goals to",
@@ -99,6 +107,13 @@ MEASURES: Final[dict[str, Measure]] = {
         "reaches goals to, of PCA's",
         "lower",
         "the same in % of the distance that PCA leaves",
+        PROPERTIES,
+    ),
+    "median_controllability_percent_of_pca": Measure(
+        "%",
+        "reaches goals to, median, of PCA's",
+        "lower",
+        "median distance over the pairs of start and goal, in % of the median distance that PCA leaves",
         PROPERTIES,
     ),
     "controllability_state_error": Measure(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from latentarm.metrics.measures import MEASURES
-from latentarm.studies.properties.cell import Cell, measure_cell
+from latentarm.studies.properties.cell import Cell, demonstrated, measure_cell
 from latentarm.studies.properties.preset import Preset
 from latentarm.tasks.planar.catalogue import MOTIONS
 
@@ -25,8 +25,20 @@ TINY = Preset(
     grid=5,
 )
 
-ALWAYS = {"error_percent_of_pca", "noise_free_error_percent_of_pca", "r2", "drift", "reversal"}
-CONTROL = {"controllability_m", "controllability_percent_of_pca", "start_distance_m"}
+ALWAYS = {
+    "error_percent_of_pca",
+    "median_error_percent_of_pca",
+    "noise_free_error_percent_of_pca",
+    "r2",
+    "drift",
+    "reversal",
+}
+CONTROL = {
+    "controllability_m",
+    "controllability_percent_of_pca",
+    "median_controllability_percent_of_pca",
+    "start_distance_m",
+}
 OF_TASK = {
     "sine": CONTROL,
     "rotate": CONTROL,
@@ -51,8 +63,8 @@ def test_every_task_has_its_measures_one_figure_a_seed(task):
     assert set(figures) == ALWAYS | OF_TASK[task]
     assert set(figures) <= set(MEASURES)
     for name, values in figures.items():
-        assert values.shape == ((1,) if name == "start_distance_m" else (TINY.seeds,))
-        if (task, name) != ("circle", "controllability_percent_of_pca"):
+        assert values.shape == (TINY.seeds,)
+        if task != "circle" or "controllability_percent" not in name:
             assert np.isfinite(values).all()
 
 
@@ -61,7 +73,7 @@ def test_every_model_can_be_measured(model):
     result = measure_cell(cell("circle", model))
     assert result.decoder.kind == model
     assert result.fit_s > 0
-    assert len(result.figures["error_percent_of_pca"]) == (1 if model == "pca" else TINY.seeds)
+    assert len(result.figures["error_percent_of_pca"]) == TINY.seeds
 
 
 def test_with_noise_nothing_is_driven_and_both_errors_are_told():
@@ -78,15 +90,27 @@ def test_pca_is_its_own_hundred_percent_with_noise_and_without():
         figures = measure_cell(cell("rotate", "pca", noise)).figures
         for name in figures:
             if name.endswith("percent_of_pca"):
-                np.testing.assert_allclose(figures[name], [100.0])
+                np.testing.assert_allclose(figures[name], [100.0, 100.0])
 
 
 def test_demonstrations_are_the_same_for_every_model_and_others_for_another_seed():
     starts = [
-        float(measure_cell(asked).figures["start_distance_m"][0])
-        for asked in (cell(), cell(model="vae"), cell(seed=1))
+        measure_cell(asked).figures["start_distance_m"].tolist()
+        for asked in (cell(), cell(model="pca"), cell(seed=1))
     ]
     assert starts[0] == starts[1] != starts[2]
+
+
+def test_every_seed_has_demonstrations_of_its_own():
+    first, second = measure_cell(cell(model="pca")).figures["start_distance_m"]
+    assert first != second
+    sizes = TINY.episodes, TINY.test_episodes
+    one, other = demonstrated("sine", TINY.design, sizes, 2, 0)
+    for shown in (one, other):
+        assert len(shown.training.episodes) == TINY.episodes
+        assert len(shown.test.episodes) == TINY.test_episodes
+    assert not np.array_equal(one.training.episodes[0].state, other.training.episodes[0].state)
+    assert not np.array_equal(one.training.episodes[0].state, one.test.episodes[0].state)
 
 
 def test_the_same_cell_gives_the_same_bits_in_another_process_with_more_threads(tmp_path):
@@ -112,4 +136,4 @@ def test_figures_of_a_seed_do_not_hang_on_how_many_pairs_are_driven():
     asked = replace(cell(), preset=replace(TINY, reach_pairs=8))
     many = measure_cell(asked).figures
     np.testing.assert_array_equal(few["r2"], many["r2"])
-    assert few["start_distance_m"] != many["start_distance_m"]
+    assert (few["start_distance_m"] != many["start_distance_m"]).all()

@@ -22,7 +22,7 @@ from latentarm.studies.properties.motions import TASK_FIGURES, as_trained, sprea
 from latentarm.studies.properties.preset import PRESETS
 from latentarm.style import MM_PER_INCH, TWO_COLUMNS_MM, shade
 from latentarm.tasks.planar.catalogue import MOTIONS
-from latentarm.tasks.planar.motion import STEP_S
+from latentarm.tasks.planar.paths import STEP_S
 from latentarm.tasks.planar.resolved_rate import plane_point
 from latentarm.types import Row
 
@@ -66,9 +66,10 @@ def rows_of(tasks, models, n=3):
     rows = []
     measures = [
         ("error_percent_of_pca", "%", 20.0),
+        ("median_error_percent_of_pca", "%", 20.0),
         ("noise_free_error_percent_of_pca", "%", 20.0),
         ("controllability_m", "m", 0.01),
-        ("controllability_percent_of_pca", "%", 20.0),
+        ("median_controllability_percent_of_pca", "%", 20.0),
         ("final_distance", "m", 0.02),
         ("final_distance_percent_of_vae", "%", 90.0),
         ("path_length_percent_of_vae", "%", 90.0),

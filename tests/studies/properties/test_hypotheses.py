@@ -18,7 +18,7 @@ from latentarm.studies.properties.hypotheses import (
 )
 from latentarm.studies.properties.preset import PRESETS
 
-ERROR = "error_percent_of_pca"
+ERROR = "median_error_percent_of_pca"
 
 
 def result(model, measure, values, task="sine", noise_rad=0.0):

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from latentarm.errors import UserError
 from latentarm.tasks.planar.circle import RADII_M, Circle
-from latentarm.tasks.planar.motion import STEP_S
+from latentarm.tasks.planar.motion import Design
+from latentarm.tasks.planar.paths import STEP_S
 from latentarm.tasks.planar.reach import ReachRegion
 from latentarm.tasks.planar.resolved_rate import plane_point
 from latentarm.tasks.planar.rotate import BOX_WIDTH_M, Rotate
@@ -116,3 +118,19 @@ def test_reach_goes_about_as_fast_every_time():
         for episode in first
     ]
     assert np.std(speeds) < 0.2 * np.mean(speeds)
+
+
+@pytest.mark.parametrize("motion", [Sine(), Rotate()])
+def test_joint_speed_tells_neither_place_nor_posture(motion):
+    """A normal speed for each stroke: as fast at every place, forth as often as back."""
+    episodes = motion.demonstrate(60, np.random.default_rng(4)).episodes
+    speed = np.concatenate([np.linalg.norm(episode.action, axis=-1) for episode in episodes])
+    place = np.concatenate([episode.state for episode in episodes])
+    assert np.abs(np.corrcoef(speed, place.T)[0, 1:]).max() < 0.2
+    # |v| of a normal v: its mean over its root mean square is sqrt(2 / pi).
+    assert speed.mean() / np.sqrt(np.mean(speed**2)) == pytest.approx(np.sqrt(2 / np.pi), rel=0.08)
+
+
+def test_a_design_that_no_posture_passes_is_refused():
+    with pytest.raises(UserError, match="Too few postures of circle"):
+        Circle(Design(least_conditioning=10.0)).demonstrate(1, np.random.default_rng(0))

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import lru_cache
 from time import perf_counter
 from typing import Final
 
@@ -12,7 +13,7 @@ from threadpoolctl import threadpool_limits
 from latentarm.demonstrations.split import select_episodes
 from latentarm.models.kind import Decoder
 from latentarm.models.model import LatentActionModel
-from latentarm.studies.fitting import fit_model, validation_episodes
+from latentarm.studies.fitting import fit_each, validation_episodes
 from latentarm.studies.properties.measures import (
     accuracy_figures,
     control_figures,
@@ -22,13 +23,15 @@ from latentarm.studies.properties.measures import (
     start_goal_pairs,
 )
 from latentarm.studies.properties.preset import Preset
+from latentarm.studies.properties.sweep import AS_CHOSEN
 from latentarm.studies.streams import generator, integer, sequence
 from latentarm.tasks.planar.catalogue import MOTIONS
+from latentarm.tasks.planar.motion import Design, PlanarMotion
 from latentarm.tasks.planar.reach import ReachRegion
 from latentarm.types import Demonstrations, FloatArray
 
 BASELINE: Final = "pca"
-"""The baseline. Nothing in it is random, so it is fitted once, not once per seed."""
+"""The baseline of controllability."""
 
 
 class Stream(IntEnum):
@@ -52,7 +55,8 @@ class Cell:
         model: a name of `MODELS`.
         noise_rad: SD of the noise on states, in training and in the noisy error, rad.
         preset: sizes of the study.
-        seed: of the whole study; the same demonstrations come from it for every model and noise.
+        seed: of the whole study; the same demonstrations come from it for every kind of model and noise.
+        design: what the preset's design is called in a sweep.
     """
 
     task: str
@@ -60,6 +64,7 @@ class Cell:
     noise_rad: float
     preset: Preset
     seed: int
+    design: str = AS_CHOSEN
 
 
 def condition(noise_rad: float) -> str:
@@ -73,8 +78,7 @@ class CellResult:
 
     Attributes:
         cell: what was asked for.
-        figures: measure -> (S,), one figure per seed; (1,) for PCA, which knows no seed, and for what does
-            not depend on the model.
+        figures: measure -> (S,), one figure per seed; each seed has demonstrations of its own.
         decoder: of the first seed, for figures.
         fit_s: how long the fit of all seeds took, s.
     """
@@ -98,50 +102,107 @@ def measure_cell(cell: Cell) -> CellResult:
         return _measure(cell)
 
 
-def _measure(cell: Cell) -> CellResult:
-    motion, preset = MOTIONS[cell.task](), cell.preset
-    training = motion.demonstrate(preset.episodes, _generator(cell, Stream.TRAINING))
-    test = motion.demonstrate(preset.test_episodes, _generator(cell, Stream.TEST))
-    began = perf_counter()
-    model = _fit(cell, cell.model, training)
-    fit_s = perf_counter() - began
+@dataclass(frozen=True, eq=False)
+class Demonstrated:
+    """One seed's demonstrations.
 
-    pairs = recorded_pairs(test, cell.noise_rad, _generator(cell, Stream.TEST_NOISE))
-    chosen = select_episodes(training, range(validation_episodes(training).start))
+    Attributes:
+        training: to fit a model to.
+        test: that its figures are taken on.
+    """
+
+    training: Demonstrations
+    test: Demonstrations
+
+
+@lru_cache(maxsize=2)
+def demonstrated(
+    task: str, design: Design, sizes: tuple[int, int], seeds: int, seed: int
+) -> tuple[Demonstrated, ...]:
+    """The demonstrations of every seed, the same for every kind of model and noise.
+
+    Args:
+        task: a name of `MOTIONS`.
+        design: how it is demonstrated.
+        sizes: episodes for training and for the test.
+        seeds: how many models are fitted.
+        seed: of the study.
+    """
+    motion = MOTIONS[task](design)
+    return tuple(
+        Demonstrated(
+            motion.demonstrate(sizes[0], generator(seed, task, Stream.TRAINING, index)),
+            motion.demonstrate(sizes[1], generator(seed, task, Stream.TEST, index)),
+        )
+        for index in range(seeds)
+    )
+
+
+def _measure(cell: Cell) -> CellResult:
+    preset = cell.preset
+    motion = MOTIONS[cell.task](preset.design)
+    sizes = preset.episodes, preset.test_episodes
+    shown = demonstrated(cell.task, preset.design, sizes, preset.seeds, cell.seed)
+    began = perf_counter()
+    models = _fit(cell, cell.model, shown)
+    fit_s = perf_counter() - began
+    baselines = _fit(cell, BASELINE, shown)
+    each = [
+        _figures(cell, motion, index, *of_seed)
+        for index, of_seed in enumerate(zip(shown, models, baselines, strict=True))
+    ]
+    return CellResult(
+        cell=cell,
+        figures={name: np.concatenate([figures[name] for figures in each]) for name in each[0]},
+        decoder=models[0].decoder(),
+        fit_s=fit_s,
+    )
+
+
+def _figures(
+    cell: Cell,
+    motion: PlanarMotion,
+    index: int,
+    shown: Demonstrated,
+    model: LatentActionModel,
+    baseline: LatentActionModel,
+) -> dict[str, FloatArray]:
+    """The figures of one seed, by its index: measure -> (1,)."""
+
+    def draws(stream: Stream) -> np.random.Generator:
+        """The same for every kind of model and noise."""
+        return generator(cell.seed, cell.task, stream, index)
+
+    preset = cell.preset
+    pairs = recorded_pairs(shown.test, cell.noise_rad, draws(Stream.TEST_NOISE))
+    chosen = select_episodes(shown.training, range(validation_episodes(shown.training).start))
     # Only the actions of these are used, so no noise is drawn.
-    fitted = recorded_pairs(chosen, 0.0, _generator(cell, Stream.TRAINING_NOISE))
-    decoders = [model.decoder(seed) for seed in range(model.seeds)]
+    fitted = recorded_pairs(chosen, 0.0, draws(Stream.TRAINING_NOISE))
+    decoders = [model.decoder()]
     figures = accuracy_figures(model, decoders, fitted, pairs)
     figures |= latent_figures(motion, model, decoders, pairs, preset)
     if cell.noise_rad == 0 and isinstance(motion, ReachRegion):
-        figures |= reach_figures(motion, decoders, preset.reach_goals, _generator(cell, Stream.GOALS))
+        figures |= reach_figures(motion, decoders, preset.reach_goals, draws(Stream.GOALS))
     elif cell.noise_rad == 0:
-        goals = start_goal_pairs(motion, test, preset.reach_pairs, _generator(cell, Stream.PAIRS))
-        pca = _fit(cell, BASELINE, training).decoder()
-        figures |= control_figures(motion, decoders, pca, goals)
-    return CellResult(cell=cell, figures=figures, decoder=decoders[0], fit_s=fit_s)
+        goals = start_goal_pairs(motion, shown.test, preset.reach_pairs, draws(Stream.PAIRS))
+        figures |= control_figures(motion, decoders, baseline.decoder(), goals)
+    return figures
 
 
-def _fit(cell: Cell, kind: str, training: Demonstrations) -> LatentActionModel:
+def _fit(cell: Cell, kind: str, shown: tuple[Demonstrated, ...]) -> list[LatentActionModel]:
     preset = cell.preset
-    return fit_model(
+    return fit_each(
         kind,
-        training,
-        validation=validation_episodes(training),
+        [one.training for one in shown],
+        validation=validation_episodes(shown[0].training),
+        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
+        kl_weight=preset.kl_weight,
         latent_dim=MOTIONS[cell.task]().latent_dim,
         actions="recorded",
         state_noise_rad=cell.noise_rad,
         data_seed=integer(sequence(cell.seed, cell.task, Stream.TRAINING_NOISE)),
-        seeds=1 if kind == BASELINE else preset.seeds,
-        seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
         hidden=preset.hidden,
         epochs=preset.epochs,
         batch_size=preset.batch_size,
         patience=preset.epochs,
-        kl_weight=preset.kl_weight,
     )
-
-
-def _generator(cell: Cell, stream: Stream) -> np.random.Generator:
-    """The same for every model and noise."""
-    return generator(cell.seed, cell.task, stream)

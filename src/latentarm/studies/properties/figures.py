@@ -150,18 +150,18 @@ def draw_losses(axes: "Axes", rows: Sequence[Row], task: str) -> None:
         rows: of the study; those of other tasks and measures are passed over.
         task: which task.
     """
-    losses = points(rows, task, "error_percent_of_pca")
+    losses = points(rows, task, "median_error_percent_of_pca")
     draw_points(axes, losses, log_axis(axes, losses.values()))
     title(axes, "test loss, mean ± SD", "A")
     axes.set_xlabel(f"% of PCA's{beside(losses)}")
 
 
 COMPARED: Final = (
-    ("sine", "error_percent_of_pca", "loss (% of PCA)"),
-    ("sine", "controllability_percent_of_pca", "distance to goal (% of PCA)"),
+    ("sine", "median_error_percent_of_pca", "loss (% of PCA)"),
+    ("sine", "median_controllability_percent_of_pca", "distance to goal (% of PCA)"),
     ("sine", "r2", "$R^2$"),
-    ("rotate", "error_percent_of_pca", "loss (% of PCA)"),
-    ("rotate", "controllability_percent_of_pca", "distance to goal (% of PCA)"),
+    ("rotate", "median_error_percent_of_pca", "loss (% of PCA)"),
+    ("rotate", "median_controllability_percent_of_pca", "distance to goal (% of PCA)"),
     ("rotate", "r2", "$R^2$ of turning"),
     ("circle", "disentanglement_deg", "angle of the axes (deg)"),
     ("reach", "final_distance_percent_of_vae", "final distance (% of VAE)"),

@@ -29,7 +29,8 @@ from latentarm.metrics.effects import axis_effects, axis_grid, axis_turns
 from latentarm.metrics.reversal import reversal
 from latentarm.metrics.samples import StartGoalPairs, evenly_spread
 from latentarm.studies.properties.preset import Preset
-from latentarm.tasks.planar.motion import STEP_S, PlanarMotion
+from latentarm.tasks.planar.motion import PlanarMotion
+from latentarm.tasks.planar.paths import STEP_S
 from latentarm.tasks.planar.reach import ReachRegion
 from latentarm.tasks.planar.rotate import Rotate
 from latentarm.types import Demonstrations, FloatArray, Pairs
@@ -72,7 +73,8 @@ def accuracy_figures(
         pairs: `recorded_pairs` of other demonstrations.
 
     Returns:
-        Measure -> (S,), %.
+        Measure -> (S,), %: of the mean error over all pairs, and of the median of the episodes' mean errors
+        on states with noise.
     """
     baseline = pca_error(fitted.action, pairs.action, decoders[0].latent_dim)
     figures: dict[str, FloatArray] = {}
@@ -82,6 +84,13 @@ def accuracy_figures(
     ):
         z = model.encode(context, pairs.action)
         figures[name] = percent_of(baseline, reconstruction_error(decoders, z, context, pairs.action))
+    each = [pairs.episode == episode for episode in np.unique(pairs.episode)]
+    z = model.encode(pairs.context, pairs.action)
+    errors = [
+        reconstruction_error(decoders, z[:, one], pairs.context[one], pairs.action[one]) for one in each
+    ]
+    by_pca = [pca_error(fitted.action, pairs.action[one], decoders[0].latent_dim) for one in each]
+    figures["median_error_percent_of_pca"] = percent_of(float(np.median(by_pca)), np.median(errors, axis=0))
     return figures
 
 
@@ -136,22 +145,22 @@ def control_figures(
         goals: from `start_goal_pairs`.
 
     Returns:
-        Measure -> (S,), and the distance at the start, (1,), which does not depend on the model. Percentages
-        are NaN
-        where PCA's distance is below `RESOLUTION_M`.
+        Measure -> (S,), of the mean over pairs and of the median, and the distance at the start, (1,), which
+        does not depend on the model. Percentages are NaN where PCA's distance is below `RESOLUTION_M`.
     """
 
     def driven(some: Sequence[DecodesActions]) -> Reach:
         return reach_goals(some, goals, motion.robot.chain, STEP_S, _solver(motion), _tools(motion))
 
-    reach = driven(decoders)
-    left = reach.tool_error_m.mean(axis=1)
-    left_by_pca = float(driven([pca]).tool_error_m.mean())
+    def percent(left: FloatArray, by_pca: float) -> FloatArray:
+        return percent_of(by_pca if by_pca > RESOLUTION_M else 0.0, left)
+
+    reach, by_pca = driven(decoders), driven([pca]).tool_error_m
+    left = reach.tool_error_m
     return {
-        "controllability_m": left,
-        "controllability_percent_of_pca": percent_of(
-            left_by_pca if left_by_pca > RESOLUTION_M else 0.0, left
-        ),
+        "controllability_m": left.mean(axis=1),
+        "controllability_percent_of_pca": percent(left.mean(axis=1), float(by_pca.mean())),
+        "median_controllability_percent_of_pca": percent(np.median(left, axis=1), float(np.median(by_pca))),
         "start_distance_m": reach.start_distance_m.mean(keepdims=True),
     }
 

@@ -18,7 +18,8 @@ from latentarm.studies.properties.figures import beside, draw_losses, draw_point
 from latentarm.studies.properties.tables import OURS
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, Look, new_figure, shade, tidy
 from latentarm.tasks.planar.circle import RADII_M, Circle
-from latentarm.tasks.planar.motion import STEP_S, PlanarMotion
+from latentarm.tasks.planar.motion import PlanarMotion
+from latentarm.tasks.planar.paths import STEP_S
 from latentarm.tasks.planar.reach import DISTANCE_M, DURATION_S, ReachRegion
 from latentarm.tasks.planar.resolved_rate import plane_point
 from latentarm.tasks.planar.rotate import BOX_DEPTH_M, BOX_WIDTH_M, Rotate
@@ -36,7 +37,7 @@ CONDITIONED: Final = ("cvae", OURS)
 CONTRASTED: Final = ("vae", *CONDITIONED)
 """The models whose motions are shown side by side; the paper contrasts the first two."""
 
-EPISODES: Final = 12
+EPISODES: Final = 60
 STREAM: Final = 81
 """Separates the drawn states from those of the study: no model was trained on them."""
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, Final
 
@@ -9,11 +10,13 @@ from latentarm.metrics.summary import Subject, summarise
 from latentarm.studies.hypotheses import Comparison, comparison_table, verdicts
 from latentarm.studies.page import render_page
 from latentarm.studies.properties.cell import Cell, CellResult, condition, measure_cell
+from latentarm.studies.properties.cells import cells_table, count, paper_cells, sweep_table
 from latentarm.studies.properties.figures import beside_paper_figure, controllability_figure, noise_figure
 from latentarm.studies.properties.hypotheses import CLAIMS, LINEAR, compare_models
 from latentarm.studies.properties.motions import TASK_FIGURES
 from latentarm.studies.properties.paper import with_paper
 from latentarm.studies.properties.preset import PRESETS, Preset
+from latentarm.studies.properties.sweep import AS_CHOSEN, designs
 from latentarm.studies.properties.tables import (
     OURS,
     UNIT_NOT_STATED,
@@ -24,7 +27,7 @@ from latentarm.studies.properties.tables import (
 from latentarm.studies.statistics import LEVEL
 from latentarm.studies.study import Grid, Report, Request, Study, again
 from latentarm.tasks.planar.catalogue import MOTIONS
-from latentarm.tasks.planar.motion import SAMPLES, STEP_S
+from latentarm.tasks.planar.paths import STEP_S
 from latentarm.types import Row
 
 if TYPE_CHECKING:
@@ -32,25 +35,30 @@ if TYPE_CHECKING:
 
 
 def _measure(request: Request[Preset], grid: Grid) -> list[CellResult]:
-    # Without noise most is measured: these take longest, and begin first.
+    # Without noise most is measured: these take longest, and begin first. The models of a task stand
+    # together, so that one process demonstrates once for all of them.
     cells = [
-        Cell(task, model, noise_rad, request.preset, request.seed)
-        for noise_rad, task, model in product(request.preset.noises_rad, request.tasks, request.preset.models)
+        Cell(task, model, noise_rad, preset, request.seed, design)
+        for (design, preset), noise_rad in product(designs(request.preset).items(), request.preset.noises_rad)
+        for task, model in product(request.tasks, request.preset.models)
     ]
-    return grid.run("Models on tasks under noise", measure_cell, cells, _label)
+    return grid.run("Models on tasks", measure_cell, cells, _label)
 
 
 def _label(cell: Cell) -> str:
-    return f"{cell.task}, {cell.model}, {condition(cell.noise_rad)}"
+    design = [cell.design] if cell.design != AS_CHOSEN else []
+    return ", ".join([cell.task, cell.model, condition(cell.noise_rad), *design])
 
 
 def _report(request: Request[Preset], results: list[CellResult]) -> Report:
-    rows = with_paper([row for task in request.tasks for row in _rows(results, task)])
-    tests = compare_models(results)
-    figures = _figures(results, rows, request.tasks)
+    proper = [result for result in results if result.cell.design == AS_CHOSEN]
+    rows = with_paper([row for task in request.tasks for row in _rows(proper, task)])
+    tests = compare_models(proper)
+    figures = _figures(proper, rows, request.tasks)
+    swept = _swept(request, results)
     return Report(
-        rows=rows,
-        page=_page(request, rows, tests, figures),
+        rows=rows + swept,
+        page=_page(request, rows, swept, tests, figures),
         figures=figures,
         tests=tests,
         documents={
@@ -69,7 +77,31 @@ def _report(request: Request[Preset], results: list[CellResult]) -> Report:
 
 
 def _place(cell: Cell) -> dict[str, object]:
-    return {"task": cell.task, "model": cell.model, "condition": condition(cell.noise_rad)}
+    return {
+        "task": cell.task,
+        "model": cell.model,
+        "condition": condition(cell.noise_rad),
+        "design": cell.design,
+    }
+
+
+def _swept(request: Request[Preset], results: Sequence[CellResult]) -> list[Row]:
+    """Rows of every design, with its name as their condition; none where there is one design."""
+    names = designs(request.preset)
+    if len(names) < 2:
+        return []
+    return [
+        replace(row, condition=name)
+        for name in names
+        for row in with_paper(
+            [
+                row
+                for task in request.tasks
+                for row in _rows([one for one in results if one.cell.design == name], task)
+            ]
+        )
+        if row.condition is None
+    ]
 
 
 def _rows(results: Sequence[CellResult], task: str) -> list[Row]:
@@ -110,16 +142,24 @@ def _figures(results: Sequence[CellResult], rows: Sequence[Row], tasks: Sequence
 
 
 def _page(
-    request: Request[Preset], rows: Sequence[Row], tests: Sequence[Comparison], figures: "dict[str, Figure]"
+    request: Request[Preset],
+    rows: Sequence[Row],
+    swept: Sequence[Row],
+    tests: Sequence[Comparison],
+    figures: "dict[str, Figure]",
 ) -> str:
     as_good = {task: as_good_as_paper(rows, task) for task in request.tasks}
+    cells = paper_cells(rows)
     return render_page(
         "properties/page.md",
         command=again(STUDY, request),
         preset=request.preset,
         tasks=request.tasks,
-        samples=SAMPLES,
         step_s=STEP_S,
+        cells_held=count(cells),
+        cells_held_by_means=count(paper_cells(rows, means=True)),
+        cells_table=cells_table(cells),
+        sweep_table=sweep_table(swept, list(designs(request.preset))) if swept else "",
         verdicts=verdicts(tests),
         ours=OURS,
         as_good={task: counts for task, counts in as_good.items() if counts[1]},

@@ -20,8 +20,15 @@ UNIT_NOT_STATED: Final = "†"
 EQUAL: Final = 1e-9
 """Difference of two means, in the larger of them, below which they are equal but for rounding."""
 
-SAME_THING: Final = frozenset({"noise_free_error_percent_of_pca", "controllability_percent_of_pca"})
-"""Measures that are redundant without noise, and so are not counted twice."""
+SAME_THING: Final = frozenset(
+    {
+        "noise_free_error_percent_of_pca",
+        "error_percent_of_pca",
+        "controllability_percent_of_pca",
+        "median_controllability_percent_of_pca",
+    }
+)
+"""Measures that are redundant next to others, and so are not counted twice."""
 
 DISTANCES: Final = frozenset({"controllability_m", "final_distance"})
 

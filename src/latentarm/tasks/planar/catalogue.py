@@ -1,15 +1,23 @@
 """The tasks of section 8.1 by name."""
 
-from collections.abc import Callable
-from typing import Final
+from typing import Final, Protocol
 
 from latentarm.tasks.planar.circle import Circle
-from latentarm.tasks.planar.motion import PlanarMotion
+from latentarm.tasks.planar.motion import Design, PlanarMotion
 from latentarm.tasks.planar.reach import ReachRegion
 from latentarm.tasks.planar.rotate import Rotate
 from latentarm.tasks.planar.sine import Sine
 
-MOTIONS: Final[dict[str, Callable[[], PlanarMotion]]] = {
+
+class MakesMotion(Protocol):
+    """Makes a task, as the study has it or in another design."""
+
+    def __call__(self, design: Design = ...) -> PlanarMotion:
+        """The task."""
+        ...
+
+
+MOTIONS: Final[dict[str, MakesMotion]] = {
     "sine": Sine,
     "rotate": Rotate,
     "circle": Circle,

@@ -9,9 +9,10 @@ from typing import final
 import numpy as np
 
 from latentarm.robots.planar import planar
-from latentarm.tasks.planar.motion import BACK_AND_FORTH_S, POSTURE_SPREAD_RAD, STEP_S, PlanarMotion
-from latentarm.tasks.planar.resolved_rate import curled, follow, plane_point
-from latentarm.types import Demonstrations, FloatArray
+from latentarm.tasks.planar.motion import DEMONSTRATION_S, DESIGN, Design, PlanarMotion
+from latentarm.tasks.planar.paths import STEP_S, Path, Timed
+from latentarm.tasks.planar.resolved_rate import Constraint, ToolPlace, curled, plane_point
+from latentarm.types import FloatArray
 
 RADII_M = (0.06, 0.15)
 """Smallest and largest circle."""
@@ -19,15 +20,15 @@ SPEED_M_S = (0.05, 0.2)
 STROKE_S = (0.4, 1.0)
 """Shortest and longest stroke."""
 
-_STEPS = round(BACK_AND_FORTH_S / STEP_S)
+_STEPS = round(DEMONSTRATION_S / STEP_S)
 
 
 @final
 class Circle(PlanarMotion):
     """Along circles about the nominal place of the tool, and between them."""
 
-    def __init__(self) -> None:
-        super().__init__(planar(5))
+    def __init__(self, design: Design = DESIGN) -> None:
+        super().__init__(planar(5), design)
 
     @property
     def name(self) -> str:
@@ -50,24 +51,30 @@ class Circle(PlanarMotion):
         angle = np.linspace(0.0, 2 * np.pi, 100)
         return tuple(self._place(np.full(100, radius), angle) for radius in np.linspace(*RADII_M, 3))
 
-    def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Strokes along circles and between them, in turn.
+    @property
+    def words(self) -> str:
+        """See `PlanarMotion`."""
+        return "move along circles and between them"
 
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
-        count = max(episodes, 0)
-        polar = np.array([_strokes(rng) for _ in range(count)]).reshape(count, _STEPS + 1, 2)
-        start = curled(self.robot) + rng.normal(0.0, POSTURE_SPREAD_RAD, (count, self.robot.dof))
-        return follow(
-            self.robot,
-            start,
-            lambda time: self._place(*polar[:, round(time / STEP_S)].T),
-            lambda state: plane_point(self.robot, state),
-            lambda state: self.robot.chain.jacobian(state)[..., :2, :],
-            BACK_AND_FORTH_S,
-            "move along circles and between them",
-        )
+    @property
+    def nominal(self) -> FloatArray:
+        """See `PlanarMotion`."""
+        return curled(self.robot)
+
+    @property
+    def closing(self) -> tuple[int, ...]:
+        """The first two joints."""
+        return (0, 1)
+
+    @property
+    def constraint(self) -> Constraint:
+        """The tool's place."""
+        return ToolPlace(self.robot)
+
+    def paths(self, count: int, rng: np.random.Generator) -> Path:
+        """Strokes along circles and between them, in turn."""
+        polar = np.array([_strokes(rng) for _ in range(count)])
+        return Timed(lambda time: self._place(*polar[:, round(time / STEP_S)].T))
 
     def _place(self, radius: FloatArray, angle: FloatArray) -> FloatArray:
         return self.centre + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)

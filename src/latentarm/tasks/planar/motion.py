@@ -1,34 +1,55 @@
 """What the four tasks of section 8.1 have in common."""
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Final, Literal, final
 
 import numpy as np
 
+from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, FloatArray
+from latentarm.tasks.planar.paths import Path
+from latentarm.tasks.planar.resolved_rate import Constraint, Recording, follow, settle
+from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray
 
-STEP_S = 0.01
-"""dt of the transition ``s' = s + a dt``, s: one period of the 100 Hz control loop. The paper leaves it open;
-it is short enough for a step along the tightest curve to turn by less than three degrees, so that figures
-speak of the task's shape and not of the step's length."""
+DEMONSTRATION_S: Final = 4.0
+"""Duration of a demonstration that goes back and forth."""
 
-SAMPLES = 100
-"""State-action pairs of a demonstration, spread evenly over its duration."""
+DRAWS: Final = 20
+"""How often postures are drawn, at most, before too few pass."""
 
-BACK_AND_FORTH_S = 20.0
-"""Duration of a demonstration that goes back and forth: long enough to pass most of its states both ways, so
-that a state does not tell in which direction the person is about to go."""
+Places = Literal["freely", "nearest"]
+Pace = Literal["normal", "swing"]
 
-POSTURE_SPREAD_RAD = 0.15
-"""SD of a demonstration's first posture about the nominal one, rad: the arm has more joints than the task
-needs, and nobody begins twice in the same posture."""
 
-CURL_RAD = 0.95
-"""Bend of every joint but the first in the nominal posture of one arm. So curled, its tool moves about as
-readily to all sides (J J^T is near a multiple of 1), which is how a person would hold such an arm."""
+@dataclass(frozen=True)
+class Design:
+    """How a simulated person holds and moves the arm: the same on all tasks. The paper leaves all of it open.
 
-BEARING_RAD = 0.75 * np.pi
-"""Direction from the base to the tool in that posture; the tool then lies near (-0.22, 0.22) m."""
+    Attributes:
+        spread_rad: SD of a demonstration's first posture about the nominal one: the arm has more joints than
+            the task needs, and nobody begins twice in the same posture.
+        placed: ``freely``: the joints that the task leaves free are drawn whatever the place, and the others
+            bring the tool there, so that the place says nothing about the posture. ``nearest``: all joints
+            are drawn and then move by the least to the place, so that the place says much about it.
+        least_conditioning: a demonstration in which the smallest singular value of the task's Jacobian falls
+            below this share of its value in the nominal posture is drawn anew: there the joints would have to
+            race, and a few such pairs would make up all of a mean.
+        pace: of the two tasks with one axis along a path. ``normal``: each stroke has its own joint speed,
+            normal about zero, so that speed tells neither place nor posture. ``swing``: the tool swings along
+            the path, fastest in the middle.
+        samples: state-action pairs of a demonstration, spread evenly over its duration.
+    """
+
+    spread_rad: float = 0.05
+    placed: Places = "freely"
+    least_conditioning: float = 2 / 3
+    pace: Pace = "normal"
+    samples: int = 10
+
+
+DESIGN: Final = Design()
+"""The design of the study."""
 
 
 def outline(middle: FloatArray, depth_m: float, width_m: float) -> FloatArray:
@@ -42,10 +63,11 @@ class PlanarMotion(ABC):
 
     Attributes:
         robot: the arm, or the two arms.
+        design: how it is demonstrated.
     """
 
-    def __init__(self, robot: Robot) -> None:
-        self.robot = robot
+    def __init__(self, robot: Robot, design: Design) -> None:
+        self.robot, self.design = robot, design
 
     @property
     @abstractmethod
@@ -62,14 +84,100 @@ class PlanarMotion(ABC):
     def guides(self) -> tuple[FloatArray, ...]:
         """Lines that show the task in a figure, each (K, 2) in the plane, m."""
 
+    @property
     @abstractmethod
+    def words(self) -> str:
+        """What is done, in words."""
+
+    @property
+    @abstractmethod
+    def nominal(self) -> FloatArray:
+        """The nominal posture (n,), rad."""
+
+    @property
+    @abstractmethod
+    def closing(self) -> tuple[int, ...]:
+        """Joints that bring the tool to its place where the others are drawn freely."""
+
+    @property
+    @abstractmethod
+    def constraint(self) -> Constraint:
+        """What the task constrains."""
+
+    @property
+    def duration_s(self) -> float:
+        """Of a demonstration, s."""
+        return DEMONSTRATION_S
+
+    @abstractmethod
+    def paths(self, count: int, rng: np.random.Generator) -> Path:
+        """The paths of some demonstrations, each from its beginning."""
+
+    @final
     def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Demonstrations by a simulated person, each of `SAMPLES` states with the actions taken there.
+        """Demonstrations by a simulated person: in each ``design.samples`` states with the actions there.
 
         Args:
             episodes: how many.
             rng: source of all variation.
 
         Raises:
-            UserError: fewer than one episode is asked for.
+            UserError: fewer than one episode is asked for, or nearly every posture is ill-conditioned.
         """
+        return self._as_demonstrations(self.record(episodes, rng))
+
+    @final
+    def record(self, episodes: int, rng: np.random.Generator) -> Recording:
+        """As `demonstrate`, in arrays, and with where each path ends; the same arguments and errors."""
+        if episodes < 1:
+            raise UserError("Ask for at least one demonstration.")
+        kept: list[Recording] = []
+        missing = episodes
+        for _ in range(DRAWS):
+            recording = self._draw(missing + missing // 2 + 4, rng)
+            kept.append(recording.of(np.flatnonzero(recording.sound)[:missing]))
+            missing -= len(kept[-1].states)
+            if not missing:
+                return Recording.joined(kept)
+        raise UserError(
+            f"Too few postures of {self.name} pass a least conditioning of {self.design.least_conditioning:g}"
+            f" at a spread of {self.design.spread_rad:g} rad: lower one of them."
+        )
+
+    def _draw(self, count: int, rng: np.random.Generator) -> Recording:
+        """Some demonstrations, those among them that are to be drawn anew not yet left out."""
+        path = self.paths(count, rng)
+        posture = self.nominal + rng.normal(0.0, self.design.spread_rad, (count, self.robot.dof))
+        moved = np.arange(self.robot.dof)
+        if self.design.placed == "freely":
+            moved = np.array(self.closing)
+            posture[:, moved] = self.nominal[moved]
+        start = settle(posture, path.now, self.constraint, moved)
+        recording = follow(self.constraint, start, path, self.design.samples, self.duration_s)
+        return recording.judged(self._sound(recording.states))
+
+    def _sound(self, states: FloatArray) -> BoolArray:
+        """Which demonstrations (E, T, n) are well conditioned, within limits, and on the nominal branch.
+
+        Two ways to bend the closing joints lead to the same place; a person keeps to one.
+        """
+        jacobian, nominal = self.constraint.jacobian(states), self.constraint.jacobian(self.nominal)
+        least = np.sqrt(np.linalg.eigvalsh(nominal @ nominal.mT)[0]) * self.design.least_conditioning
+        conditioned = np.linalg.eigvalsh(jacobian @ jacobian.mT)[..., 0] > least**2
+        closing = np.array(self.closing)
+        branch = np.linalg.det(jacobian[..., closing]) * np.linalg.det(nominal[:, closing]) > 0
+        within = ~self.robot.limits.violation(states).any(axis=-1)
+        return (conditioned & branch & within).all(axis=-1)
+
+    def _as_demonstrations(self, recording: Recording) -> Demonstrations:
+        rate_hz = self.design.samples / self.duration_s
+        timestamp = np.arange(self.design.samples) / rate_hz
+        return Demonstrations(
+            episodes=tuple(
+                Episode(state=state, timestamp=timestamp, action=action, task=self.words)
+                for state, action in zip(recording.states, recording.actions, strict=True)
+            ),
+            rate_hz=rate_hz,
+            joint_names=self.robot.joint_names,
+            robot=self.robot.name,
+        )

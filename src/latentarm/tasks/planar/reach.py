@@ -11,9 +11,10 @@ from typing import final
 import numpy as np
 
 from latentarm.robots.planar import planar
-from latentarm.tasks.planar.motion import POSTURE_SPREAD_RAD, PlanarMotion, outline
-from latentarm.tasks.planar.resolved_rate import curled, follow, plane_point
-from latentarm.types import Demonstrations, FloatArray
+from latentarm.tasks.planar.motion import DESIGN, Design, PlanarMotion, outline
+from latentarm.tasks.planar.paths import Path, Timed
+from latentarm.tasks.planar.resolved_rate import Constraint, ToolPlace, curled, plane_point
+from latentarm.types import FloatArray
 
 DISTANCE_M = 0.3
 """From the middle of the starts to the middle of the goal region, along x."""
@@ -29,8 +30,8 @@ DEPTH_M = 0.05
 class ReachRegion(PlanarMotion):
     """From a start to any place of a goal region."""
 
-    def __init__(self) -> None:
-        super().__init__(planar(5))
+    def __init__(self, design: Design = DESIGN) -> None:
+        super().__init__(planar(5), design)
 
     @property
     def name(self) -> str:
@@ -57,24 +58,35 @@ class ReachRegion(PlanarMotion):
         along_side = rng.uniform(-0.5, 0.5, count) * WIDTH_M
         return self._middle + np.stack([np.full(count, -DISTANCE_M / 2), along_side], axis=-1)
 
-    def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Straight from a start to a place in the goal region.
+    @property
+    def words(self) -> str:
+        """See `PlanarMotion`."""
+        return "reach into the goal region"
 
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
-        count = max(episodes, 0)
+    @property
+    def nominal(self) -> FloatArray:
+        """See `PlanarMotion`."""
+        return curled(self.robot)
+
+    @property
+    def closing(self) -> tuple[int, ...]:
+        """The first two joints."""
+        return (0, 1)
+
+    @property
+    def constraint(self) -> Constraint:
+        """The tool's place."""
+        return ToolPlace(self.robot)
+
+    @property
+    def duration_s(self) -> float:
+        """See `DURATION_S`."""
+        return DURATION_S
+
+    def paths(self, count: int, rng: np.random.Generator) -> Path:
+        """Straight from a start to a place in the goal region."""
         start, goal = self.sample_starts(count, rng), self.sample_goals(count, rng)
-        posture = curled(self.robot) + rng.normal(0.0, POSTURE_SPREAD_RAD, (count, self.robot.dof))
-        return follow(
-            self.robot,
-            posture,
-            lambda time: start + (goal - start) * time / DURATION_S,
-            lambda state: plane_point(self.robot, state),
-            lambda state: self.robot.chain.jacobian(state)[..., :2, :],
-            DURATION_S,
-            "reach into the goal region",
-        )
+        return Timed(lambda time: start + (goal - start) * time / DURATION_S)
 
     @property
     def _middle(self) -> FloatArray:

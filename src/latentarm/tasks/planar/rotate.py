@@ -6,27 +6,31 @@ three constraints for each arm of 5 joints); the grippers lead away from the bas
 The nominal posture is one from which a turn of the box asks for about the same joint speed everywhere.
 """
 
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
-from latentarm.tasks.planar.motion import BACK_AND_FORTH_S, POSTURE_SPREAD_RAD, PlanarMotion, outline
-from latentarm.tasks.planar.resolved_rate import follow
-from latentarm.types import Demonstrations, FloatArray
+from latentarm.tasks.planar.motion import DEMONSTRATION_S, DESIGN, Design, PlanarMotion, outline
+from latentarm.tasks.planar.paths import Paced, Path, Timed, swings
+from latentarm.tasks.planar.resolved_rate import Constraint
+from latentarm.types import FloatArray, Pose
 
-BOX_WIDTH_M = 0.2
-BOX_DEPTH_M = 0.12
-PLACE_M = (0.62, 0.0)
-PLACE_SPREAD_M = 0.05
+BOX_WIDTH_M: Final = 0.2
+BOX_DEPTH_M: Final = 0.12
+PLACE_M: Final = (0.62, 0.0)
+PLACE_SPREAD_M: Final = 0.05
 """How far the middle of the box lies from its nominal place at most, along x and along y."""
-LARGEST_TURN_RAD = 0.8
-SWING_RAD_S = (0.6, 1.2)
-LEFT_POSTURE_RAD = (-0.67, -0.62, 0.73, 0.82, -0.27)
+LARGEST_TURN_RAD: Final = 0.5
+SPEED_RAD_S: Final = 1.2
+"""SD of the joint speed."""
+SWING_RAD_S: Final = (1.2, 2.4)
+"""Slowest and fastest angular frequency of the back-and-forth at the pace ``swing``."""
+LEFT_POSTURE_RAD: Final = (-0.67, -0.62, 0.73, 0.82, -0.27)
 """Nominal posture of the left arm; the right arm's is its mirror image."""
 
-_PLANE = (0, 1, 5)
+_PLANE: Final = (0, 1, 5)
 """Rows of a Jacobian that act in the plane: x, y and heading."""
 
 
@@ -34,8 +38,8 @@ _PLANE = (0, 1, 5)
 class Rotate(PlanarMotion):
     """Turn a box that both arms hold."""
 
-    def __init__(self) -> None:
-        super().__init__(planar(5, arms=2))
+    def __init__(self, design: Design = DESIGN) -> None:
+        super().__init__(planar(5, arms=2), design)
 
     @property
     def name(self) -> str:
@@ -54,32 +58,57 @@ class Rotate(PlanarMotion):
 
     def headings(self, state: FloatArray) -> FloatArray:
         """Headings (..., 2) of the left and the right gripper at states (..., 10), rad."""
-        return _heads(self.robot, state)
+        return np.stack([_head(self.robot.chain.forward(state, arm)) for arm in (0, 1)], axis=-1)
 
-    def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Turn the box back and forth about its middle, somewhere near its nominal place.
+    @property
+    def words(self) -> str:
+        """See `PlanarMotion`."""
+        return "turn the box"
 
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
-        count = max(episodes, 0)
+    @property
+    def nominal(self) -> FloatArray:
+        """See `PlanarMotion`."""
+        return np.array([*LEFT_POSTURE_RAD, *(-joint for joint in LEFT_POSTURE_RAD)])
+
+    @property
+    def closing(self) -> tuple[int, ...]:
+        """The first two joints of each arm, and the last, which turns the gripper along the box."""
+        return (0, 1, 4, 5, 6, 9)
+
+    @property
+    def constraint(self) -> Constraint:
+        """Place and heading of both grippers."""
+        return _Grippers(self.robot)
+
+    def paths(self, count: int, rng: np.random.Generator) -> Path:
+        """Turns of the box about its middle, back and forth, somewhere near its nominal place."""
         middle = np.array(PLACE_M) + rng.uniform(-PLACE_SPREAD_M, PLACE_SPREAD_M, (count, 2))
-        reach = rng.uniform(0.4, 1.0, count) * LARGEST_TURN_RAD
-        mean = rng.uniform(-1.0, 1.0, count) * (LARGEST_TURN_RAD - reach)
-        swing = rng.uniform(*SWING_RAD_S, count)
-        phase = rng.uniform(0.0, 2 * np.pi, count)
-        nominal = np.array([*LEFT_POSTURE_RAD, *(-joint for joint in LEFT_POSTURE_RAD)])
-        start = nominal + rng.normal(0.0, POSTURE_SPREAD_RAD, (count, self.robot.dof))
-        return follow(
-            self.robot,
-            start,
-            lambda time: _grips(middle, mean + reach * np.sin(swing * time + phase)),
-            lambda state: _held(self.robot, state),
-            lambda state: np.concatenate(
-                [self.robot.chain.jacobian(state, arm)[..., _PLANE, :] for arm in (0, 1)], axis=-2
-            ),
-            BACK_AND_FORTH_S,
-            "turn the box",
+        if self.design.pace == "normal":
+            begin = rng.uniform(-LARGEST_TURN_RAD, LARGEST_TURN_RAD, count)
+            ends = (-LARGEST_TURN_RAD, LARGEST_TURN_RAD)
+            return Paced(lambda turn: _grips(middle, turn), begin, ends, SPEED_RAD_S, DEMONSTRATION_S, rng)
+        swing = swings(count, LARGEST_TURN_RAD, SWING_RAD_S, rng)
+        return Timed(lambda time: _grips(middle, swing(time)))
+
+
+@final
+class _Grippers(Constraint):
+    """Place and heading of both grippers: (..., 6), m and rad."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+
+    def coordinates(self, state: FloatArray) -> FloatArray:
+        """See `Constraint`."""
+        poses = [self._robot.chain.forward(state, arm) for arm in (0, 1)]
+        return np.concatenate(
+            [part for pose in poses for part in (pose.position[..., :2], _head(pose)[..., None])], axis=-1
+        )
+
+    def jacobian(self, state: FloatArray) -> FloatArray:
+        """See `Constraint`."""
+        return np.concatenate(
+            [self._robot.chain.jacobian(state, arm)[..., _PLANE, :] for arm in (0, 1)], axis=-2
         )
 
 
@@ -89,13 +118,6 @@ def _grips(middle: FloatArray, turn: FloatArray) -> FloatArray:
     return np.concatenate([middle + side, turn[:, None], middle - side, turn[:, None]], axis=-1)
 
 
-def _held(robot: Robot, state: FloatArray) -> FloatArray:
-    """Place and heading of both grippers: (E, 6), m and rad."""
-    places = [robot.chain.forward(state, arm).position[..., :2] for arm in (0, 1)]
-    heads = _heads(robot, state)
-    return np.concatenate([places[0], heads[..., :1], places[1], heads[..., 1:]], axis=-1)
-
-
-def _heads(robot: Robot, state: FloatArray) -> FloatArray:
-    turns = [robot.chain.forward(state, arm).rotation for arm in (0, 1)]
-    return np.stack([np.arctan2(turn[..., 1, 0], turn[..., 0, 0]) for turn in turns], axis=-1)
+def _head(pose: Pose) -> FloatArray:
+    """Heading (...,) of a gripper, rad."""
+    return np.arctan2(pose.rotation[..., 1, 0], pose.rotation[..., 0, 0])

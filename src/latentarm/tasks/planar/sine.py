@@ -1,31 +1,35 @@
 """Sine: one arm moves its tool back and forth along a sine wave (1-D latent action).
 
-The wave has three half-periods and a slope of up to 40 degrees, so that no single joint velocity serves all
-of it, and lies about the tool's place in the nominal posture. Speeds vary within and between demonstrations.
+The wave has three half-periods about the tool's place in the nominal posture. It is so flat that what it asks
+of the joints is mostly the same everywhere; what differs, with the place and with the posture, is what PCA
+loses.
 """
 
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.robots.planar import planar
-from latentarm.tasks.planar.motion import BACK_AND_FORTH_S, POSTURE_SPREAD_RAD, PlanarMotion
-from latentarm.tasks.planar.resolved_rate import curled, follow, plane_point
-from latentarm.types import Demonstrations, FloatArray
+from latentarm.tasks.planar.motion import DEMONSTRATION_S, DESIGN, Design, PlanarMotion
+from latentarm.tasks.planar.paths import Paced, Path, Timed, swings
+from latentarm.tasks.planar.resolved_rate import Constraint, ToolPlace, curled, plane_point
+from latentarm.types import FloatArray
 
-AMPLITUDE_M = 0.04
-WAVELENGTH_M = 0.3
-HALF_LENGTH_M = 0.225
-SWING_RAD_S = (0.6, 1.2)
-"""Slowest and fastest angular frequency of the back-and-forth."""
+AMPLITUDE_M: Final = 0.01
+WAVELENGTH_M: Final = 0.2
+HALF_LENGTH_M: Final = 0.15
+SPEED_RAD_S: Final = 0.4
+"""SD of the joint speed."""
+SWING_RAD_S: Final = (1.2, 2.4)
+"""Slowest and fastest angular frequency of the back-and-forth at the pace ``swing``."""
 
 
 @final
 class Sine(PlanarMotion):
     """Along ``y = A sin(2 pi x / wavelength)`` about the nominal place of the tool."""
 
-    def __init__(self) -> None:
-        super().__init__(planar(5))
+    def __init__(self, design: Design = DESIGN) -> None:
+        super().__init__(planar(5), design)
 
     @property
     def name(self) -> str:
@@ -47,24 +51,31 @@ class Sine(PlanarMotion):
         wave = AMPLITUDE_M * np.sin(2 * np.pi * along / WAVELENGTH_M)
         return plane_point(self.robot, curled(self.robot)) + np.stack([along, wave], axis=-1)
 
-    def demonstrate(self, episodes: int, rng: np.random.Generator) -> Demonstrations:
-        """Back and forth over a part of the wave.
+    @property
+    def words(self) -> str:
+        """See `PlanarMotion`."""
+        return "move along the sine wave"
 
-        Raises:
-            UserError: fewer than one episode is asked for.
-        """
-        count = max(episodes, 0)
-        reach = rng.uniform(0.4, 1.0, count) * HALF_LENGTH_M
-        middle = rng.uniform(-1.0, 1.0, count) * (HALF_LENGTH_M - reach)
-        swing = rng.uniform(*SWING_RAD_S, count)
-        phase = rng.uniform(0.0, 2 * np.pi, count)
-        start = curled(self.robot) + rng.normal(0.0, POSTURE_SPREAD_RAD, (count, self.robot.dof))
-        return follow(
-            self.robot,
-            start,
-            lambda time: self.curve(middle + reach * np.sin(swing * time + phase)),
-            lambda state: plane_point(self.robot, state),
-            lambda state: self.robot.chain.jacobian(state)[..., :2, :],
-            BACK_AND_FORTH_S,
-            "move along the sine wave",
-        )
+    @property
+    def nominal(self) -> FloatArray:
+        """See `PlanarMotion`."""
+        return curled(self.robot)
+
+    @property
+    def closing(self) -> tuple[int, ...]:
+        """The first two joints."""
+        return (0, 1)
+
+    @property
+    def constraint(self) -> Constraint:
+        """The tool's place."""
+        return ToolPlace(self.robot)
+
+    def paths(self, count: int, rng: np.random.Generator) -> Path:
+        """Back and forth over the wave, or at the pace ``swing`` over a part of it."""
+        if self.design.pace == "normal":
+            begin = rng.uniform(-HALF_LENGTH_M, HALF_LENGTH_M, count)
+            ends = (-HALF_LENGTH_M, HALF_LENGTH_M)
+            return Paced(self.curve, begin, ends, SPEED_RAD_S, DEMONSTRATION_S, rng)
+        swing = swings(count, HALF_LENGTH_M, SWING_RAD_S, rng)
+        return Timed(lambda time: self.curve(swing(time)))
