@@ -1,5 +1,6 @@
 """The homogeneous model without its training: sizes and the decoder ``v r R(c, z / r)`` in NumPy."""
 
+from abc import ABC, abstractmethod
 from typing import Final, final
 
 import numpy as np
@@ -22,9 +23,8 @@ CELLS: Final = 64
 """Cells that half of all directions are cut into for the enclosure; 45 degrees lie between two of them."""
 
 
-@final
-class _Runtime(Runtime):
-    """‖z‖ R(c, z / ‖z‖) of the homogeneous model."""
+class CurveDecoder(Runtime, ABC):
+    """v r R(c, z / r) with r = ‖z‖, for columns of R that a network of the context gives."""
 
     def __init__(self, trained: TrainedModel, seed: int) -> None:
         self._contexts = trained.tool_contexts
@@ -34,7 +34,19 @@ class _Runtime(Runtime):
         self._speed = float(trained.actions.scale[0])
         self._latents, self._joints = trained.dimensions.latent, trained.dimensions.action
 
+    @abstractmethod
+    def _columns(self, context: FloatArray, jacobian: FloatArray) -> FloatArray:
+        """M_1(c) and the bends M_3(c), M_5(c), ..., (..., m, (1 + orders) d)."""
+
+    @final
+    def _raw_columns(self, context: FloatArray) -> FloatArray:
+        """The same as the network gives them."""
+        raw = propagate(context @ self._weight + self._bias, self._rest)
+        return raw.reshape(*raw.shape[:-1], -1, self._joints).swapaxes(-1, -2).copy()
+
+    @final
     def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
+        """See `Runtime`."""
         jacobian = self._contexts.jacobian(context[..., : self._joints])
         columns = self._columns(context, jacobian)
         radius = np.sqrt(np.vecdot(z, z))[..., None]
@@ -43,6 +55,7 @@ class _Runtime(Runtime):
         size = np.vecdot(twist, twist) + self._contexts.damping * np.vecdot(led, led)
         return self._speed * radius * led / np.sqrt(size + NORM_FLOOR)[..., None]
 
+    @final
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure:
         """See `Runtime`; exact for d = 1, cells of the input's angle for d = 2, the metric's bound beyond.
 
@@ -103,10 +116,13 @@ class _Runtime(Runtime):
         spread = factor[..., None] * np.stack([led, turned], axis=-2)
         return Enclosure(np.zeros(remainder.shape), spread, remainder)
 
+
+@final
+class _Runtime(CurveDecoder):
+    """Columns that are orthogonal in the metric of the tools."""
+
     def _columns(self, context: FloatArray, jacobian: FloatArray) -> FloatArray:
-        """M_1(c) and the bends M_3(c), M_5(c), ..., (..., m, (1 + orders) d)."""
-        raw = propagate(context @ self._weight + self._bias, self._rest)
-        columns = raw.reshape(*raw.shape[:-1], -1, self._joints).swapaxes(-1, -2).copy()
+        columns = self._raw_columns(context)
         columns[..., self._latents :] *= BEND_SIZE
         twists = jacobian @ columns
         for axis in range(self._latents):

@@ -1,12 +1,13 @@
-"""The low-turning model without its training: sizes and the decoder ``v r R(c, z / r)`` in NumPy."""
+"""The low-turning model without its training: the columns of its curve in NumPy, and sizes."""
 
+from functools import cached_property
 from typing import Final, final
 
 import numpy as np
 
-from latentarm.models.homogeneous.runtime import DAMPING_M2, ORDERS, odd_degrees
-from latentarm.models.kind import Dimensions, ModelKind, Runtime, Shape, TrainedModel
-from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, propagate, scale_context
+from latentarm.models.homogeneous.runtime import DAMPING_M2, ORDERS, CurveDecoder
+from latentarm.models.kind import Dimensions, ModelKind, Shape
+from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.style import Look
 from latentarm.types import FloatArray
 
@@ -15,37 +16,22 @@ BEND_SIZE: Final = 0.15
 
 
 @final
-class _Runtime(Runtime):
-    """v r R(c, z / r) with r = ‖z‖."""
+class _Runtime(CurveDecoder):
+    """Columns that are orthogonal as joint velocities."""
 
-    def __init__(self, trained: TrainedModel, seed: int) -> None:
-        self._contexts = trained.tool_contexts
-        layers = layers_of(trained, seed)
-        first = scale_context(layers[0], trained)
-        (self._weight, self._bias), *self._rest = halve_hidden([first, *layers[1:]])
-        self._speed = float(trained.actions.scale[0])
-        self._latents, self._joints = trained.dimensions.latent, trained.dimensions.action
-        self._bend_sizes = bend_sizes(self._latents)
-
-    def __call__(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        """See `Runtime`."""
-        radius = np.sqrt(np.vecdot(z, z))[..., None]
-        led = np.vecmat(odd_degrees(z / np.maximum(radius, NORM_FLOOR)), self._columns(context))
-        twist = np.matvec(self._contexts.jacobian(context[..., : self._joints]), led)
-        size = np.vecdot(twist, twist) + self._contexts.damping * np.vecdot(led, led)
-        return self._speed * radius * led / np.sqrt(size + NORM_FLOOR)[..., None]
-
-    def _columns(self, context: FloatArray) -> FloatArray:
-        """M_1(c) and the bends M_3(c), M_5(c), ..., each column a row, (..., (1 + orders) d, m)."""
-        raw = propagate(context @ self._weight + self._bias, self._rest)
-        columns = raw.reshape(*raw.shape[:-1], -1, self._joints).copy()
-        columns[..., self._latents :, :] *= self._bend_sizes[:, None]
+    def _columns(self, context: FloatArray, jacobian: FloatArray) -> FloatArray:
+        columns = self._raw_columns(context)
+        columns[..., self._latents :] *= self._bend_sizes
         for axis in range(self._latents):
-            column = columns[..., axis, :]
+            column = columns[..., axis]
             column /= np.sqrt(np.vecdot(column, column) + NORM_FLOOR)[..., None]
-            after = columns[..., axis + 1 :, :]
-            after -= np.matvec(after, column)[..., None] * column[..., None, :]
+            after = columns[..., axis + 1 :]
+            after -= column[..., None] * np.vecmat(column, after)[..., None, :]
         return columns
+
+    @cached_property
+    def _bend_sizes(self) -> FloatArray:
+        return bend_sizes(self._latents)
 
 
 def bend_sizes(latent_dim: int) -> FloatArray:
