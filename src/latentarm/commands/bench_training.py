@@ -1,4 +1,7 @@
-"""The part of `latentarm bench` that compares training with a plain loop in torch."""
+"""The part of `latentarm bench` that compares training with a plain loop in torch.
+
+Times are of the processor, of all threads together: what a training costs, whatever else the machine does.
+"""
 
 import math
 import statistics
@@ -97,9 +100,9 @@ def time_training(demonstrations: Demonstrations, seeds: int, epochs: int, repea
         curve = _plain_run(data, demonstrations.dof, repeat, epochs)
         plain_curves.append(curve)
         plain_s.append(curve[-1][0])
-        began = time.perf_counter()
+        began = time.process_time()
         fit_curve = _fit(demonstrations, seeds, epochs)
-        fit_s.append(time.perf_counter() - began)
+        fit_s.append(time.process_time() - began)
         floors.append(_floors_s(data.training.shape[1], demonstrations.dof, seeds))
     plain, fit = statistics.median(plain_s), statistics.median(fit_s)
     products, layers = (steps * float(value) for value in np.median(floors, axis=0))
@@ -150,13 +153,13 @@ def _plain_run(data: _Data, joints: int, seed: int, epochs: int) -> list[tuple[f
         curve: list[tuple[float, float]] = []
         took = 0.0
         for _ in range(epochs):
-            began = time.perf_counter()
+            began = time.process_time()
             for batch in pairs:
                 optimiser.zero_grad()
                 loss = model(batch)
                 loss.backward()
                 optimiser.step()
-            took += time.perf_counter() - began
+            took += time.process_time() - began
             with torch.no_grad():
                 curve.append((took, float(model(judged))))
     return curve
@@ -165,10 +168,10 @@ def _plain_run(data: _Data, joints: int, seed: int, epochs: int) -> list[tuple[f
 def _fit(demonstrations: Demonstrations, seeds: int, epochs: int) -> list[tuple[float, float]]:
     """S seeds in one fit. Returns seconds and the median of the seeds' best losses after each epoch."""
     clock: list[float] = []
-    began = time.perf_counter()
+    began = time.process_time()
 
     def report(_epoch: int, _epochs: int, _loss: float) -> None:
-        clock.append(time.perf_counter() - began)
+        clock.append(time.process_time() - began)
 
     model = CAE(
         seeds=seeds,
@@ -207,10 +210,10 @@ def _median_s(calls: list[Callable[[], object]]) -> float:
     """Of 20 rounds of all calls."""
     took: list[float] = []
     for _ in range(20):
-        began = time.perf_counter()
+        began = time.process_time()
         for call in calls:
             call()
-        took.append(time.perf_counter() - began)
+        took.append(time.process_time() - began)
     return statistics.median(took)
 
 
