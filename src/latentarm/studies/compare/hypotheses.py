@@ -87,7 +87,7 @@ def said(tests: Sequence[Comparison]) -> list[str]:
         holds = sum(one.holds for one in here)
         sentences.append(
             f"With the {family}, the model that sees the context has the lower mean error in {lower} of"
-            f" {len(here)} comparisons, significantly in {holds}; H1 is"
+            f" {len(here)} comparisons, significantly in {holds}, and the other in {len(here) - lower}; H1 is"
             f" {'supported' if holds == len(here) else 'not supported throughout'}."
         )
     return sentences
