@@ -102,7 +102,7 @@ def _beside_paper(row: Row | None) -> str:
     mean, sd = length or (row.paper_mean, row.paper_sd)
     if mean is None:
         return _figure(row)
-    spread = "" if sd is None else f" ± {sd:g}"
+    spread = "" if sd is None else f" ± {sd:.2g}"
     return f"{_figure(row)} (paper: {mean:.3g}{spread}{f' {UNIT_NOT_STATED}' if length else ''})"
 
 
