@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from latentarm.errors import UserError
 from latentarm.models.kind import ModelKind
 from latentarm.studies.statistics import bootstrap_interval
 from latentarm.types import BoolArray, FloatArray
+
+ROUNDING: Final = 1e-9
+"""Ends of intervals that differ by less are the same."""
 
 
 @final
@@ -82,7 +85,7 @@ def _successful(candidates: Sequence[Candidate]) -> _Verdict:
     ends = [tuple(map(float, bootstrap_interval(one.success.mean(axis=1)))) for one in candidates]
     lowest, highest = ends[int(np.argmax(means))]
     return (
-        [low <= highest and high >= lowest for low, high in ends],
+        [low <= highest + ROUNDING and high >= lowest - ROUNDING for low, high in ends],
         [f"{mean:.3f} [{low:.3f}, {high:.3f}]" for mean, (low, high) in zip(means, ends, strict=True)],
     )
 
@@ -93,7 +96,7 @@ def _fast(candidates: Sequence[Candidate]) -> _Verdict:
     ends = [tuple(map(float, np.exp(bootstrap_interval(values - fastest)))) for values in log_time]
     ratios = [float(np.exp((values - fastest).mean())) for values in log_time]
     return (
-        [low <= 1.0 for low, _ in ends],
+        [low <= 1.0 + ROUNDING for low, _ in ends],
         [f"{ratio:.2f} [{low:.2f}, {high:.2f}]" for ratio, (low, high) in zip(ratios, ends, strict=True)],
     )
 
