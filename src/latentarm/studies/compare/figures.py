@@ -142,6 +142,8 @@ def _draw_pareto(
 
 
 LINE_MM: Final = 38.0
+SPREAD: Final = 0.6
+"""Width that the models share around a number of demonstrations; 1 reaches to the next."""
 MEASURES: Final = {
     "search_error_percent_of_pca": ("error\n(% of PCA's)", 1.0),
     "search_noise_free_error_percent_of_pca": ("noise-free error\n(% of PCA's)", 1.0),
@@ -208,7 +210,7 @@ def _draw_fewer(
                 and row.condition == condition(noise_rad, with_demonstrations(count))
             ]
             axes.errorbar(
-                [at + 0.06 * (place - (len(models) - 1) / 2) for at, _ in known],
+                [at + SPREAD * ((place + 0.5) / len(models) - 0.5) for at, _ in known],
                 [scale * (row.mean or 0.0) for _, row in known],
                 yerr=[scale * (row.sd or 0.0) for _, row in known],
                 color=look.colour,
