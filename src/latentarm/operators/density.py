@@ -16,7 +16,7 @@ from typing import Final, Self, final
 import numpy as np
 
 from latentarm.errors import UserError
-from latentarm.types import FloatArray, IntArray
+from latentarm.types import BoolArray, FloatArray, IntArray
 
 RADII: Final = np.array([0.2, 0.6, 1.0])
 """Lengths of an input at which its cost is known."""
@@ -104,7 +104,7 @@ class CostModel:
 
     def __init__(self, lattice: Lattice, cost: FloatArray) -> None:
         by_direction = cost.reshape(-1, len(RADII))
-        known = np.isfinite(by_direction).all(axis=1)
+        known: BoolArray = np.logical_and.reduce(np.isfinite(by_direction), axis=1)
         usable = np.abs(lattice.refinement[:, ~known]).sum(axis=1) == 0.0
         at_nodes = np.where(known[:, None], by_direction, 0.0)
         self.lattice = lattice
