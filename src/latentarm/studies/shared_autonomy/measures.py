@@ -30,7 +30,8 @@ EVERY: Final = 10
 """What decoders could do is looked at in every tenth step: once a second."""
 
 FINENESS: Final = 4
-"""Of the decoder's enclosure: sigma_h is then about 1 % above the largest action found by sampling."""
+"""Of the decoder's enclosure: for the study's decoders sigma_h is then 7 to 28 % above the largest action
+found by sampling."""
 
 DAMPING_M2: Final = 1e-2
 """Weight of a joint's motion by 1 rad in the metric of the tools, relative to a tool's motion by 1 m."""
