@@ -46,7 +46,7 @@ def test_the_smallest_study_of_shared_autonomy_runs_from_end_to_end(run: Run, wo
     assert "Panda, 7 joints, cAE, simulated: final state error" in out
     assert "LA+SA+Entropy" in out
     assert "reproduced/shared-autonomy/results.md" in out
-    assert "12 cells" in " ".join(err.split())
+    assert "8 cells" in " ".join(err.split())
     folder = Path("reproduced/shared-autonomy")
     written = rows_in(folder / "results.json")
     assert {row.task for row in written} == set(TASKS)
@@ -82,4 +82,4 @@ def test_the_smallest_study_of_alignment_runs_from_end_to_end(run: Run, workplac
     assert code == 0
     for words in ("Plane, cAE, simulated", "Ideal Align", "Drives at the table, cVAE, simulated"):
         assert words in out
-    assert "Decoders: 9 cells" in err
+    assert "Decoders: 3 cells" in err

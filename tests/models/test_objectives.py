@@ -58,6 +58,9 @@ def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
         "odd_cae": {"smoothness_weight": 0.0},
         "cae_jacobian": {"jacobian_weight": 0.0},
         "cvae_jacobian": {"jacobian_weight": 0.0},
+        "low_turning": dict.fromkeys(
+            ("smoothness_weight", "turning_weight", "spread_weight", "context_noise"), 0.0
+        ),
     }
     model = MODELS[name](seeds=2, epochs=3, hidden=(8,), window=2, **unseen.get(name, {})).fit(demonstrations)
     pairs = make_pairs(demonstrations, 2, 0.0, "state", np.random.default_rng(0))

@@ -46,6 +46,18 @@ def test_gradients_constants_views_and_writes_in_place_are_replayed():
     torch.testing.assert_close(*replayed(compute, [x], result), rtol=0, atol=0)
 
 
+def test_a_tensor_whose_shape_is_changed_in_place_is_replayed():
+    x, result = torch.rand(4, 3), torch.zeros(4)
+
+    def compute():
+        largest = x.amax(1, keepdim=True)
+        spread = (x - largest).exp().sum(1)
+        largest.squeeze_(1)  # as in torch's own logsumexp
+        result.copy_(largest + spread.log())
+
+    torch.testing.assert_close(*replayed(compute, [x], result), rtol=0, atol=0)
+
+
 def test_memory_is_used_again_only_where_nothing_reads_it_any_more():
     x, result = torch.rand(50), torch.zeros(50)
 

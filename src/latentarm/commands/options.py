@@ -30,10 +30,6 @@ Backend = Annotated[
         " or else a new one here."
     ),
 ]
-PresetName = Annotated[
-    Literal["paper", "smoke"],
-    arg(help="The sizes of the paper, or small ones that only show that it runs."),
-]
 
 
 @dataclass(frozen=True)
@@ -41,14 +37,12 @@ class StudyOptions:
     """What every study is asked for; the command line says the same of each field.
 
     Attributes:
-        preset: sizes.
         seed: of everything random.
         jobs: processes side by side.
         backend: where they run.
         json: print one JSON document.
     """
 
-    preset: PresetName = "paper"
     seed: Seed = 0
     jobs: Jobs = -1
     backend: Backend = "joblib"

@@ -9,6 +9,7 @@ from tyro.conf import arg
 from latentarm.commands.configuration import Command, write_options
 from latentarm.commands.options import StudyOptions
 from latentarm.commands.output import say, show, tables_by_task
+from latentarm.errors import UserError
 from latentarm.studies.catalogue import STUDIES, load_study
 
 ALL = "all"
@@ -21,16 +22,18 @@ def command_of(name: str) -> Command:
         name: a name in `STUDIES`.
     """
     entry = STUDIES[name]
-    choices = "{" + ",".join((ALL, *entry.tasks)) + "}"
+    choices, presets = ("{" + ",".join(names) + "}" for names in ((ALL, *entry.tasks), entry.presets))
+    about_presets = "; ".join(f"{name}: {about}" for name, about in entry.presets.items()) + "."
 
     def reproduce(
         options: StudyOptions,
+        preset: Annotated[str, arg(metavar=presets, help=about_presets)] = "paper",
         task: Annotated[str, arg(metavar=choices, help=entry.about_tasks)] = ALL,
         out: Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")] = Path(
             "reproduced", name
         ),
     ) -> int:
-        return _reproduce(name, task, out, options)
+        return _reproduce(name, preset, task, out, options)
 
     reproduce.__doc__ = (
         f"{entry.summary}\n\nFor example: latentarm reproduce {name} --preset smoke --task {entry.tasks[0]}"
@@ -38,14 +41,16 @@ def command_of(name: str) -> Command:
     return reproduce
 
 
-def _reproduce(name: str, task: str, out: Path, options: StudyOptions) -> int:
+def _reproduce(name: str, preset: str, task: str, out: Path, options: StudyOptions) -> int:
     """Run a study and print it at a glance."""
     from latentarm.studies.study import Request, run_study
 
     study = load_study(name)
+    if preset not in study.presets:
+        raise UserError(f"There is no preset {preset!r}: choose from {', '.join(study.presets)}.")
     request = Request(
         out=out,
-        preset=study.presets[options.preset],
+        preset=study.presets[preset],
         tasks=() if task == ALL else (task,),
         seed=options.seed,
         jobs=options.jobs,

@@ -80,6 +80,8 @@ class _Recorder(TorchDispatchMode):
     ) -> Any:
         named = kwargs or {}
         result = func(*args, **named)
+        if torch.Tag.inplace_view in func.tags:
+            return result  # such as squeeze_: it moves nothing, and later calls find the new shape
         if _depends_on_values(func, args):
             raise UnreplayableError(f"{func} returns what depends on values.")
         changed = [
@@ -92,7 +94,9 @@ class _Recorder(TorchDispatchMode):
         written = _storages(changed) if in_place else returned - read
         if not in_place and written and written != returned:
             raise UnreplayableError(f"{func} returns views and values at once.")
-        self.calls.append(_Call(func, args, named, result, read, written, in_place))
+        # Aliases, because a tensor's own shape may be changed in place later.
+        seen, seen_named, seen_result = tree_map(_alias, (args, dict(named), result))
+        self.calls.append(_Call(func, seen, seen_named, seen_result, read, written, in_place))
         return result
 
 
@@ -183,6 +187,11 @@ def _captured(run: Callable[[], None]) -> "torch.cuda.CUDAGraph":
     with torch.cuda.graph(graph):
         run()
     return graph
+
+
+def _alias(leaf: Any) -> Any:
+    """The same memory with the shape that it has now, of a tensor."""
+    return leaf.detach() if isinstance(leaf, Tensor) else leaf
 
 
 def _tensors(tree: Any) -> list[Tensor]:

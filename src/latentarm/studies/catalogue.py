@@ -9,6 +9,10 @@ if TYPE_CHECKING:
     from latentarm.studies.study import Study
 
 
+_PAPER: Final = "whole sizes"
+_SMOKE: Final = "small ones that only show that it runs"
+
+
 @dataclass(frozen=True)
 class Entry:
     """A study as the command line lists it.
@@ -17,11 +21,13 @@ class Entry:
         summary: the first line of its help.
         tasks: names of all its tasks, as in its `Study`.
         about_tasks: what they are, in a few words.
+        presets: what each of its presets is, by its name in the `Study`.
     """
 
     summary: str
     tasks: tuple[str, ...]
     about_tasks: str
+    presets: Mapping[str, str]
 
 
 STUDIES: Final[Mapping[str, Entry]] = {
@@ -29,16 +35,24 @@ STUDIES: Final[Mapping[str, Entry]] = {
         "Measure the four properties of all models on the paper's planar tasks (section 8.1), simulated.",
         ("sine", "rotate", "circle", "reach"),
         "One of the tasks, or all four.",
+        {
+            "paper": _PAPER,
+            "noise": "noise on the states as well",
+            "sweep": "other designs of the tasks, smaller",
+            "smoke": _SMOKE,
+        },
     ),
     "shared-autonomy": Entry(
         "Let simulated people reach and change goals with help and without (section 8.2).",
         ("planar_two_cups", "panda_two_cups"),
         "Two cups in front of one of the arms, or of both.",
+        {"paper": _PAPER, "smoke": _SMOKE},
     ),
     "alignment": Entry(
         "Learn from few answers what simulated people mean by their stick (section 8.3).",
         ("plane", "pour", "reach_and_pour", "table_top"),
         "One of the paper's tasks, drives at the demo's table, or all of it.",
+        {"paper": _PAPER, "smoke": _SMOKE},
     ),
 }
 

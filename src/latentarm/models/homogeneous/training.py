@@ -116,10 +116,13 @@ class _Geometry(NamedTuple):
         first, bent = degrees.split([len(self.straight), self.bend.shape[1]], dim=1)
         bent = BEND_SIZE * bent
         action, white = (self.bend * bent[:, :, None]).sum(1), (self.bend_white * bent[:, :, None]).sum(1)
-        columns = zip(self.straight, self.straight_white, self.along, first.split(1, dim=1), strict=True)
-        for column, column_white, along, entry in columns:
-            share = entry - (along * bent).sum(1, keepdim=True)
-            action, white = action + share * column, white + share * column_white
+        columns = list(zip(self.straight, self.straight_white, strict=True))
+        # First what the bends share with the straight columns: added to the entry, rounding would lose it.
+        for column, column_white in columns:
+            share = (column_white * white).sum(1, keepdim=True)
+            action, white = action - share * column, white - share * column_white
+        for (column, column_white), entry in zip(columns, first.split(1, dim=1), strict=True):
+            action, white = action + entry * column, white + entry * column_white
         return action, white
 
     def columns(self) -> Tensor:
