@@ -1,12 +1,12 @@
 """Arms that other people described can be driven from the command line."""
 
+import csv
 from importlib.resources import files
 from pathlib import Path
 
 import pytest
 
 from latentarm.cli import main
-from result_rows import rows_in
 
 JACO = files("dm_control") / "third_party" / "kinova" / "jaco_arm.xml"
 UR5E = files("airo_models") / "arms" / "ur5e" / "ur5e.urdf"
@@ -16,5 +16,8 @@ UR5E = files("airo_models") / "arms" / "ur5e" / "ur5e.urdf"
 def test_drives(model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["drive", "--robot", str(model), "--drives", "1", "--json"]) == 0
-    means = {row.measure: row.mean for row in rows_in(Path("drives/drives.json"))}
-    assert means["success_rate"] == 1.0
+    with Path("drives/drives.csv").open(encoding="utf-8") as file:
+        endings = {row["ended_because"] for row in csv.DictReader(file)}
+    # One who looks one step ahead may stretch the UR5e's elbow straight, where no single input leads on.
+    assert "reached" in endings
+    assert endings <= {"reached", "operator_stuck"}
