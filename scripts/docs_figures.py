@@ -1,7 +1,7 @@
 """Redraw the figures of ``docs/figures`` by the commands that the pages name.
 
-``python scripts/docs_figures.py demo alignment`` redraws those of some commands. All take about an hour on
-two cores that have nothing else to do: demo 2 minutes, properties 14, shared-autonomy 17, alignment 31.
+``python scripts/docs_figures.py demo alignment`` redraws those of some commands. By estimate all take about
+an hour and a half of one core: demo 4 minutes, properties 40, shared-autonomy 20, alignment 20.
 ``compare`` needs the recordings that are not part of the repository, and 2 hours: it runs only if named.
 """
 
