@@ -2,7 +2,8 @@
 
 ``python scripts/docs_figures.py demo alignment`` redraws those of some commands. By estimate all take about
 an hour and a half of one core: demo 4 minutes, properties 40, shared-autonomy 20, alignment 20.
-``compare`` needs the recordings that are not part of the repository, and 2 hours: it runs only if named.
+``compare`` needs the recordings that are not part of the repository, and 4 hours of one core: it runs only
+if named.
 """
 
 import shutil

@@ -42,7 +42,9 @@ def _rounded(value: float, places: int) -> str:
 
 def series_name(row: Row) -> str:
     """How a row's model and condition are called in a table's head."""
-    parts = [look_of(name).label for name in (row.model, row.condition) if name]
+    # Conditions have parts, such as "end_effector, learning".
+    names = [name for name in (row.model, *(row.condition or "").split(", ")) if name]
+    parts = [look_of(name).label for name in names]
     return ", ".join(parts) or row.study
 
 
