@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from latentarm.alignment.profile import Profile, model_fingerprint, new_profile_folder, save_profile
-from latentarm.alignment.runtime import LearnedAlignment
-from latentarm.models.saving import load_decoder
+from latentarm.alignment.answers import Answers
+from latentarm.alignment.profile import new_profile_folder
+from latentarm.runs.aligning import alignable, learn
 
 SWITCH_KEY, NEXT_KEY = "Enter", "Backspace"
 FAR_M = 0.02
@@ -135,17 +135,12 @@ class TestProfile:
     @pytest.fixture
     def address(self, start_server, trained, tmp_path):
         run = Path(shutil.copytree(trained, tmp_path / "run"))
-        contexts = load_decoder(run, 0).context_dim
-        mirrored = np.zeros((2 + contexts, 2))
-        mirrored[:2] = np.diag([-1.0, 1.0])
-        tensors = {
-            "alignment.0.weight": mirrored,
-            "alignment.0.bias": np.zeros((1, 2)),
-            "context.centre": np.zeros(contexts),
-            "context.scale": np.ones(contexts),
-        }
-        profile = Profile(LearnedAlignment(tensors), model_fingerprint(run, 0), 0)
-        save_profile(profile, new_profile_folder(run, "mia"), {"person": "simulated"})
+        scene = (asked := alignable(run)).scene
+        motions = scene.candidates
+        action = (motions.end - motions.start) / motions.duration_s
+        z = scene.model.encode(motions.context, action)[0]
+        answers = Answers(motions, np.clip(z, -1.0, 1.0) * [-1.0, 1.0])
+        learn(asked, answers, "mia", "simulated person").save(new_profile_folder(run, "mia"))
         with start_server(tmp_path, str(run)) as address:
             yield address
 
