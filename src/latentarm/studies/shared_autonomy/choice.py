@@ -19,7 +19,7 @@ KNOWN: Final = np.linspace(-1.0, 1.0, 11)
 """(K,), the inputs whose cost is known; the middle one is 0."""
 
 MOST_RATIONAL: Final = 1e12
-"""1/m²; whoever is more rational than this chooses the same to all digits."""
+"""1/m²; above this rationality the choice no longer changes."""
 
 _MIDDLE: Final = len(KNOWN) // 2
 _STARTS: Final = np.concatenate(
