@@ -151,7 +151,8 @@ def odd_degrees(direction: FloatArray) -> FloatArray:
     return np.concatenate(parts, axis=-1)
 
 
-def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
+def curve_sizes(dimensions: Dimensions) -> dict[str, Shape]:
+    """Layers of the network that gives the columns of a `CurveDecoder`."""
     outputs = (1 + len(ORDERS)) * dimensions.latent * dimensions.action
     return {"decoder": (dimensions.context, *dimensions.hidden, outputs)}
 
@@ -161,7 +162,7 @@ HOMOGENEOUS: Final = ModelKind(
     look=Look("homogeneous", "#882255", "h", (0.0, (4.0, 1.0, 1.0, 1.0))),
     estimator="latentarm.models.homogeneous.training:Homogeneous",
     runtime=_Runtime,
-    decoder=_sizes,
+    decoder=curve_sizes,
     encoder="nearest",
     rests_at_zero=True,
     reverses=True,

@@ -5,8 +5,8 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.models.homogeneous.runtime import DAMPING_M2, ORDERS, CurveDecoder
-from latentarm.models.kind import Dimensions, ModelKind, Shape
+from latentarm.models.homogeneous.runtime import DAMPING_M2, ORDERS, CurveDecoder, curve_sizes
+from latentarm.models.kind import ModelKind
 from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.style import Look
 from latentarm.types import FloatArray
@@ -39,17 +39,12 @@ def bend_sizes(latent_dim: int) -> FloatArray:
     return BEND_SIZE / np.repeat(np.array(ORDERS, dtype=np.float64), latent_dim)
 
 
-def _sizes(dimensions: Dimensions) -> dict[str, Shape]:
-    outputs = (1 + len(ORDERS)) * dimensions.latent * dimensions.action
-    return {"decoder": (dimensions.context, *dimensions.hidden, outputs)}
-
-
 LOW_TURNING: Final = ModelKind(
     name="low_turning",
     look=Look("low turning", "#DDAA33", "x", (0.0, (8.0, 2.0))),
     estimator="latentarm.models.low_turning.training:LowTurning",
     runtime=_Runtime,
-    decoder=_sizes,
+    decoder=curve_sizes,
     encoder="nearest",
     rests_at_zero=True,
     reverses=True,
