@@ -82,6 +82,7 @@ class Terminal:
     def _wait_and_type(self, keys):
         for _ in range(1000):
             if not termios.tcgetattr(self.keyboard)[3] & termios.ICANON:
+                time.sleep(0.05)  # Linux shows the new mode a moment before it applies it to what is typed
                 os.write(self.keyboard, keys.encode())
                 return
             time.sleep(0.01)
