@@ -114,3 +114,8 @@ def test_recorded_demonstrations_are_compared_on(tmp_path: Path, tiny: Preset) -
     assert at["pca", "search_error_percent_of_pca"] == pytest.approx(100.0, abs=5.0)
     assert at["scl", "drift"] == pytest.approx(0.0, abs=1e-9)
     assert "No targets are judged" in (tmp_path / "out" / "results.md").read_text()
+
+
+def test_only_models_that_were_compared_have_a_table_of_targets(done: tuple[list[Row], Path]) -> None:
+    headings = [line for line in (done[1] / "results.md").read_text().splitlines() if "Targets of" in line]
+    assert headings == ["### Targets of cAE"]

@@ -27,7 +27,7 @@ from latentarm.studies.compare.drives import (
 from latentarm.studies.compare.figures import FILLS, fewer_figure, pareto_figure, turning_figure
 from latentarm.studies.compare.hypotheses import compared, said
 from latentarm.studies.compare.measures import TABLES, meaning_of, without_planning
-from latentarm.studies.compare.preset import BASELINE, CHOSEN_ON, OURS, PRESETS, REFERENCE, Preset
+from latentarm.studies.compare.preset import BASELINE, CHOSEN_ON, OURS, PRESETS, RAISED, REFERENCE, Preset
 from latentarm.studies.compare.rows import STUDY, condition, fit_times, rows_of, rows_of_fewer, seeds_of
 from latentarm.studies.compare.tables import CORNER, drive_table, page_table, target_table, terminal_tables
 from latentarm.studies.compare.targets import verdicts
@@ -222,7 +222,11 @@ def _page(
     counts: Sequence[int],
 ) -> str:
     preset, names = asked.preset, [one.name for one in asked.datasets]
-    found = verdicts(main, asked.ours, names, preset.noises_rad, fit_times(whole))
+    found = {
+        model: judged
+        for model in dict.fromkeys((asked.ours, *RAISED))
+        if (judged := verdicts(main, model, names, preset.noises_rad, fit_times(whole)))
+    }
     return render_page(
         "compare/page.md",
         command=_command(asked),
@@ -237,7 +241,7 @@ def _page(
         baseline=BASELINE,
         chosen_on=[name for name in names if name.endswith(CHOSEN_ON)],
         verdicts=found,
-        target_table=target_table(found),
+        target_tables={model: target_table(judged) for model, judged in found.items()},
         meanings={
             heading: {label_of(name): meaning_of(name) for name in measures}
             for heading, measures in TABLES.items()
