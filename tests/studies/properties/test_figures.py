@@ -18,7 +18,8 @@ from latentarm.studies.properties.figures import (
     noise_figure,
     points,
 )
-from latentarm.studies.properties.motions import TASK_FIGURES, as_trained, spread_states, turned
+from latentarm.studies.properties.motion_figures.catalogue import TASK_FIGURES
+from latentarm.studies.properties.motion_figures.shown import as_trained, spread_states, turned
 from latentarm.studies.properties.preset import PRESETS
 from latentarm.style import MM_PER_INCH, TWO_COLUMNS_MM, shade
 from latentarm.tasks.planar.catalogue import MOTIONS

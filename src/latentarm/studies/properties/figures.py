@@ -143,7 +143,7 @@ def beside(figures: Mapping[str, Point]) -> str:
 
 
 def draw_losses(axes: "Axes", rows: Sequence[Row], task: str) -> None:
-    """Test loss in percent of PCA's on a logarithmic axis, with the paper's.
+    """Median test loss in percent of PCA's on a logarithmic axis, with the paper's.
 
     Args:
         axes: where to draw.
@@ -152,7 +152,7 @@ def draw_losses(axes: "Axes", rows: Sequence[Row], task: str) -> None:
     """
     losses = points(rows, task, "median_error_percent_of_pca")
     draw_points(axes, losses, log_axis(axes, losses.values()))
-    title(axes, "test loss, mean ± SD", "A")
+    title(axes, "median test loss, mean ± SD", "A")
     axes.set_xlabel(f"% of PCA's{beside(losses)}")
 
 

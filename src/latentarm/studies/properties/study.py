@@ -13,7 +13,7 @@ from latentarm.studies.properties.cell import Cell, CellResult, condition, measu
 from latentarm.studies.properties.cells import cells_table, count, paper_cells, sweep_table
 from latentarm.studies.properties.figures import beside_paper_figure, controllability_figure, noise_figure
 from latentarm.studies.properties.hypotheses import CLAIMS, LINEAR, compare_models
-from latentarm.studies.properties.motions import TASK_FIGURES
+from latentarm.studies.properties.motion_figures.catalogue import TASK_FIGURES
 from latentarm.studies.properties.paper import with_paper
 from latentarm.studies.properties.preset import PRESETS, Preset
 from latentarm.studies.properties.sweep import AS_CHOSEN, designs

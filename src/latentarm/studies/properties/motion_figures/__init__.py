@@ -1,0 +1,1 @@
+"""A figure for each task, after the paper's."""
