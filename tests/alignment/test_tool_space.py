@@ -145,6 +145,28 @@ def test_a_small_change_of_place_or_input_changes_z_a_little(curved_model, arm, 
     assert np.abs(np.diff(z, axis=0)).max() < 0.05
 
 
+class Folded:
+    """A decoder that near rest goes the other way than farther out, along both directions of a plane."""
+
+    latent_dim, action_dim = 2, 3
+
+    def __init__(self, plane):
+        self._plane = plane
+
+    def decode(self, z, context):
+        return FAST * (z - 3.0 * z * np.exp(-((z / 0.2) ** 2))) @ self._plane
+
+
+def test_a_decoder_that_is_folded_near_rest_still_does_what_is_meant(slides, motions, known, plane):
+    decoder = Folded(plane)
+    alignment = known.with_arm(decoder, slides.chain)
+    u = np.random.default_rng(0).uniform(0.4, 0.9, (60, 2)) * np.random.default_rng(1).choice(
+        [-1, 1], (60, 2)
+    )
+    moved = decoder.decode(alignment(u, motions.context[:60]), motions.context[:60]) @ plane.T / FAST
+    assert np.square(moved - u).sum(axis=1).max() < 0.15
+
+
 def test_another_number_of_inputs_is_refused(linear_model, slides, known):
     meaning = replace(known.meaning, matrix=known.meaning.matrix[:1])
     with pytest.raises(UserError, match="align the person again"):

@@ -20,8 +20,14 @@ OUTSIDE: Final = 1.0
 RIDGES: Final = (1.0, 0.3, 0.1, 0.03, 0.01, 0.01, 0.01)
 """Weight of ‖z‖^2 in each step. It falls, so that of several z that do the same, one near rest is found."""
 
-SECANT: Final = 0.05
-"""Half the distance in z over which the decoder's derivative is taken."""
+SECANTS: Final = ((0.05,) * 7, (0.4, 0.4, 0.3, 0.2, 0.1, 0.1, 0.05))
+"""(paths, steps), half the distance in z over which the decoder's derivative is taken. The first path follows
+the decoder from rest. Where it is folded there, that leads away from what is meant; the second path sees the
+decoder more broadly at first."""
+
+ACROSS: Final = (0.1, 0.15)
+"""By how much the second path has to miss less than the first before its z counts, and counts alone, in
+squared full pushes. In between z is a mixture, so that it changes continuously with the place."""
 
 REACH: Final = 0.5
 """The farthest that one step goes in z."""
@@ -67,8 +73,9 @@ class ToolSpaceAlignment:
 
     The first term is what the person means (`Meaning`), the second keeps to what the demonstrations do in the
     place (`Surroundings`, N in full pushes), and J is the Jacobian of the tools half way through a motion as
-    long as those that were asked about. The minimum is sought by a fixed number of damped Gauss-Newton steps
-    from z = 0, so the time is bounded, nothing is remembered between calls, and z is bounded.
+    long as those that were asked about. The minimum is sought on two paths of a fixed number of damped
+    Gauss-Newton steps from z = 0, so the time is bounded, nothing is remembered between calls, and z is
+    bounded.
 
     Args:
         known: Q, N and the length of a motion.
@@ -81,8 +88,9 @@ class ToolSpaceAlignment:
         self._duration_s = known.duration_s
         self._decoder, self._chain = decoder, chain
         axes = decoder.latent_dim
-        sides = SECANT * np.eye(axes)
-        self._around = np.concatenate([np.zeros((1, axes)), sides, -sides])
+        sides = np.concatenate([np.zeros((1, axes)), np.eye(axes), -np.eye(axes)])
+        self._secants = np.array(SECANTS).T[:, :, None, None]
+        self._around = self._secants * sides
         self._penalty = OUTSIDE / known.surroundings.fast_m_s
 
     def __call__(self, u: FloatArray, context: FloatArray) -> FloatArray:
@@ -99,22 +107,39 @@ class ToolSpaceAlignment:
         transforms = self._chain.link_transforms(state)
         place = pose_vectors_at(self._chain, transforms)
         q, outside = self._meaning(place), self._penalty * self._surroundings(place)
-        metric, wanted = self._pulled_back(q, outside, tool_jacobian(self._chain, transforms), u)
-        z = np.zeros(np.broadcast_shapes(u.shape[:-1], state.shape[:-1]) + u.shape[-1:])
+        # From here on there is an axis for the paths, before those of vectors and matrices.
+        u, context, q, outside = (
+            u[..., None, :],
+            context[..., None, :],
+            q[..., None, :, :],
+            outside[..., None, :, :],
+        )
+        jacobian = tool_jacobian(self._chain, transforms)[..., None, :, :]
+        metric, wanted = self._pulled_back(q, outside, jacobian, u)
+        z = np.zeros((*np.broadcast_shapes(u.shape[:-2], state.shape[:-1]), len(SECANTS), u.shape[-1]))
+        miss = np.zeros(z.shape[:-1])
         for step, ridge in enumerate(RIDGES):
-            action, slope = self._linear(z, context)
+            action, slope = self._linear(z, context, step)
             if step == len(RIDGES) - 2:
-                middle = self._chain.link_transforms(state + 0.5 * self._duration_s * action)
+                middle = self._chain.link_transforms(
+                    context[..., : self._chain.dof] + 0.5 * self._duration_s * action
+                )
                 metric, wanted = self._pulled_back(q, outside, tool_jacobian(self._chain, middle), u)
-            z = z + _limited(_gauss_newton(metric, wanted, action, slope, ridge, z))
-        return z
+            done = (metric @ action[..., None])[..., 0]
+            if step == len(RIDGES) - 1:
+                miss = np.vecdot(action, done - 2 * wanted)
+            z = z + _limited(_gauss_newton(metric, wanted - done, slope, ridge, z))
+        second = np.clip((miss[..., 0] - miss[..., 1] - ACROSS[0]) / (ACROSS[1] - ACROSS[0]), 0.0, 1.0)[
+            ..., None
+        ]
+        return z[..., 0, :] + second * (z[..., 1, :] - z[..., 0, :])
 
-    def _linear(self, z: FloatArray, context: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _linear(self, z: FloatArray, context: FloatArray, step: int) -> tuple[FloatArray, FloatArray]:
         """The decoded action (..., n), and its derivative (..., n, d) by central differences."""
         axes = z.shape[-1]
-        decoded = self._decoder.decode(z[..., None, :] + self._around, context[..., None, :])
+        decoded = self._decoder.decode(z[..., None, :] + self._around[step], context[..., None, :])
         ahead, behind = decoded[..., 1 : axes + 1, :], decoded[..., axes + 1 :, :]
-        return decoded[..., 0, :], ((ahead - behind) / (2 * SECANT)).mT
+        return decoded[..., 0, :], ((ahead - behind) / (2 * self._secants[step])).mT
 
     @staticmethod
     def _pulled_back(
@@ -126,10 +151,9 @@ class ToolSpaceAlignment:
 
 
 def _gauss_newton(
-    metric: FloatArray, wanted: FloatArray, action: FloatArray, slope: FloatArray, ridge: float, z: FloatArray
+    metric: FloatArray, missing: FloatArray, slope: FloatArray, ridge: float, z: FloatArray
 ) -> FloatArray:
     """One step (..., d)."""
-    missing = wanted - (metric @ action[..., None])[..., 0]
     gradient = (missing[..., None, :] @ slope)[..., 0, :] - ridge * z
     curvature = slope.mT @ (metric @ slope)
     if z.shape[-1] != 2:

@@ -23,7 +23,7 @@ LOOKS: Final[dict[str, Look]] = {
     "Tool Space": Look("Tool Space", "#000000", "*", "-"),
     "All Priors, at random": Look("All Priors, at random", "#0072B2", "o", ":"),
     "Tool Space, at random": Look("Tool Space, at random", "#7f7f7f", "s", "--"),
-    "Tool Space, chosen": Look("Tool Space, chosen", "#D55E00", "^", "-"),
+    "Tool Space, chosen": Look("Tool Space, chosen", "#882255", "^", "-"),
     "plane": Look("Plane", "#009E73", "D", "--"),
     "pour": Look("Pour", "#CC79A7", "v", "-."),
     "reach_and_pour": Look("Reach & Pour", "#000000", "o", "-"),

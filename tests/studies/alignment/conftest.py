@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from latentarm.studies.alignment.cell import Cell, CellResult
-from latentarm.studies.alignment.curves import CHOICES, CHOSEN, CurveCell, CurveResult
-from latentarm.studies.alignment.preset import CONDITIONS, NO_ALIGN, PRESETS
+from latentarm.studies.alignment.curves import CHOICES, CurveCell, CurveResult
+from latentarm.studies.alignment.preset import CHOSEN, CONDITIONS, NO_ALIGN, PRESETS
 from latentarm.studies.alignment.scene import DecoderCell, LearnedDecoder
 
-AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1)
+AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1, 0.1)
 """Means of the conditions, in their order."""
 
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from latentarm.studies.alignment.curves import CHOSEN, PRIORS_AT_RANDOM
+from latentarm.studies.alignment.curves import PRIORS_AT_RANDOM
 from latentarm.studies.alignment.hypotheses import CLAIMS, answers_needed, compare_conditions, targets
-from latentarm.studies.alignment.preset import ALL_PRIORS, IDEAL, NO_ALIGN, WITHOUT_PRIORS
+from latentarm.studies.alignment.preset import ALL_PRIORS, CHOSEN, IDEAL, NO_ALIGN, WITHOUT_PRIORS
 from latentarm.studies.alignment.turning import FEW, TurningCell, TurningResult
 from latentarm.studies.hypotheses import verdicts
 
-AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1)
+AS_IN_THE_PAPER = (3.0, 2.0, 1.0, 0.4, 0.35, 0.4, 0.11, 0.1, 0.1, 0.1)
 """Means of the conditions, in their order."""
 
 
@@ -71,7 +71,7 @@ def test_near_to_ideal_is_tested_against_a_quarter_more(result):
 def test_each_decoder_is_a_family_of_its_own(result):
     """With another decoder beside it that shows nothing, the p-values stay as they are."""
     alone = compare_conditions([result()])
-    beside = compare_conditions([result(), result((1.0,) * 9, model="isometric", spread=0.1)])
+    beside = compare_conditions([result(), result((1.0,) * 10, model="isometric", spread=0.1)])
     assert [one.p_holm for one in beside if one.model == "cae"] == [one.p_holm for one in alone]
     # Where all are alike, nothing is below another, and everything near to Ideal Align.
     assert all(one.holds == ("times" in one.against) for one in beside if one.model == "isometric")
@@ -85,7 +85,7 @@ def test_one_run_cannot_be_tested_and_does_not_hold(result):
 
 
 def test_what_fails_alike_is_said_once(result):
-    means = (*AS_IN_THE_PAPER[:6], 0.5, 0.1, 0.1)  # All Priors is worse than each alone
+    means = (*AS_IN_THE_PAPER[:6], 0.5, 0.1, 0.1, 0.1)  # All Priors is worse than each alone
     said = verdicts(compare_conditions([result(means, noise=noise) for noise in (0.0, 0.5)]))[2].by_task
     assert said == {
         "plane": "not supported: All Priors not clearly below Proportional, Reversible and Consistent"
@@ -105,7 +105,7 @@ def test_targets_are_met_where_they_are(result, curve):
 
 
 def test_a_target_that_is_missed_says_where_and_by_how_much(result):
-    means = (3.0, 2.0, 1.0, 0.7, 0.35, 0.4, 0.36, 0.15, 0.1)
+    means = (3.0, 2.0, 1.0, 0.7, 0.35, 0.4, 0.36, 0.15, 0.1, 0.1)
     found = by_name(targets([result(), result(means, noise=0.5), result(means, task="pour")], [], []))
     lowest = found["All Priors has the lowest mean of the paper's conditions with few answers"]
     assert not lowest.met

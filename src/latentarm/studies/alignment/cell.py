@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from time import perf_counter
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.affine import fit_affine
@@ -11,7 +12,17 @@ from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.priors import NO_PRIORS
 from latentarm.alignment.training import FitConfig
-from latentarm.studies.alignment.preset import IDEAL, LEARNED, MANUAL, NO_ALIGN, TOOL_SPACE, Preset, Stream
+from latentarm.studies.alignment.curves import candidates, chosen
+from latentarm.studies.alignment.preset import (
+    CHOSEN,
+    IDEAL,
+    LEARNED,
+    MANUAL,
+    NO_ALIGN,
+    TOOL_SPACE,
+    Preset,
+    Stream,
+)
 from latentarm.studies.alignment.scene import LearnedDecoder, Scene, scene_of
 from latentarm.types import FloatArray
 
@@ -92,6 +103,14 @@ def _measure(cell: Cell, scene: Scene) -> CellResult:
     alignments = [scene.in_tool_space(answers) for answers in few]
     learn_s[TOOL_SPACE] = perf_counter() - began
     errors[TOOL_SPACE] = scene.errors(alignments)
+    began = perf_counter()
+    asked = [
+        said[np.array(chosen(scene.chain, said.motions, min(preset.answers, len(said))))]
+        for said in candidates(scene, cell.noise)
+    ]
+    alignments = [scene.in_tool_space(answers) for answers in asked]
+    learn_s[CHOSEN] = perf_counter() - began
+    errors[CHOSEN] = scene.errors(alignments)
     began = perf_counter()
     ideal = scene.learn(
         ask(preset.ideal_answers)[: preset.ideal_runs], ideal_config(preset), runs[: preset.ideal_runs]

@@ -11,13 +11,12 @@ from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.queries import TOO_FEW, Design, StoppingRule, next_motion
 from latentarm.alignment.training import FitConfig
 from latentarm.kinematics.chain import Chain
-from latentarm.studies.alignment.preset import ALL_PRIORS, TOOL_SPACE, Preset, Stream
+from latentarm.studies.alignment.preset import ALL_PRIORS, CHOSEN, TOOL_SPACE, Preset, Stream
 from latentarm.studies.alignment.scene import LearnedDecoder, Scene, scene_of
 from latentarm.types import FloatArray
 
 PRIORS_AT_RANDOM: Final = f"{ALL_PRIORS}, at random"
 AT_RANDOM: Final = f"{TOOL_SPACE}, at random"
-CHOSEN: Final = f"{TOOL_SPACE}, chosen"
 
 CHOICES: Final = (PRIORS_AT_RANDOM, AT_RANDOM, CHOSEN)
 """What is learned, and how questions are chosen; the last is what `latentarm align` does."""
@@ -73,10 +72,7 @@ def measure_curve(cell: CurveCell) -> CurveResult:
 
 def _measure(cell: CurveCell) -> CurveResult:
     scene, sizes = scene_of(cell.learned), cell.preset.curves
-    said = [
-        scene.ask(sizes.candidates, cell.noise, Stream.CANDIDATES, Stream.CANDIDATE_ANSWERS, run)
-        for run in range(cell.preset.runs)
-    ]
+    said = candidates(scene, cell.noise)
     most = min(len(said[0]), max(sizes.answers))
     orders = [chosen(scene.chain, answers.motions, most) for answers in said]
 
@@ -107,6 +103,20 @@ def _measure(cell: CurveCell) -> CurveResult:
         stopped_after=np.array(after, dtype=np.float64),
         stopped_at=scene.errors(stopped),
     )
+
+
+def candidates(scene: Scene, noise: float) -> list[Answers]:
+    """For each run, motions that may be asked about, and what would be answered.
+
+    Args:
+        scene: the decoder and the person.
+        noise: coefficient of variation of the answers.
+    """
+    preset = scene.learned.cell.preset
+    return [
+        scene.ask(preset.curves.candidates, noise, Stream.CANDIDATES, Stream.CANDIDATE_ANSWERS, run)
+        for run in range(preset.runs)
+    ]
 
 
 def chosen(chain: Chain, motions: Motions, most: int) -> list[int]:

@@ -8,10 +8,10 @@ import numpy as np
 from latentarm.metrics.looks import look_of
 from latentarm.simulation.drive_figures import GOAL_COLOURS, GOAL_MARKERS, OUTCOMES, outcome_lines
 from latentarm.studies.alignment.cell import CellResult
-from latentarm.studies.alignment.curves import CHOICES, CHOSEN, PRIORS_AT_RANDOM, CurveResult
+from latentarm.studies.alignment.curves import CHOICES, PRIORS_AT_RANDOM, CurveResult
 from latentarm.studies.alignment.drives import DRIVEN, Driven, DrivesResult
 from latentarm.studies.alignment.hypotheses import RANDOM_ANSWERS
-from latentarm.studies.alignment.preset import CONDITIONS
+from latentarm.studies.alignment.preset import CHOSEN, CONDITIONS
 from latentarm.studies.alignment.rows import ENCODED
 from latentarm.studies.drawing import draw_series, name_series, plain_ticks, title
 from latentarm.studies.statistics import bootstrap_interval, reach_of_interval

@@ -20,9 +20,10 @@ from typing import Final
 
 from latentarm.metrics.looks import look_of
 from latentarm.studies.alignment.cell import CellResult
-from latentarm.studies.alignment.curves import CHOSEN, PRIORS_AT_RANDOM, CurveResult
+from latentarm.studies.alignment.curves import PRIORS_AT_RANDOM, CurveResult
 from latentarm.studies.alignment.preset import (
     ALL_PRIORS,
+    CHOSEN,
     FEW_ANSWERS,
     IDEAL,
     MANUAL,
@@ -130,7 +131,8 @@ def targets(
     for model in dict.fromkeys(result.cell.model for result in results):
         of_model = [result for result in results if result.cell.model == model]
         found += [
-            _near_ideal(of_model),
+            _near_ideal(of_model, TOOL_SPACE),
+            _near_ideal(of_model, CHOSEN),
             _lowest(of_model, "mean", lambda errors: float(errors.mean())),
             _lowest(of_model, "SD", lambda errors: float(errors.std(ddof=1)) if len(errors) > 1 else 0.0),
             _single_priors(of_model),
@@ -181,14 +183,14 @@ def _single_priors(results: Sequence[CellResult]) -> Target:
     )
 
 
-def _near_ideal(results: Sequence[CellResult]) -> Target:
+def _near_ideal(results: Sequence[CellResult], condition: str) -> Target:
     ratios = {
-        _place(result): float(result.errors[TOOL_SPACE].mean() / result.errors[IDEAL].mean())
+        _place(result): float(result.errors[condition].mean() / result.errors[IDEAL].mean())
         for result in results
     }
     missed = [f"{place} {ratio:.2f}" for place, ratio in ratios.items() if ratio > NEAR]
     return Target(
-        f"{TOOL_SPACE} has at most {NEAR:g} times the error of {IDEAL}, {_model(results)}",
+        f"{condition} has at most {NEAR:g} times the error of {IDEAL}, {_model(results)}",
         not missed,
         f"{min(ratios.values()):.2f} to {max(ratios.values()):.2f} times; {_counted(len(ratios), missed)}",
     )

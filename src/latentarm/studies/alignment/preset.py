@@ -171,7 +171,9 @@ WITHOUT_PRIORS: Final = "No Priors"
 ALL_PRIORS: Final = "All Priors"
 IDEAL: Final = "Ideal Align"
 TOOL_SPACE: Final = "Tool Space"
-"""What `latentarm align` does."""
+"""What `latentarm align` learns, from motions drawn at random."""
+CHOSEN: Final = f"{TOOL_SPACE}, chosen"
+"""The same from motions that it chooses: what `latentarm align` does."""
 
 SINGLE_PRIORS: Final[Mapping[str, Priors]] = {
     "Proportional": replace(NO_PRIORS, proportional=Priors().proportional),
@@ -186,7 +188,7 @@ LEARNED: Final[Mapping[str, Priors]] = {WITHOUT_PRIORS: NO_PRIORS, **SINGLE_PRIO
 FEW_ANSWERS: Final = (MANUAL, *LEARNED, TOOL_SPACE)
 """The conditions that get the same few answers."""
 
-CONDITIONS: Final = (NO_ALIGN, *FEW_ANSWERS, IDEAL)
+CONDITIONS: Final = (NO_ALIGN, *FEW_ANSWERS, CHOSEN, IDEAL)
 """All conditions, in the order of tables and figures."""
 
 

@@ -11,9 +11,9 @@ from threadpoolctl import threadpool_limits
 from latentarm.alignment.training import FitConfig
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.studies.alignment.cell import CellResult
-from latentarm.studies.alignment.curves import CHOSEN, CurveResult
+from latentarm.studies.alignment.curves import CurveResult
 from latentarm.studies.alignment.drives import DrivesResult
-from latentarm.studies.alignment.preset import ALL_PRIORS, CONDITIONS, LEARNED, Stream, under
+from latentarm.studies.alignment.preset import ALL_PRIORS, CHOSEN, CONDITIONS, LEARNED, Stream, under
 from latentarm.studies.alignment.scene import LearnedDecoder, scene_of
 from latentarm.studies.alignment.turning import TurningResult
 from latentarm.types import FloatArray, Row

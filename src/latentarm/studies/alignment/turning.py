@@ -13,8 +13,8 @@ from latentarm.alignment.training import FitConfig
 from latentarm.kinematics.chain import Chain
 from latentarm.operators.preference import Imprecise, Preference
 from latentarm.studies.alignment.cell import ideal_config
-from latentarm.studies.alignment.curves import AT_RANDOM, CHOSEN, PRIORS_AT_RANDOM, chosen
-from latentarm.studies.alignment.preset import IDEAL, Preset, Stream
+from latentarm.studies.alignment.curves import AT_RANDOM, PRIORS_AT_RANDOM, chosen
+from latentarm.studies.alignment.preset import CHOSEN, IDEAL, Preset, Stream
 from latentarm.studies.alignment.scene import LearnedDecoder, Scene, scene_of
 from latentarm.studies.streams import generator
 from latentarm.tasks.pouring.tasks import FAR_LEFT_M, NEAR_RIGHT_M
