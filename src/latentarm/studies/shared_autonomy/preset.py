@@ -76,7 +76,7 @@ class Ablation:
 
     seeds: int = 3
     drives: int = 20
-    weights: tuple[float, ...] = (0.0, 0.3, 5.0, 20.0)
+    weights: tuple[float, ...] = (0.0, 0.3, 3.0, 10.0)
     sharpness: tuple[float, ...] = (1.0, 4.0, 8.0)
     contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")
     without_no_goal: bool = True
@@ -96,7 +96,8 @@ class Preset:
         epochs: passes over the training pairs, at most.
         batch_size: pairs per step.
         hidden: units of each hidden layer.
-        state_noise_rad: SD of the noise on training states, rad.
+        state_noise_rad: SD of the noise on training states, rad. Help leaves the arm within about this much of a
+            cup, and there the decoder has to do what was demonstrated at the cup; see docs/shared_autonomy.md.
         kl_weight: lambda_1 of equation 16, for the cVAE.
         entropy_weight: lambda_2 of equation 16.
         betas: rationalities of people of fixed expertise, 1/m²; the first and the last are the extremes.
@@ -111,14 +112,14 @@ class Preset:
     name: str
     demonstrations: int = 60
     test_demonstrations: int = 20
-    seeds: int = 5
+    seeds: int = 10
     drives: int = 24
-    epochs: int = 40
+    epochs: int = 60
     batch_size: int = 100
     hidden: tuple[int, ...] = (64, 64)
-    state_noise_rad: float = 0.02
+    state_noise_rad: float = 0.05
     kl_weight: float = 0.05
-    entropy_weight: float = 5.0
+    entropy_weight: float = 3.0
     betas: tuple[float, ...] = (0.0, 10.0, 30.0, 75.0, 1000.0, 10000.0)
     learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 2.5, "fast": 25.0})
     slopes: tuple[float, ...] = (0.5, 8.0, 80.0, 250.0)
