@@ -54,6 +54,24 @@ def assert_well_drawn(figure, width_mm):
     assert any("simulated" in word for word in words_of(figure))
 
 
+def test_no_interval_is_cut_at_the_top(tmp_path):
+    """The highest of each row of panels that share their axis is in the last one, drawn after the others."""
+    preset = PRESETS["smoke"]
+    results = results_of(tmp_path, preset)
+    for outcome in results[-1].outcomes:
+        outcome.figures["final_state_error"][0] += 5.0
+    for draw in (expertise_figure, changes_figure, models_figure, slopes_figure):
+        figure = draw(results, preset, tuple(TASKS))
+        for axes in figure.axes:
+            tops = [
+                segment[:, 1].max()
+                for container in axes.containers
+                for bars in container.lines[2]
+                for segment in bars.get_segments()
+            ]
+            assert axes.get_ylim()[1] >= max(tops, default=0.0)
+
+
 @pytest.mark.parametrize("tasks", [tuple(TASKS), ("panda_two_cups",)])
 @pytest.mark.parametrize("preset", PRESETS.values(), ids=PRESETS.keys())
 def test_every_figure_fits_its_column_and_names_the_methods(tmp_path, preset, tasks):

@@ -71,10 +71,10 @@ def expertise_figure(results: Sequence[CellResult], preset: Preset, tasks: Seque
         title(column[0], look_of(task).label)
         for axes, measure in zip(column, EXPERTISE_MEASURES, strict=True):
             draw_over(axes, outcomes, people, measure)
-            axes.set_ylim(bottom=0.0)
             tidy(axes)
         names = [RATIONALITIES.get(preset.betas[place], f"{preset.betas[place]:g}") for place in named]
         column[-1].set_xticks(named, names)
+    _from_zero(panels.flat)
     _label(panels[-1], x="rationality β (1/m²)")
     for axes, name in zip(panels[:, 0], EXPERTISE_MEASURES.values(), strict=True):
         _label([axes], y=name)
@@ -93,6 +93,7 @@ def changes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequenc
     for (error, *beliefs), task in zip(panels, tasks, strict=True):
         outcomes = outcomes_of(results, task, MODEL)
         _draw_changes(error, outcomes, preset)
+        _from_zero([error])
         title(error, look_of(task).label)
         _label([error], y="final state error")
         for axes, after_s in zip(beliefs, drawn, strict=True):
@@ -148,9 +149,9 @@ def slopes_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence
                 axes, outcomes_of(results, task, model), [person.label for person in people.values()], MEASURE
             )
             axes.set_xticks(np.arange(len(people)), [f"{slope:.3g}" for slope in people])
-            axes.set_ylim(bottom=0.0)
             tidy(axes)
             title(axes, f"{look_of(model).label}, {look_of(task).label}")
+    _from_zero(panels.flat)
     _label(panels[:, 0], y="final state error")
     _label(panels[-1], x="slope m (1/m² per s)")
     name_series(figure, panels[0, 0])
@@ -169,6 +170,7 @@ def models_figure(results: Sequence[CellResult], preset: Preset, tasks: Sequence
         for axes, model in zip(line, models, strict=True):
             _draw_changes(axes, outcomes_of(results, task, model), preset)
             title(axes, f"{look_of(model).label}, {look_of(task).label}")
+    _from_zero(panels.flat)
     _label(panels[:, 0], y="final state error")
     _label(panels[-1], x="change after (s)")
     name_series(figure, panels[0, 0])
@@ -318,7 +320,6 @@ def _draw_changes(axes: "Axes", outcomes: Outcomes, preset: Preset) -> None:
     """Final error over the time of the change."""
     people = [changing(after_s).label for after_s in preset.changes_s]
     draw_over(axes, outcomes, people, "final_state_error", np.array(preset.changes_s))
-    axes.set_ylim(bottom=0.0)
     tidy(axes)
 
 
@@ -334,6 +335,12 @@ def _figure(height_mm: float, name: str, *, wide: bool = True) -> "Drawing":
     figure = new_figure(height_mm, TWO_COLUMNS_MM) if wide else new_figure(height_mm)
     figure.suptitle(name, fontsize=FONT_SIZE)
     return figure
+
+
+def _from_zero(panels: "Iterable[Axes]") -> None:
+    """Begin the y axes at zero, once all is drawn: a limit ends the fitting of panels that share it."""
+    for axes in panels:
+        axes.set_ylim(bottom=0.0)
 
 
 def _label(panels: "Iterable[Axes]", x: str = "", y: str = "") -> None:

@@ -96,8 +96,8 @@ class Preset:
         epochs: passes over the training pairs, at most.
         batch_size: pairs per step.
         hidden: units of each hidden layer.
-        state_noise_rad: SD of the noise on training states, rad. Help leaves the arm within about this much of a
-            cup, and there the decoder has to do what was demonstrated at the cup; see docs/shared_autonomy.md.
+        state_noise_rad: SD of the noise on training states, rad. Help leaves the arm within about this much
+            of a cup, and there the decoder has to do what was demonstrated at the cup.
         kl_weight: lambda_1 of equation 16, for the cVAE.
         entropy_weight: lambda_2 of equation 16.
         betas: rationalities of people of fixed expertise, 1/m²; the first and the last are the extremes.
