@@ -61,7 +61,7 @@ class Entropy:
     """
 
     weight: float
-    sharpness: float = GoalEntropy.sharpness
+    sharpness: float = 8.0
     least_progress: float = GoalEntropy.least_progress
     where: Where = GoalEntropy.where
     sees_tool: bool = True

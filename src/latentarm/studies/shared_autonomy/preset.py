@@ -77,7 +77,7 @@ class Ablation:
     seeds: int = 3
     drives: int = 20
     weights: tuple[float, ...] = (0.0, 0.3, 3.0, 10.0)
-    sharpness: tuple[float, ...] = (1.0, 4.0, 8.0)
+    sharpness: tuple[float, ...] = (1.0, 4.0, 16.0)
     contexts: tuple[Where, ...] = ("demonstrated", "any_belief", "anywhere")
     without_no_goal: bool = True
     joints_alone: bool = True
