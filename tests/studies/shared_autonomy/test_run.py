@@ -75,7 +75,7 @@ def test_every_variant_of_the_entropy_has_its_rows(done):
     assert list(names) == [
         "lambda_2 0",
         "lambda_2 2",
-        "kappa 8",
+        "kappa 4",
         "equation 15 to the letter",
         "progress of the joints alone",
         "contexts demonstrated",
