@@ -25,7 +25,7 @@ TINY = Preset(
     learners={"slow": 10.0},
     slopes=(),
     changes_s=(0.0, 1.0),
-    ablation=Ablation(seeds=2, drives=2, weights=(0.0, 2.0), sharpness=(8.0,), contexts=("demonstrated",)),
+    ablation=Ablation(seeds=2, drives=2, weights=(0.0, 2.0), sharpness=(4.0,), contexts=("demonstrated",)),
 )
 TASK = "planar_two_cups"
 
