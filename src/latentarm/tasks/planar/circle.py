@@ -8,10 +8,10 @@ from typing import final
 
 import numpy as np
 
-from latentarm.robots.planar import planar
-from latentarm.tasks.planar.motion import DEMONSTRATION_S, DESIGN, Design, PlanarMotion
+from latentarm.tasks.planar.motion import DEMONSTRATION_S
+from latentarm.tasks.planar.one_arm import OneArm
 from latentarm.tasks.planar.paths import STEP_S, Path, Timed
-from latentarm.tasks.planar.resolved_rate import Constraint, ToolPlace, curled, plane_point
+from latentarm.tasks.planar.resolved_rate import curled, plane_point
 from latentarm.types import FloatArray
 
 RADII_M = (0.06, 0.15)
@@ -24,11 +24,8 @@ _STEPS = round(DEMONSTRATION_S / STEP_S)
 
 
 @final
-class Circle(PlanarMotion):
+class Circle(OneArm):
     """Along circles about the nominal place of the tool, and between them."""
-
-    def __init__(self, design: Design = DESIGN) -> None:
-        super().__init__(planar(5), design)
 
     @property
     def name(self) -> str:
@@ -55,21 +52,6 @@ class Circle(PlanarMotion):
     def words(self) -> str:
         """See `PlanarMotion`."""
         return "move along circles and between them"
-
-    @property
-    def nominal(self) -> FloatArray:
-        """See `PlanarMotion`."""
-        return curled(self.robot)
-
-    @property
-    def closing(self) -> tuple[int, ...]:
-        """The first two joints."""
-        return (0, 1)
-
-    @property
-    def constraint(self) -> Constraint:
-        """The tool's place."""
-        return ToolPlace(self.robot)
 
     def paths(self, count: int, rng: np.random.Generator) -> Path:
         """Strokes along circles and between them, in turn."""

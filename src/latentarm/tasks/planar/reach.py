@@ -10,10 +10,10 @@ from typing import final
 
 import numpy as np
 
-from latentarm.robots.planar import planar
-from latentarm.tasks.planar.motion import DESIGN, Design, PlanarMotion, outline
+from latentarm.tasks.planar.motion import outline
+from latentarm.tasks.planar.one_arm import OneArm
 from latentarm.tasks.planar.paths import Path, Timed
-from latentarm.tasks.planar.resolved_rate import Constraint, ToolPlace, curled, plane_point
+from latentarm.tasks.planar.resolved_rate import curled, plane_point
 from latentarm.types import FloatArray
 
 DISTANCE_M = 0.3
@@ -27,11 +27,8 @@ DEPTH_M = 0.05
 
 
 @final
-class ReachRegion(PlanarMotion):
+class ReachRegion(OneArm):
     """From a start to any place of a goal region."""
-
-    def __init__(self, design: Design = DESIGN) -> None:
-        super().__init__(planar(5), design)
 
     @property
     def name(self) -> str:
@@ -62,21 +59,6 @@ class ReachRegion(PlanarMotion):
     def words(self) -> str:
         """See `PlanarMotion`."""
         return "reach into the goal region"
-
-    @property
-    def nominal(self) -> FloatArray:
-        """See `PlanarMotion`."""
-        return curled(self.robot)
-
-    @property
-    def closing(self) -> tuple[int, ...]:
-        """The first two joints."""
-        return (0, 1)
-
-    @property
-    def constraint(self) -> Constraint:
-        """The tool's place."""
-        return ToolPlace(self.robot)
 
     @property
     def duration_s(self) -> float:

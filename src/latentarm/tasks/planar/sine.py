@@ -9,10 +9,10 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.robots.planar import planar
-from latentarm.tasks.planar.motion import DEMONSTRATION_S, DESIGN, Design, PlanarMotion
+from latentarm.tasks.planar.motion import DEMONSTRATION_S
+from latentarm.tasks.planar.one_arm import OneArm
 from latentarm.tasks.planar.paths import Paced, Path, Timed, swings
-from latentarm.tasks.planar.resolved_rate import Constraint, ToolPlace, curled, plane_point
+from latentarm.tasks.planar.resolved_rate import curled, plane_point
 from latentarm.types import FloatArray
 
 AMPLITUDE_M: Final = 0.01
@@ -25,11 +25,8 @@ SWING_RAD_S: Final = (1.2, 2.4)
 
 
 @final
-class Sine(PlanarMotion):
+class Sine(OneArm):
     """Along ``y = A sin(2 pi x / wavelength)`` about the nominal place of the tool."""
-
-    def __init__(self, design: Design = DESIGN) -> None:
-        super().__init__(planar(5), design)
 
     @property
     def name(self) -> str:
@@ -55,21 +52,6 @@ class Sine(PlanarMotion):
     def words(self) -> str:
         """See `PlanarMotion`."""
         return "move along the sine wave"
-
-    @property
-    def nominal(self) -> FloatArray:
-        """See `PlanarMotion`."""
-        return curled(self.robot)
-
-    @property
-    def closing(self) -> tuple[int, ...]:
-        """The first two joints."""
-        return (0, 1)
-
-    @property
-    def constraint(self) -> Constraint:
-        """The tool's place."""
-        return ToolPlace(self.robot)
 
     def paths(self, count: int, rng: np.random.Generator) -> Path:
         """Back and forth over the wave, or at the pace ``swing`` over a part of it."""
