@@ -1,80 +1,16 @@
-"""What holds of the low-turning model whatever its weights, and what its prices are."""
-
-from dataclasses import replace
+"""What the low-turning model's prices are, and what they do."""
 
 import numpy as np
 import pytest
 import torch
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 
-from latentarm.demonstrations.split import select_episodes
 from latentarm.metrics.turning import turning as measured_turning
 from latentarm.models.batches import Batch
-from latentarm.models.homogeneous.runtime import DAMPING_M2
 from latentarm.models.low_turning.training import Around, LowTurning, narrowness, turning
 from latentarm.models.networks import group_layers
-from latentarm.models.tool_contexts import ROTATION_WEIGHT_M
 from latentarm.robots.planar import planar
 
 SMALL = {"seeds": 2, "epochs": 4, "hidden": (16,), "window": 2}
-
-coordinate = st.floats(-1.5, 1.5, allow_nan=False, width=32)
-push = st.floats(-1, 1, allow_nan=False, width=32)
-
-
-@pytest.fixture(scope="module", params=[2, 3])
-def rough(request, demonstrations):
-    """A model with arbitrary weights: its laws must not depend on training."""
-    model = LowTurning(seeds=1, epochs=1, hidden=(8,), latent_dim=request.param)
-    model.fit(select_episodes(demonstrations, range(4)))
-    rng = np.random.default_rng(request.param)
-    tensors = {
-        name: values + rng.normal(0.0, 0.8, values.shape) if name.startswith("decoder.") else values
-        for name, values in model.trained_.tensors.items()
-    }
-    model.trained_ = replace(model.trained_, tensors=tensors)
-    return model
-
-
-@settings(max_examples=60)
-@given(
-    state=arrays(np.float64, 4, elements=coordinate),
-    share=st.floats(-1.5, 1.5, allow_nan=False, width=32),
-    data=st.data(),
-)
-def test_a_share_of_a_push_is_that_share_of_the_motion(rough, state, share, data):
-    z = data.draw(arrays(np.float64, rough.latent_dim, elements=push))
-    decoder = rough.decoder(0)
-    motion = decoder.decode(z, state)
-    np.testing.assert_allclose(decoder.decode(share * z, state), share * motion, atol=1e-9)
-    np.testing.assert_array_equal(decoder.decode(0 * z, state), 0.0)
-    np.testing.assert_array_equal(decoder.decode(-z, state), -motion)
-
-
-@settings(max_examples=60)
-@given(state=arrays(np.float64, 4, elements=coordinate), data=st.data())
-def test_the_tools_speed_is_that_of_the_stick(rough, state, data):
-    z = data.draw(
-        arrays(np.float64, rough.latent_dim, elements=push).filter(lambda z: np.linalg.norm(z) > 1e-3)
-    )
-    action = rough.decoder(0).decode(z, state)
-    twist = planar(4).chain.jacobian(state) @ action * np.array([1.0] * 3 + [ROTATION_WEIGHT_M] * 3)
-    speed = np.sqrt(twist @ twist + DAMPING_M2 * action @ action)
-    full = rough.trained_.tensors["action.scale"][0]
-    assert speed == pytest.approx(full * np.linalg.norm(z), rel=1e-5)
-
-
-def test_the_encoder_finds_the_motion_again(rough, samples):
-    context = samples[0]
-    rng = np.random.default_rng(7)
-    z = rng.normal(size=(len(context), rough.latent_dim))
-    z *= rng.uniform(0.1, 0.95, (len(z), 1)) / np.linalg.norm(z, axis=1, keepdims=True)
-    action = rough.decode(z, context)[0]
-    again = rough.decode(rough.encode(context, action), context)[0]
-    lost = np.linalg.norm(again - action, axis=1) / np.linalg.norm(action, axis=1)
-    assert np.median(lost) < 0.02
 
 
 def half_circle(curve, velocity):
