@@ -17,8 +17,8 @@ RECORDINGS = FIGURES.parents[2] / "shared" / "demonstrations"
 COMMANDS = {
     "demo": ["demo"],
     "properties": ["reproduce", "properties", "--preset", "paper"],
-    "shared-autonomy": ["reproduce", "shared-autonomy", "--preset", "paper"],
-    "alignment": ["reproduce", "alignment", "--preset", "paper"],
+    "shared-autonomy": ["reproduce", "shared-autonomy", "--preset", "paper", "--seed", "2"],
+    "alignment": ["reproduce", "alignment", "--preset", "paper", "--seed", "2"],
     "compare": [
         "compare",
         "--demonstrations",

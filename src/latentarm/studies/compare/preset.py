@@ -61,7 +61,7 @@ class Preset:
     planned_pairs: int = 12
     planned_seeds: int = 2
     turned_states: int = 100
-    demonstrations: tuple[int, ...] = (1, 3, 6)
+    demonstrations: tuple[int, ...] = (3, 6)
     drives: int | None = None
     drive_limit_s: float = 300.0
 
