@@ -109,3 +109,17 @@ class StoppingRule:
             return True
         earlier, recent = history[: -self.patience], history[-self.patience :]
         return bool(earlier) and min(recent) > (1 - self.fall) * min(earlier)
+
+
+def order_of_questions(chain: Chain, motions: Motions, most: int) -> list[int]:
+    """Rows of the motions to ask about, in the order of asking; no answer changes it.
+
+    Args:
+        chain: the arm.
+        motions: that may be asked about.
+        most: how many, at most as many as there are motions.
+    """
+    design, asked = Design(chain, motions), list[int]()
+    while len(asked) < most:
+        asked.append(next_motion(design.worth(asked), asked))
+    return asked

@@ -8,6 +8,7 @@ import pytest
 
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
+from latentarm.alignment.queries import order_of_questions
 from latentarm.studies.alignment.cell import Cell, measure_cell
 from latentarm.studies.alignment.curves import (
     AT_RANDOM,
@@ -15,7 +16,6 @@ from latentarm.studies.alignment.curves import (
     CHOSEN,
     PRIORS_AT_RANDOM,
     CurveCell,
-    chosen,
     measure_curve,
 )
 from latentarm.studies.alignment.preset import (
@@ -165,7 +165,7 @@ def test_a_curve_is_the_same_again(learned, curve):
 def test_four_chosen_questions_hold_both_parts_of_reach_and_pour():
     """Where two things are meant in two places, each is asked about more than once."""
     scene = scene_of(learn_decoder(DecoderCell("reach_and_pour", "pca", TINY, 0)))
-    asked = chosen(scene.chain, scene.shown, 4)
+    asked = order_of_questions(scene.chain, scene.shown, 4)
     there = scene.preference.is_there(scene.chain.forward(scene.shown.start[asked]).position)
     assert there.sum() == 2
 

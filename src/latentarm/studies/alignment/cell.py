@@ -11,8 +11,8 @@ from latentarm.alignment.affine import fit_affine
 from latentarm.alignment.answers import Answers
 from latentarm.alignment.contract import identity
 from latentarm.alignment.priors import NO_PRIORS
+from latentarm.alignment.queries import order_of_questions
 from latentarm.alignment.training import FitConfig
-from latentarm.studies.alignment.curves import candidates, chosen
 from latentarm.studies.alignment.preset import (
     CHOSEN,
     IDEAL,
@@ -105,8 +105,8 @@ def _measure(cell: Cell, scene: Scene) -> CellResult:
     errors[TOOL_SPACE] = scene.errors(alignments)
     began = perf_counter()
     asked = [
-        said[np.array(chosen(scene.chain, said.motions, min(preset.answers, len(said))))]
-        for said in candidates(scene, cell.noise)
+        said[np.array(order_of_questions(scene.chain, said.motions, min(preset.answers, len(said))))]
+        for said in scene.candidates(cell.noise)
     ]
     alignments = [scene.in_tool_space(answers) for answers in asked]
     learn_s[CHOSEN] = perf_counter() - began

@@ -7,11 +7,10 @@ from typing import Final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from latentarm.alignment.answers import Answers, Motions
-from latentarm.alignment.queries import TOO_FEW, Design, StoppingRule, next_motion
+from latentarm.alignment.answers import Answers
+from latentarm.alignment.queries import TOO_FEW, StoppingRule, order_of_questions
 from latentarm.alignment.training import FitConfig
-from latentarm.kinematics.chain import Chain
-from latentarm.studies.alignment.preset import ALL_PRIORS, CHOSEN, TOOL_SPACE, Preset, Stream
+from latentarm.studies.alignment.preset import ALL_PRIORS, CHOSEN, TOOL_SPACE, Preset
 from latentarm.studies.alignment.scene import LearnedDecoder, Scene, scene_of
 from latentarm.types import FloatArray
 
@@ -72,9 +71,9 @@ def measure_curve(cell: CurveCell) -> CurveResult:
 
 def _measure(cell: CurveCell) -> CurveResult:
     scene, sizes = scene_of(cell.learned), cell.preset.curves
-    said = candidates(scene, cell.noise)
+    said = scene.candidates(cell.noise)
     most = min(len(said[0]), max(sizes.answers))
-    orders = [chosen(scene.chain, answers.motions, most) for answers in said]
+    orders = [order_of_questions(scene.chain, answers.motions, most) for answers in said]
 
     def errors(orders: Sequence[Sequence[int]], count: int) -> FloatArray:
         return scene.errors(
@@ -103,28 +102,6 @@ def _measure(cell: CurveCell) -> CurveResult:
         stopped_after=np.array(after, dtype=np.float64),
         stopped_at=scene.errors(stopped),
     )
-
-
-def candidates(scene: Scene, noise: float) -> list[Answers]:
-    """For each run, motions that may be asked about, and what would be answered.
-
-    Args:
-        scene: the decoder and the person.
-        noise: coefficient of variation of the answers.
-    """
-    preset = scene.learned.cell.preset
-    return [
-        scene.ask(preset.curves.candidates, noise, Stream.CANDIDATES, Stream.CANDIDATE_ANSWERS, run)
-        for run in range(preset.runs)
-    ]
-
-
-def chosen(chain: Chain, motions: Motions, most: int) -> list[int]:
-    """Rows of the questions of one run, in the order of asking; no answer changes it."""
-    design, asked = Design(chain, motions), list[int]()
-    while len(asked) < most:
-        asked.append(next_motion(design.worth(asked), asked))
-    return asked
 
 
 def _stop(scene: Scene, said: Answers, order: Sequence[int]) -> int:

@@ -177,6 +177,14 @@ class Scene:
         person = Imprecise(self.preference, noise, generator(cell.seed, cell.task, answers, run))
         return Answers(motions, person.inputs(motions))
 
+    def candidates(self, noise: float) -> list[Answers]:
+        """For each run, motions that may be asked about, and what would be answered."""
+        preset = self.learned.cell.preset
+        return [
+            self.ask(preset.curves.candidates, noise, Stream.CANDIDATES, Stream.CANDIDATE_ANSWERS, run)
+            for run in range(preset.runs)
+        ]
+
     def learn(self, answers: Sequence[Answers], config: FitConfig, seeds: Sequence[int]) -> FittedAlignments:
         """An alignment for each of S runs, from the seeds' first weights."""
         return fit_alignments(self.model, self.chain, answers, self.unlabelled, config, seeds=seeds)

@@ -9,11 +9,12 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.meaning import rotations
+from latentarm.alignment.queries import order_of_questions
 from latentarm.alignment.training import FitConfig
 from latentarm.kinematics.chain import Chain
 from latentarm.operators.preference import Imprecise, Preference
 from latentarm.studies.alignment.cell import ideal_config
-from latentarm.studies.alignment.curves import AT_RANDOM, PRIORS_AT_RANDOM, chosen
+from latentarm.studies.alignment.curves import AT_RANDOM, PRIORS_AT_RANDOM
 from latentarm.studies.alignment.preset import CHOSEN, IDEAL, Preset, Stream
 from latentarm.studies.alignment.scene import LearnedDecoder, Scene, scene_of
 from latentarm.studies.streams import generator
@@ -127,7 +128,8 @@ def _measure(cell: TurningCell) -> TurningResult:
     many = preset.turning.ideal_people
     much = [_ask(cell, scene, number, preset.ideal_answers) for number in range(many)]
     random = [one[np.arange(min(preset.answers, len(one)))] for one in said]
-    orders = [np.array(chosen(scene.chain, one.motions, min(preset.answers, len(one)))) for one in said]
+    asked = min(preset.answers, len(said[0]))
+    orders = [np.array(order_of_questions(scene.chain, one.motions, asked)) for one in said]
     best = [one[order] for one, order in zip(said, orders, strict=True)]
     learned = {
         PRIORS_AT_RANDOM: scene.learn(random, FitConfig(steps=preset.steps), range(len(random))).alignments,
