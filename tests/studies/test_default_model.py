@@ -1,5 +1,6 @@
 """The rule for the default model, by hand."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from latentarm.errors import UserError
 from latentarm.models.catalogue import KINDS
-from latentarm.studies.default_model import Candidate, choose
+from latentarm.studies.default_model import Candidate, choose, leader, may_stay, success_interval
 
 STARTS, PEOPLE = 30, 4
 
@@ -70,3 +71,18 @@ def test_drives_that_differ_are_not_compared():
         choose([candidate("scl"), Candidate(other.kind, other.success[:9], other.time_s[:9], 1.0)])
     with pytest.raises(UserError, match="same people"):
         choose([])
+
+
+def test_a_candidate_that_cannot_reach_the_best_any_more_may_not_stay():
+    best, behind, close = candidate("scl"), candidate("cae", failed=9), candidate("cvae", failed=1)
+    assert leader([behind, best, close]) is best
+    assert not may_stay(behind, best)
+    assert may_stay(close, best)
+    assert choose([best, behind, close])[0].kept == ("scl", "cvae")
+
+
+def test_further_success_never_lowers_the_interval():
+    before = candidate("cae", failed=20)
+    after = replace(before, success=before.success | (np.arange(STARTS) % 3 == 0)[:, None])
+    assert success_interval(after)[0] >= success_interval(before)[0]
+    assert success_interval(after)[1] >= success_interval(before)[1]

@@ -50,6 +50,22 @@ class Step:
     kept: tuple[str, ...]
 
 
+def success_interval(candidate: Candidate) -> tuple[float, float]:
+    """95 % bootstrap interval, over starts, of the share of people who succeed."""
+    low, high = bootstrap_interval(candidate.success.mean(axis=1))
+    return float(low), float(high)
+
+
+def leader(candidates: Sequence[Candidate]) -> Candidate:
+    """The candidate with the highest success; the first of them where several have it."""
+    return max(candidates, key=lambda one: float(one.success.mean()))
+
+
+def may_stay(candidate: Candidate, best: Candidate) -> bool:
+    """Whether the first step keeps a candidate where another one has the highest success."""
+    return success_interval(candidate)[1] >= success_interval(best)[0] - ROUNDING
+
+
 _Verdict = tuple[Sequence[bool], Sequence[str]]
 """Whether each candidate stays, and the figure that says so."""
 
@@ -81,12 +97,11 @@ def choose(candidates: Sequence[Candidate]) -> tuple[Step, ...]:
 
 
 def _successful(candidates: Sequence[Candidate]) -> _Verdict:
-    means = [float(one.success.mean()) for one in candidates]
-    ends = [tuple(map(float, bootstrap_interval(one.success.mean(axis=1)))) for one in candidates]
-    lowest, highest = ends[int(np.argmax(means))]
+    best = leader(candidates)
+    ends = [(float(one.success.mean()), *success_interval(one)) for one in candidates]
     return (
-        [low <= highest + ROUNDING and high >= lowest - ROUNDING for low, high in ends],
-        [f"{mean:.3f} [{low:.3f}, {high:.3f}]" for mean, (low, high) in zip(means, ends, strict=True)],
+        [may_stay(one, best) for one in candidates],
+        [f"{mean:.3f} [{low:.3f}, {high:.3f}]" for mean, low, high in ends],
     )
 
 
