@@ -45,7 +45,7 @@ def test_the_page_has_every_part(tmp_path, tasks):
     assert f"All {len(report.tests)} tests" in page
     assert page.count("<details>") == page.count("</details>") == 2 * len(tasks) + 1
     assert page.index(f"({tasks[0]}.png)") < page.index("## In short") < page.index("(models.png)")
-    for variant in ("lambda_2 0.3", "kappa 8", LETTER, "contexts any belief"):
+    for variant in ("lambda_2 0.3", "kappa 4", LETTER, "contexts any belief"):
         assert page.count(f"| {variant} |") == len(tasks)
     assert set(report.figures) == set(STUDY.figures) - (set(TASKS) - set(tasks))
 
