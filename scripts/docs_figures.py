@@ -1,9 +1,9 @@
 """Redraw the figures of ``docs/figures`` by the commands that the pages name.
 
-``python scripts/docs_figures.py demo alignment`` redraws those of some commands. By estimate all take about
-an hour and a half of one core: demo 4 minutes, properties 40, shared-autonomy 20, alignment 20.
-``compare`` needs the recordings that are not part of the repository, and 4 hours of one core: it runs only
-if named.
+``python scripts/docs_figures.py demo alignment`` redraws those of some commands. All take about an
+hour of one core: demo 4 minutes, properties 11, shared-autonomy 19, alignment 27 (measured).
+``compare`` needs the recordings that are not part of the repository, and about two hours of one core: it runs
+only if named.
 """
 
 import shutil
@@ -23,7 +23,8 @@ COMMANDS = {
         "compare",
         "--demonstrations",
         *(str(RECORDINGS / name) for name in ("pick_banana", "pick_cereal", "pour_coffee")),
-        *["--noise", "0.01", "0.1", "--preset", "paper"],
+        *["--noise", "0.01", "--models", "pca", "ae", "vae", "cae", "cvae", "scl", "scn", "odd_cae"],
+        *["homogeneous", "low_turning", "flow"],
     ],
 }
 PREFIXES = {
