@@ -8,6 +8,7 @@ from latentarm.errors import UserError
 from latentarm.operators.boltzmann import BoltzmannConfig, OneStep
 from latentarm.operators.foresight import KnowsTheArm
 from latentarm.operators.imagination import Settled
+from latentarm.operators.loop_limits import UNLIMITED, LoopLimits
 from latentarm.operators.moment import Moment
 from latentarm.operators.person import Person, SimulatedPerson
 from latentarm.robots.catalogue import load_robot
@@ -30,7 +31,7 @@ def outlook(controller, mode=0, time_s=0.0, **changes):
     """What they could do here, and how likely each is."""
     decision = OneStep(replace(BoltzmannConfig(), decision_s=0.05, **changes), period_s=0.05)
     moment = Moment(HERE, mode, AHEAD, np.zeros(controller.input_dim))
-    knows, rng = Settled(KnowsTheArm(PLANAR.chain)), np.random.default_rng(0)
+    knows, rng = Settled(KnowsTheArm(PLANAR.chain, UNLIMITED)), np.random.default_rng(0)
     for _ in range(round(time_s / 0.05)):
         decision.decide(moment, controller, knows, rng)
     return decision.outlook(moment, controller, knows, rng)
@@ -93,8 +94,8 @@ def test_a_learner_is_at_each_moment_as_rational_as_they_have_become(one_mode):
     for time_s in (0.0, 0.5, 3.0):
         now = outlook(one_mode, time_s=time_s, beta=10.0, beta_per_s=40.0)
         same = outlook(one_mode, beta=10.0 + 40.0 * time_s)
-        assert now.density.value == pytest.approx(same.density.value)
-        assert now.rest == pytest.approx(same.rest)
+        assert now.push == pytest.approx(same.push, abs=1e-3)
+        assert now.rest == pytest.approx(same.rest, abs=1e-3)
 
 
 def test_a_learner_begins_at_random_and_ends_near_optimal_and_forgets_between_drives(one_mode):
@@ -130,6 +131,31 @@ def test_at_the_target_a_rational_one_lets_go_even_if_the_decoder_drifts(planar,
     drifting = Drifts([0.5 * np.eye(planar.dof)[:2]])
     given = operator(beta=np.inf).act(HERE, drifting, 0, pose_after(0.0), np.random.default_rng(0))
     assert not given.u.any()
+
+
+def test_who_knows_the_arm_knows_how_fast_it_may_go(planar, one_mode):
+    fast = type(one_mode)([2.0 * np.eye(planar.dof)[:2]])
+    rates = 2.0 * disc()
+    slowed = rates * (0.5 / np.maximum(np.abs(rates).max(axis=1, keepdims=True), 0.5))
+    reached = planar.chain.forward(BENT + 0.5 * slowed @ np.eye(planar.dof)[:2]).position
+    for away_rad in (0.1, 1.0):
+        target = pose_after([away_rad, 0.0, 0.0, 0.0, 0.0])
+        knows, moment = KnowsTheArm(planar.chain, LoopLimits(speed=0.5)), Moment(HERE, 0, target, np.zeros(2))
+        decision = OneStep(BoltzmannConfig(rotation_weight=0.0), period_s=0.05)
+        seen = decision.outlook(moment, fast, Settled(knows), np.random.default_rng(0))
+        nearest = np.linalg.norm(reached - target.position, axis=1).min()
+        assert seen.left_m == pytest.approx(nearest, abs=0.05 * seen.rest_m)
+
+
+@pytest.mark.parametrize("dead_zone", [0.02, 0.3])
+def test_nobody_means_a_push_that_the_loop_takes_for_rest(planar, one_mode, dead_zone):
+    person = SimulatedPerson(planar, Person(), 0.1, LoopLimits(dead_zone))
+    target, rng = pose_after([0.02, -0.02, 0.0, 0.0, 0.0]), np.random.default_rng(0)
+    given = np.stack([person.act(HERE, one_mode, 0, target, rng).u for _ in range(200)])
+    length = np.linalg.norm(given, axis=1)
+    assert ((length == 0.0) | (length > dead_zone)).all()
+    assert (length == 0.0).any()
+    assert (length > dead_zone).any()
 
 
 def test_an_input_is_held_until_the_next_decision(one_mode):

@@ -5,6 +5,7 @@ from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.operators.boltzmann import BoltzmannConfig
 from latentarm.operators.expectation import Expectation
+from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.person import Person, SimulatedPerson
 from latentarm.operators.planning import PlanningConfig
 from latentarm.robots.planar import planar
@@ -38,14 +39,22 @@ class Driven(Controller):
         return 0.5 * np.stack([z[..., 0], second], axis=-1)
 
 
-def driven(operator, controller, target, seconds, seed=0):
+class Drifting(Driven):
+    """The first joint drifts off as soon as the stick is pushed."""
+
+    def action(self, z, context, mode):
+        return super().action(z, context, mode) + np.array([0.1, 0.0])
+
+
+def driven(operator, controller, target, seconds, seed=0, dead_zone=0.0):
     """Where the arm ends, and every input."""
     rng, state, inputs = np.random.default_rng(seed), START, []
     operator.reset()
     for _ in range(round(seconds / PERIOD_S)):
         given = operator.act(Context(state, np.zeros(0)), controller, 0, target, rng)
         inputs.append(given.u)
-        state = state + PERIOD_S * controller.action(given.u, Context(state, np.zeros(0)), 0)
+        if np.linalg.norm(given.u) > dead_zone:
+            state = state + PERIOD_S * controller.action(given.u, Context(state, np.zeros(0)), 0)
     return state, np.array(inputs)
 
 
@@ -90,6 +99,16 @@ def test_a_plan_comes_to_its_end():
 
     _, inputs = driven(planner(), Useless(True), target, 5.0)
     assert len(np.unique(inputs, axis=0)) > 1
+
+
+@pytest.mark.parametrize("dead_zone", [0.02, 0.2])
+def test_who_plans_knows_which_pushes_are_taken_for_rest(dead_zone):
+    target = ARM.chain.forward(START + np.array([0.0, 0.5]))
+    certain = Person(BoltzmannConfig(beta=1e9), plans=PlanningConfig())
+    person = SimulatedPerson(ARM, certain, PERIOD_S, LoopLimits(dead_zone))
+    came, inputs = driven(person, Drifting(True), target, 12.0, dead_zone=dead_zone)
+    assert distance(came, target) < 0.02
+    assert np.linalg.norm(inputs, axis=1).max() <= 1.0 + 1e-9
 
 
 def test_the_same_randomness_gives_the_same_drive():

@@ -129,6 +129,11 @@ class Step:
         return self._config.dead_zone
 
     @property
+    def joint_speed(self) -> FloatArray:
+        """(n,), how fast each joint may move at most, rad/s."""
+        return self._stack.bounds.speed
+
+    @property
     def mode(self) -> int:
         """Index of the controller's mode."""
         return self._mode

@@ -8,10 +8,9 @@ import numpy as np
 
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
-from latentarm.kinematics.rotations import angle_between
+from latentarm.kinematics.rotations import pose_error
 from latentarm.operators.decision import Decision
 from latentarm.operators.density import CostModel, InputDensity, Lattice
-from latentarm.operators.foresight import Foresight
 from latentarm.operators.imagination import Imagination
 from latentarm.operators.moment import Moment
 from latentarm.operators.rationality import boltzmann
@@ -80,17 +79,15 @@ class Outlook:
     """What a simulated person can do at one moment.
 
     Attributes:
-        foresight: where they expect inputs to lead.
-        density: of inputs in the present mode.
+        push_to: (d,), where they would push the stick in the present mode.
         left_m: how far from the target the best of some inputs leaves the tool, in any mode, m.
         rest_m: how far it is now, m.
-        push: probability of pushing the stick somewhere.
+        push: probability of pushing the stick.
         rest: of letting go.
         switch: of asking for the next mode. The three sum to one.
     """
 
-    foresight: Foresight
-    density: InputDensity
+    push_to: FloatArray
     left_m: float
     rest_m: float
     push: float
@@ -106,8 +103,9 @@ class OneStep(Decision):
 
         p(u) ∝ exp(-beta(t) ‖g* - Psi(s + phi(f(u, c), c) dt)‖²)
 
-    over all inputs of length 1 at most (see `latentarm.operators.density`), with the person's own
-    `Foresight` in place of Psi and phi where they do not know these. Distance between poses is
+    over all inputs of length 1 at most that the loop does not take for rest (see
+    `latentarm.operators.density`), with the person's own `Foresight` in place of Psi and phi where they do
+    not know these. Distance between poses is
     ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks one step ahead only, as in the paper:
     they can get stuck where no single input brings the tool closer. ``beta(t)`` counts from `reset`, by
     calls of `decide`.
@@ -122,16 +120,18 @@ class OneStep(Decision):
     Args:
         config: how the simulated person thinks.
         period_s: time between calls of `decide`, s.
+        dead_zone: length of an input up to which the loop takes it for rest, in [0, 1).
 
     Raises:
         UserError: the period is not positive and finite.
     """
 
-    def __init__(self, config: BoltzmannConfig, period_s: float) -> None:
+    def __init__(self, config: BoltzmannConfig, period_s: float, dead_zone: float = 0.0) -> None:
         if not 0 < period_s < np.inf:
             raise UserError(f"The time between inputs must be positive and finite, not {period_s} s.")
         self._config = config
         self._period_s = period_s
+        self._dead_zone = dead_zone
         self._hold_calls = max(round(config.decision_s / period_s), 1)
         # The step that asks for the mode already has a zero input.
         self._switch_calls = max(round(config.switch_s / period_s), 1)
@@ -154,7 +154,7 @@ class OneStep(Decision):
         """Hold the input of the last decision, or decide again."""
         if self.holding:
             return self._hold()
-        return self.take(self.outlook(moment, controller, imagination, rng), moment, controller, rng)
+        return self.take(self.outlook(moment, controller, imagination, rng), rng)
 
     def outlook(
         self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
@@ -162,37 +162,46 @@ class OneStep(Decision):
         """Equation 24 at a moment."""
         config, mode = self._config, moment.mode
         beta = config.beta + config.beta_per_s * self._calls * self._period_s
-        lattice = Lattice.of(controller.input_dim, rng)
+        lattice = Lattice.of(controller.input_dim, rng, self._dead_zone)
         inputs = np.concatenate([np.zeros((1, lattice.axes)), lattice.nodes])
         modes = range(len(controller.modes))
         foresight = imagination.foresight(rng)
-        cost = self._costs(inputs, moment, controller, modes, foresight)
-        models = [CostModel(lattice, one[1:]) for one in cost]
-        density = InputDensity(models[mode], beta)
-        best = np.fmin(cost[:, 0], [model.least for model in models])
+
+        def residuals(tried: FloatArray, in_modes: Sequence[int]) -> FloatArray:
+            """(M, K, 6), m, what K inputs leave in each of M modes; a radian counts `rotation_weight`."""
+            reached = foresight(tried, moment.context, controller, in_modes, config.horizon_s)
+            return pose_error(moment.target, reached) * np.repeat([1.0, config.rotation_weight], 3)
+
+        left = residuals(inputs, modes)
+        models = [CostModel(lattice, one[1:]) for one in left]
+        draws = InputDensity(models[mode], beta).draw(
+            lambda tried: np.square(residuals(tried, (mode,))[0]).sum(axis=1), rng
+        )
+        # What is best by a model is looked at too: its error may be large.
+        tops = residuals(np.stack([model.best for model in models]), modes)[modes, modes]
+        best = np.fmin.reduce(np.square(np.concatenate([left, tops[:, None]], axis=1)).sum(axis=2), axis=1)
+        best[mode] = np.fmin(best[mode], draws.least[0])
+        rest = float(np.square(left[mode, 0]).sum())
         other = np.delete(best, mode).min(initial=np.inf)
         switched = np.square(np.sqrt(other) + config.switch_cost)
         # What comes first is what they do if no cost is finite: stay, and let go.
         stay, switch = _shared(boltzmann(np.array([best[mode], switched]), beta), config.switch_share)
-        push, rest = _shared(
-            boltzmann(np.array([cost[mode, 0], density.value]), beta)[::-1], config.rest_share
+        push, let_go = _shared(boltzmann(np.array([rest, draws.value[0]]), beta)[::-1], config.rest_share)
+        return Outlook(
+            push_to=draws.inputs[0],
+            left_m=float(np.sqrt(best.min())),
+            rest_m=float(np.sqrt(rest)),
+            push=stay * push,
+            rest=stay * let_go,
+            switch=switch,
         )
-        rest_m, left_m = float(np.sqrt(cost[mode, 0])), float(np.sqrt(best.min()))
-        return Outlook(foresight, density, left_m, rest_m, stay * push, stay * rest, switch)
 
-    def take(
-        self, outlook: Outlook, moment: Moment, controller: Controller, rng: np.random.Generator
-    ) -> Input:
+    def take(self, outlook: Outlook, rng: np.random.Generator) -> Input:
         """Choose among what there is to do, and begin to do it."""
         chance = rng.random()
         switches = chance < outlook.switch
-        if switches or chance < outlook.switch + outlook.rest:
-            self._held = np.zeros(controller.input_dim)
-        else:
-            one = (moment.mode,)
-            self._held = outlook.density.draw(
-                lambda u: self._costs(u, moment, controller, one, outlook.foresight)[0], rng
-            )[0]
+        lets_go = switches or chance < outlook.switch + outlook.rest
+        self._held = np.zeros_like(outlook.push_to) if lets_go else outlook.push_to
         self._held_calls = self._switch_calls if switches else self._hold_calls
         return Input(self._hold().u, switch_mode=switches)
 
@@ -200,19 +209,6 @@ class OneStep(Decision):
         self._held_calls -= 1
         self._calls += 1
         return Input(self._held)
-
-    def _costs(
-        self,
-        inputs: FloatArray,
-        moment: Moment,
-        controller: Controller,
-        modes: Sequence[int],
-        foresight: Foresight,
-    ) -> FloatArray:
-        """Squared distances (M, K), m², that K inputs leave in each of M modes."""
-        reached = foresight(inputs, moment.context, controller, modes, self._config.horizon_s)
-        angle = self._config.rotation_weight * angle_between(reached.rotation, moment.target.rotation)
-        return np.square(reached.position - moment.target.position).sum(axis=-1) + np.square(angle)
 
 
 def _shared(likely: FloatArray, share: float) -> list[float]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from latentarm.control.controller import Controller
 from latentarm.kinematics.chain import Chain
+from latentarm.operators.loop_limits import LoopLimits
 from latentarm.types import Context, FloatArray, Pose
 
 Foresight = Callable[[FloatArray, Context, Controller, Sequence[int], float], Pose]
@@ -20,10 +21,12 @@ class KnowsTheArm:
 
     Args:
         chain: the arm; its first tool is looked at.
+        limits: how the loop slows the arm down, and when it takes an input for rest.
     """
 
-    def __init__(self, chain: Chain) -> None:
+    def __init__(self, chain: Chain, limits: LoopLimits) -> None:
         self._chain = chain
+        self._limits = limits
 
     def __call__(
         self,
@@ -38,6 +41,6 @@ class KnowsTheArm:
             [controller.action(controller.latent(inputs, context, m), context, m) for m in modes]
         )
         # The arm of a person who lets go stands still, whatever phi(0, c) is.
-        actions[:, ~inputs.any(axis=1)] = 0.0
+        actions[:, ~self._limits.is_push(inputs)] = 0.0
         # One call over all modes: (M, K, n).
-        return self._chain.forward(context.state + horizon_s * actions)
+        return self._chain.forward(context.state + horizon_s * self._limits.slowed(actions))

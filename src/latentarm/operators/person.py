@@ -13,6 +13,7 @@ from latentarm.operators.foresight import Foresight, KnowsTheArm
 from latentarm.operators.hand import Hand, HandConfig
 from latentarm.operators.imagination import Imagination, Settled
 from latentarm.operators.linear_guess import LinearGuess, LinearGuessConfig
+from latentarm.operators.loop_limits import UNLIMITED, LoopLimits
 from latentarm.operators.moment import Moment
 from latentarm.operators.operator import Operator
 from latentarm.operators.planning import Planning, PlanningConfig
@@ -54,14 +55,16 @@ class SimulatedPerson(Operator):
         robot: the arm.
         person: who drives it.
         period_s: time between calls of `act`, s.
+        limits: what the loop makes of inputs. They mean no push that it takes for rest, but a tremor may make
+            one so; of its limits on speed only those people know who know the arm.
 
     Raises:
         UserError: the period is not positive and finite, or too long for the hand's tremor.
     """
 
-    def __init__(self, robot: Robot, person: Person, period_s: float) -> None:
-        self._imagination = _imagination(robot, person, period_s)
-        self._decision = _decision(robot, person, period_s)
+    def __init__(self, robot: Robot, person: Person, period_s: float, limits: LoopLimits = UNLIMITED) -> None:
+        self._imagination = _imagination(robot, person, period_s, limits)
+        self._decision = _decision(robot, person, period_s, limits)
         self._hand = Hand(person.hand, period_s)
         self.reset()
 
@@ -84,13 +87,13 @@ class SimulatedPerson(Operator):
         return self._given
 
 
-def _imagination(robot: Robot, person: Person, period_s: float) -> Imagination:
+def _imagination(robot: Robot, person: Person, period_s: float, limits: LoopLimits) -> Imagination:
     if isinstance(person.imagines, LinearGuessConfig):
         return LinearGuess(robot.chain, person.imagines, period_s)
-    return Settled(person.imagines or KnowsTheArm(robot.chain))
+    return Settled(person.imagines or KnowsTheArm(robot.chain, limits))
 
 
-def _decision(robot: Robot, person: Person, period_s: float) -> Decision:
+def _decision(robot: Robot, person: Person, period_s: float, limits: LoopLimits) -> Decision:
     if person.plans is None:
-        return OneStep(person.decides, period_s)
-    return Planning(robot, person.decides, person.plans, period_s)
+        return OneStep(person.decides, period_s, limits.dead_zone)
+    return Planning(robot, person.decides, person.plans, period_s, limits)

@@ -7,17 +7,19 @@ import numpy as np
 
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
-from latentarm.kinematics.rotations import rotation_vector
+from latentarm.kinematics.rotations import pose_error
 from latentarm.operators.boltzmann import BoltzmannConfig, OneStep
 from latentarm.operators.decision import Decision
 from latentarm.operators.hand import within_reach
 from latentarm.operators.imagination import Imagination
+from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.moment import Moment
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray, Input, IntArray, Pose
 
-NEAR_REST: Final = 0.03
-"""Initial inputs of a plan: exactly at rest, decoders that use the input's length have no gradient."""
+BEYOND: Final = 0.01
+"""Initial inputs of a plan lie this far beyond the dead zone: within it nothing they do changes anything, and
+exactly at rest decoders that use the input's length have no gradient."""
 
 SOMEWHERE: Final = 0.7
 """Inputs of another plan to begin with are drawn from ± this."""
@@ -76,17 +78,24 @@ class Planning(Decision):
         config: how the simulated person thinks of one step.
         planning: how far they plan.
         period_s: time between calls of `decide`, s.
+        limits: what the loop makes of inputs.
 
     Raises:
         UserError: the period is not positive and finite.
     """
 
     def __init__(
-        self, robot: Robot, config: BoltzmannConfig, planning: PlanningConfig, period_s: float
+        self,
+        robot: Robot,
+        config: BoltzmannConfig,
+        planning: PlanningConfig,
+        period_s: float,
+        limits: LoopLimits,
     ) -> None:
         self._config = config
         self._planning = planning
-        self._one_step = OneStep(config, period_s)
+        self._limits = limits
+        self._one_step = OneStep(config, period_s, limits.dead_zone)
         self._chain = robot.chain
         self._hold_calls = max(round(planning.piece_s / period_s), 1)
         self.reset()
@@ -115,20 +124,21 @@ class Planning(Decision):
                 self._held, self._rest_of_plan = plan[0], plan[1:]
                 self._held_calls = self._hold_calls - 1
                 return Input(self._held)
-        return self._one_step.take(outlook, moment, controller, rng)
+        return self._one_step.take(outlook, rng)
 
     def _plan(
         self, moment: Moment, controller: Controller, rng: np.random.Generator
     ) -> tuple[FloatArray, float]:
         """Inputs (L, d), one for each of the L pieces of the plan that is taken, and what it leaves, m."""
         following = len(self._rest_of_plan) > 0
+        near_rest = self._limits.dead_zone + BEYOND
         if following:
             # No longer than what is left of it: every plan comes to its end.
-            starts = [self._rest_of_plan, np.full_like(self._rest_of_plan, NEAR_REST)]
+            starts = [self._rest_of_plan, np.full_like(self._rest_of_plan, near_rest)]
         else:
             shape = (self._planning.pieces, controller.input_dim)
             # A person who is stuck again tries something else.
-            starts = [np.full(shape, NEAR_REST), rng.uniform(-SOMEWHERE, SOMEWHERE, shape)]
+            starts = [np.full(shape, near_rest), rng.uniform(-SOMEWHERE, SOMEWHERE, shape)]
         pieces = len(starts[0])
         length = np.repeat(np.arange(1, pieces + 1), len(starts))
         plans = np.tile(np.stack(starts), (pieces, 1, 1))
@@ -180,25 +190,28 @@ class Planning(Decision):
     def _imagined(
         self, plans: FloatArray, length: IntArray, context: Context, controller: Controller, mode: int
     ) -> FloatArray:
-        """States (P, V, n) at the end of plans (P, V, L, d) of so many pieces."""
+        """States (P, V, n) at the end of plans (P, V, L, d) of so many pieces.
+
+        The arm rests in a piece where the first of the V variations of a plan is in the dead zone: so the
+        others, which differ from it by `DIFFERENCE`, show no step at its edge for a slope.
+        """
         step_s = self._planning.piece_s / self._planning.steps
         state = np.broadcast_to(context.state, (*plans.shape[:2], len(context.state)))
         ends: list[FloatArray] = []
         for piece in range(plans.shape[2]):
             u = within_reach(plans[:, :, piece])
+            pushed = self._limits.is_push(u[:, :1])[..., None]
             for _ in range(self._planning.steps):
                 here = Context(state=state, belief=context.belief)
-                state = state + step_s * controller.action(controller.latent(u, here, mode), here, mode)
+                action = controller.action(controller.latent(u, here, mode), here, mode)
+                state = state + step_s * np.where(pushed, self._limits.slowed(action), 0.0)
             ends.append(state)
         return np.stack(ends)[length - 1, np.arange(len(plans))]
 
     def _residual(self, state: FloatArray, target: Pose) -> FloatArray:
         """How far, (..., 6), m, the tool is from the target, a radian counted as the config says."""
-        pose = self._chain.forward(state)
-        turned = rotation_vector(pose.rotation @ target.rotation.mT)
-        return np.concatenate(
-            [pose.position - target.position, self._config.rotation_weight * turned], axis=-1
-        )
+        off = pose_error(target, self._chain.forward(state))
+        return off * np.repeat([1.0, self._config.rotation_weight], 3)
 
 
 def _step(flat: FloatArray, residual: FloatArray, slope: FloatArray, damping: FloatArray) -> FloatArray:

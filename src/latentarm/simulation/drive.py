@@ -14,6 +14,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.metrics.drives import Drive, measure_drive
 from latentarm.metrics.ending import Ending, why_it_ended
+from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.person import Person, SimulatedPerson
 from latentarm.tasks.task import Task, check_not_done
 from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
@@ -105,7 +106,7 @@ def simulate(
     start = task.sample_start(goal, rng)
     arm = make_simulated_arm(setup.arm, task.robot, start)
     step = _step(setup, dt_s)
-    operator = SimulatedPerson(task.robot, setup.person, dt_s)
+    operator = SimulatedPerson(task.robot, setup.person, dt_s, LoopLimits(step.dead_zone, step.joint_speed))
     remaining = list(task.waypoints(goal, manner))
     since_s = 0.0
     check_not_done(task, start, remaining)
