@@ -22,6 +22,7 @@ from latentarm.commands.drive import HELD_OUT_LIMIT_S
 from latentarm.controllers.latent import LatentController
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.split import Fold, select_episodes
+from latentarm.files import write_text
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
 from latentarm.models.kind import Decoder
 from latentarm.models.saving import load_decoder
@@ -92,7 +93,7 @@ def _kept(asked: argparse.Namespace, model: str, place: str, drive: Callable[[],
     path = asked.out / model / f"{place.replace(' ', '_')}.json"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(drive(), indent=1))
+        write_text(path, json.dumps(drive(), indent=1))
     return json.loads(path.read_text())
 
 

@@ -248,8 +248,8 @@ def _from_exponential(slope: FloatArray, chance: FloatArray) -> FloatArray:
 
 def _to_edges() -> FloatArray:
     """(4, RINGS + 1): values at `STRETCHES` to those of the cubic through them at the cells' edges."""
-    powers, edges = np.vander(STRETCHES), np.linspace(0.0, 1.0, RINGS + 1)
-    return np.linalg.solve(powers.T, np.vander(edges, len(STRETCHES)).T)
+    power = np.arange(len(STRETCHES))[:, None]
+    return np.linalg.solve(STRETCHES**power, np.linspace(0.0, 1.0, RINGS + 1) ** power)
 
 
 _TO_EDGES: Final = _to_edges()
