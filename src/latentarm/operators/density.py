@@ -248,7 +248,7 @@ def _from_exponential(slope: FloatArray, chance: FloatArray) -> FloatArray:
 
 def _to_edges() -> FloatArray:
     """(4, RINGS + 1): values at `STRETCHES` to those of the cubic through them at the cells' edges."""
-    power = np.arange(len(STRETCHES))[:, None]
+    power = np.arange(len(STRETCHES), dtype=np.float64)[:, None]
     return np.linalg.solve(STRETCHES**power, np.linspace(0.0, 1.0, RINGS + 1) ** power)
 
 
