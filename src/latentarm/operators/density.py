@@ -20,7 +20,7 @@ from scipy.special import logsumexp
 from latentarm.errors import UserError
 from latentarm.types import BoolArray, FloatArray, IntArray
 
-STRETCHES: Final = np.array([0.0, 0.3, 0.65, 1.0])
+STRETCHES: Final[FloatArray] = np.array([0.0, 0.3, 0.65, 1.0])
 """Where along a direction it is known what an input leaves: 0 at the edge of the dead zone, 1 at full
 deflection."""
 
@@ -249,7 +249,8 @@ def _from_exponential(slope: FloatArray, chance: FloatArray) -> FloatArray:
 def _to_edges() -> FloatArray:
     """(4, RINGS + 1): values at `STRETCHES` to those of the cubic through them at the cells' edges."""
     power = np.arange(len(STRETCHES), dtype=np.float64)[:, None]
-    return np.linalg.solve(STRETCHES**power, np.linspace(0.0, 1.0, RINGS + 1) ** power)
+    edges = np.linspace(0.0, 1.0, RINGS + 1)
+    return np.linalg.solve(STRETCHES**power, edges**power).astype(np.float64)
 
 
 _TO_EDGES: Final = _to_edges()
