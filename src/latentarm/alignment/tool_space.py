@@ -20,7 +20,7 @@ OUTSIDE: Final = 1.0
 RIDGES: Final = (1.0, 0.3, 0.1, 0.03, 0.01, 0.01, 0.01)
 """Weight of ‖z‖^2 in each step. It falls, so that of several z that do the same, one near rest is found."""
 
-SECANTS: Final = ((0.05,) * 7, (0.4, 0.4, 0.3, 0.2, 0.1, 0.1, 0.05))
+SECANTS: Final = ((0.05,) * len(RIDGES), (0.4, 0.4, 0.3, 0.2, 0.1, 0.1, 0.05))
 """(paths, steps), half the distance in z over which the decoder's derivative is taken. The first path follows
 the decoder from rest. Where it is folded there, that leads away from what is meant; the second path sees the
 decoder more broadly at first."""

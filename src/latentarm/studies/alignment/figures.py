@@ -185,28 +185,34 @@ def _draw_curves(axes: "Axes", curve: CurveResult) -> None:
     tidy(axes)
 
 
-DRIVES_ROW_MM: Final = 32.0
+DRIVES_ACROSS: Final = 4
+DRIVES_ROW_MM: Final = 54.0
 DRIVES_LEGEND_MM: Final = 18.0
 VIEW: Final = ((-0.6, 0.6), (-0.2, 0.85))
 """What is shown, y from and to, x from and to, m."""
 
 
 def drives_figure(results: Sequence[DrivesResult]) -> "Figure":
-    """All paths until the goal from above: models down, conditions across."""
-    goals = TableTop().goals
-    figure = new_figure(height_mm=DRIVES_ROW_MM * len(results) + DRIVES_LEGEND_MM, width_mm=TWO_COLUMNS_MM)
+    """All paths until the goal from above: a panel for each condition, one model after the other."""
+    goals, rows_each = TableTop().goals, -(-len(DRIVEN) // DRIVES_ACROSS)
+    rows = rows_each * len(results)
+    figure = new_figure(height_mm=DRIVES_ROW_MM * rows + DRIVES_LEGEND_MM, width_mm=TWO_COLUMNS_MM)
     figure.set_layout_engine("compressed")  # panels keep their shape; without it the rest of a row is blank
     figure.suptitle("Simulated drives from above, and how many reach their goal", fontsize=FONT_SIZE)
-    panels = figure.subplots(len(results), len(DRIVEN), squeeze=False, sharex=True, sharey=True)
-    for row, result in zip(panels, results, strict=True):
-        for axes, condition in zip(row, DRIVEN, strict=True):
+    panels = figure.subplots(rows, DRIVES_ACROSS, squeeze=False, sharex=True, sharey=True)
+    for result, own in zip(results, panels.reshape(len(results), -1), strict=True):
+        for axes, condition in zip(own, DRIVEN, strict=False):
             drives = result.drives[condition]
             _draw_drives(axes, drives, goals)
             name = condition.replace(", ", ",\n")
             title(axes, f"{name}\n{sum(one.reached_s is not None for one in drives)} of {len(drives)}")
-        row[0].set_ylabel(f"{look_of(result.cell.model).label}: x (m)")
-    for axes in panels[-1]:
-        axes.set_xlabel("y (m)")
+        for axes in own[len(DRIVEN) :]:
+            axes.remove()
+        for axes in own[len(DRIVEN) - DRIVES_ACROSS : len(DRIVEN)]:
+            axes.set_xlabel("y (m)")
+            axes.tick_params(labelbottom=True)
+        for axes in own[::DRIVES_ACROSS]:
+            axes.set_ylabel(f"{look_of(result.cell.model).label}: x (m)")
     handles, labels = panels[0, 0].get_legend_handles_labels()
     legend_below(figure, [*handles, *outcome_lines()], [*labels, *OUTCOMES])
     return figure
