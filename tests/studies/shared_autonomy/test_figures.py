@@ -3,7 +3,7 @@ import pytest
 
 from figure_faults import faults
 from latentarm.metrics.looks import look_of
-from latentarm.studies.shared_autonomy.cell import METHODS, TASKS, Cell, CellResult, Entropy, Outcome
+from latentarm.studies.shared_autonomy.cell import METHODS, TASKS, Cell, CellResult, Outcome
 from latentarm.studies.shared_autonomy.drive import steps_of
 from latentarm.studies.shared_autonomy.figures import (
     changes_figure,
@@ -119,5 +119,5 @@ def test_one_seed_has_no_bars_and_is_drawn_all_the_same(tmp_path):
     preset = Preset("tiny", seeds=1, betas=(0.0, 75.0, 1e4), ablation=None)
     results = results_of(tmp_path, preset, drives=1)
     assert_well_drawn(expertise_figure(results, preset, tuple(TASKS)), COLUMN_MM)
-    assert any(result.cell.entropy == Entropy(preset.entropy_weight) for result in results)
+    assert any(result.cell.entropy == preset.entropy for result in results)
     assert all(isinstance(result.cell, Cell) and result.cell.model in MODELS for result in results)

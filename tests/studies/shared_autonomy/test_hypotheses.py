@@ -5,9 +5,9 @@ import pytest
 from scipy import stats
 
 from latentarm.studies.hypotheses import verdicts
-from latentarm.studies.shared_autonomy.cell import METHODS, Cell, CellResult, Entropy, Outcome
+from latentarm.studies.shared_autonomy.cell import METHODS, Cell, CellResult, Outcome
 from latentarm.studies.shared_autonomy.hypotheses import REACHED, TRAPPED, compare_methods
-from latentarm.studies.shared_autonomy.preset import Preset
+from latentarm.studies.shared_autonomy.preset import Entropy, Preset
 
 PRESET = Preset("tiny", betas=(0.0, 75.0, 1e4), learners={"slow": 10.0}, changes_s=(0.0, 8.0))
 TASK = "panda_two_cups"

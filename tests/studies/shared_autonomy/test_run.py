@@ -8,8 +8,8 @@ from latentarm.errors import UserError
 from latentarm.metrics.measures import MEASURES
 from latentarm.runs.results_folder import CONFIG
 from latentarm.studies.shared_autonomy.ablations import variants
-from latentarm.studies.shared_autonomy.cell import METHODS, TASKS, Entropy, measure_cell
-from latentarm.studies.shared_autonomy.preset import PRESETS, Ablation, Preset
+from latentarm.studies.shared_autonomy.cell import METHODS, TASKS, measure_cell
+from latentarm.studies.shared_autonomy.preset import PRESETS, Ablation, Entropy, Preset
 from latentarm.studies.shared_autonomy.study import MODELS, STUDY, cells_of
 from latentarm.studies.study import ALWAYS_MADE, Request, run_study
 
@@ -25,6 +25,7 @@ TINY = Preset(
     learners={"slow": 10.0},
     slopes=(),
     changes_s=(0.0, 1.0),
+    entropy=Entropy(weight=2.0, sharpness=8.0),
     ablation=Ablation(seeds=2, drives=2, weights=(0.0, 2.0), sharpness=(4.0,), contexts=("demonstrated",)),
 )
 TASK = "planar_two_cups"
@@ -71,7 +72,7 @@ def test_without_help_nothing_is_certified(done):
 def test_every_variant_of_the_entropy_has_its_rows(done):
     rows, _ = done
     known = {(row.condition, row.measure) for row in rows if row.model == "cae"}
-    names = variants(TINY.ablation, TINY.entropy_weight)
+    names = variants(TINY.ablation, TINY.entropy)
     assert list(names) == [
         "lambda_2 0",
         "lambda_2 2",
@@ -81,7 +82,7 @@ def test_every_variant_of_the_entropy_has_its_rows(done):
         "contexts demonstrated",
     ]
     assert names["lambda_2 0"] is None
-    assert names["lambda_2 2"] == Entropy(2.0)
+    assert names["lambda_2 2"] == TINY.entropy
     for name in names:
         assert (name, "noise_free_error_percent_of_pca") in known
         assert {(f"{name}, {person.label}", "final_state_error") for person in TINY.varied_people} <= known
@@ -90,7 +91,7 @@ def test_every_variant_of_the_entropy_has_its_rows(done):
 def test_what_is_varied_by_nothing_is_the_study_itself(tmp_path):
     """Two of the three seeds, and the first drives of each: the same models, starts and chances."""
     whole = cells_of(tiny(tmp_path))
-    proper = next(cell for cell in whole if (cell.model, cell.entropy) == ("cae", Entropy(2.0)))
+    proper = next(cell for cell in whole if (cell.model, cell.entropy) == ("cae", TINY.entropy))
     varied = next(cell for cell in whole if cell.variant == "lambda_2 2")
     latest = TINY.latest_change.label
     one, other = (

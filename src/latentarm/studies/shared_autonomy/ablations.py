@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
-from latentarm.studies.shared_autonomy.cell import Entropy
-from latentarm.studies.shared_autonomy.preset import Ablation
+from latentarm.studies.shared_autonomy.preset import Ablation, Entropy
 
 LETTER = "equation 15 to the letter"
 """The variant without an outcome that no goal is conveyed."""
@@ -18,27 +18,26 @@ def weight_label(weight: float) -> str:
     return f"lambda_2 {weight:g}"
 
 
-def variants(ablation: Ablation, weight: float) -> dict[str, Entropy | None]:
+def variants(ablation: Ablation, proper: Entropy) -> dict[str, Entropy | None]:
     """Every variant by what it is called, each once.
 
     Args:
         ablation: what is varied.
-        weight: lambda_2 of the study proper, at which everything else is varied.
+        proper: of the study proper, from which one thing at a time is varied.
     """
-    proper = Entropy(weight)
     found: dict[str, Entropy | None] = {
-        weight_label(one): Entropy(one) if one else None for one in ablation.weights
+        weight_label(one): replace(proper, weight=one) if one else None for one in ablation.weights
     }
-    found |= {name: entropy for name, entropy in _others(ablation, weight) if entropy != proper}
+    found |= {name: entropy for name, entropy in _others(ablation, proper) if entropy != proper}
     return found
 
 
-def _others(ablation: Ablation, weight: float) -> Iterator[tuple[str, Entropy]]:
+def _others(ablation: Ablation, proper: Entropy) -> Iterator[tuple[str, Entropy]]:
     for sharpness in ablation.sharpness:
-        yield f"kappa {sharpness:g}", Entropy(weight, sharpness=sharpness)
+        yield f"kappa {sharpness:g}", replace(proper, sharpness=sharpness)
     if ablation.without_no_goal:
-        yield LETTER, Entropy(weight, least_progress=-math.inf)
+        yield LETTER, replace(proper, least_progress=-math.inf)
     if ablation.joints_alone:
-        yield JOINTS_ALONE, Entropy(weight, sees_tool=False)
+        yield JOINTS_ALONE, replace(proper, sees_tool=False)
     for where in ablation.contexts:
-        yield f"contexts {where.replace('_', ' ')}", Entropy(weight, where=where)
+        yield f"contexts {where.replace('_', ' ')}", replace(proper, where=where)

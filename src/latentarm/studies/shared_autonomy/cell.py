@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.annotation import annotate
 from latentarm.assistance.blending import Arbitration
-from latentarm.assistance.entropy import GoalEntropy, Where
+from latentarm.assistance.entropy import GoalEntropy
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
 from latentarm.metrics.accuracy import pca_error, percent_of, reconstruction_error
@@ -19,7 +19,7 @@ from latentarm.models.model import LatentActionModel
 from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.shared_autonomy.drive import HELP, NO_HELP, RULE, STEP_S, Scene, drive, steps_of
 from latentarm.studies.shared_autonomy.measures import measure, state_error, true_belief
-from latentarm.studies.shared_autonomy.preset import Person, Preset
+from latentarm.studies.shared_autonomy.preset import Entropy, Person, Preset
 from latentarm.studies.streams import integer, sequence
 from latentarm.tasks.two_cups import TWO_CUPS, TwoCups
 from latentarm.types import Demonstrations, FloatArray, Pairs
@@ -46,25 +46,6 @@ class Stream(IntEnum):
     STATE_NOISE = 3
     STARTS = 4
     CHANCES = 5
-
-
-@dataclass(frozen=True)
-class Entropy:
-    """How the entropy over goals is trained; see `GoalEntropy`.
-
-    Attributes:
-        weight: lambda_2.
-        sharpness: kappa.
-        least_progress: rho_0; -inf is equation 15 to the letter.
-        where: contexts that it is taken in.
-        sees_tool: whether progress is the tool's as well, or the joints' alone.
-    """
-
-    weight: float
-    sharpness: float = 8.0
-    least_progress: float = GoalEntropy.least_progress
-    where: Where = GoalEntropy.where
-    sees_tool: bool = True
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from latentarm.assistance.entropy import Where
+from latentarm.assistance.entropy import GoalEntropy, Where
 
 NEAR_OPTIMAL: Final = 1000.0
 """Rationality of people who change their mind, 1/m²: the paper calls them near-optimal."""
@@ -60,6 +60,25 @@ def changing(after_s: float) -> Person:
 
 
 @dataclass(frozen=True)
+class Entropy:
+    """How the entropy over goals is trained; see `GoalEntropy`.
+
+    Attributes:
+        weight: lambda_2.
+        sharpness: kappa.
+        least_progress: rho_0; -inf is equation 15 to the letter.
+        where: contexts that it is taken in.
+        sees_tool: whether progress is the tool's as well, or the joints' alone.
+    """
+
+    weight: float
+    sharpness: float = GoalEntropy.sharpness
+    least_progress: float = GoalEntropy.least_progress
+    where: Where = GoalEntropy.where
+    sees_tool: bool = True
+
+
+@dataclass(frozen=True)
 class Ablation:
     """What is varied about the entropy, one thing at a time, with the cAE.
 
@@ -99,7 +118,7 @@ class Preset:
         state_noise_rad: SD of the noise on training states, rad. Help leaves the arm within about this much
             of a cup, and there the decoder has to do what was demonstrated at the cup.
         kl_weight: lambda_1 of equation 16, for the cVAE.
-        entropy_weight: lambda_2 of equation 16.
+        entropy: of equation 16, with lambda_2 and kappa.
         betas: rationalities of people of fixed expertise, 1/m²; the first and the last are the extremes.
         learners: how fast people learn, 1/m² per s, by name: the slowest and the fastest slope of a sweep at
             which help with entropy and without it separated in development (planar arm, cAE, two models of 30
@@ -119,7 +138,7 @@ class Preset:
     hidden: tuple[int, ...] = (64, 64)
     state_noise_rad: float = 0.05
     kl_weight: float = 0.05
-    entropy_weight: float = 3.0
+    entropy: Entropy = Entropy(weight=3.0, sharpness=8.0)
     betas: tuple[float, ...] = (0.0, 10.0, 30.0, 75.0, 1000.0, 10000.0)
     learners: Mapping[str, float] = field(default_factory=lambda: {"slow": 2.5, "fast": 25.0})
     slopes: tuple[float, ...] = (0.5, 8.0, 80.0, 250.0)

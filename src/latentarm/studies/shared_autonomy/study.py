@@ -16,7 +16,6 @@ from latentarm.studies.shared_autonomy.cell import (
     WITHOUT_HELP,
     Cell,
     CellResult,
-    Entropy,
     measure_cell,
 )
 from latentarm.studies.shared_autonomy.figures import (
@@ -66,7 +65,7 @@ def cells_of(request: Request[Preset]) -> list[Cell]:
             seed=request.seed,
         )
         for model in reversed(MODELS)
-        for entropy in (None, Entropy(preset.entropy_weight))
+        for entropy in (None, preset.entropy)
         for task in request.tasks
     ]
     return [*proper, *(cell for task in request.tasks for cell in _varied(request, task))]
@@ -90,7 +89,7 @@ def _varied(request: Request[Preset], task: str) -> list[Cell]:
             preset=preset,
             seed=request.seed,
         )
-        for name, entropy in variants(ablation, preset.entropy_weight).items()
+        for name, entropy in variants(ablation, preset.entropy).items()
     ]
 
 
@@ -177,7 +176,6 @@ def _page(
         main=MAIN,
         others=[measure for measure in measures if measure not in MAIN],
         measures=list(measures),
-        proper=Entropy(preset.entropy_weight),
         few_seeds=preset.seeds < FEWEST_SEEDS,
         arrived=ARRIVED,
         reached=REACHED,

@@ -71,7 +71,7 @@ class Tables:
                 self._figure(task, MODEL, name, RECONSTRUCTION),
                 *(self._figure(task, MODEL, f"{name}, {person}", MEASURE) for person in people),
             ]
-            for name in variants(self._preset.ablation, self._preset.entropy_weight)
+            for name in variants(self._preset.ablation, self._preset.entropy)
         ]
         return markdown_table(
             ["", _named(RECONSTRUCTION), *(f"{_named(MEASURE)}, {person}" for person in people)], lines
