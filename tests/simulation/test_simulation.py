@@ -5,15 +5,19 @@ from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.catalogue import BELIEFS
+from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.operators.loop_limits import UNLIMITED
 from latentarm.operators.person import Person
 from latentarm.robots.catalogue import load_robot
+from latentarm.robots.planar import planar
+from latentarm.simulation import drive
 from latentarm.simulation.drive import Setup, simulate
 from latentarm.simulation.drives import drive_all
 from latentarm.tasks.reach import Reach
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
-from latentarm.types import StepRecord
+from latentarm.types import Context, FloatArray, StepRecord
 
 
 def setup(
@@ -80,3 +84,33 @@ def test_another_seed_is_another_drive() -> None:
     task = Reach(load_robot("planar"))
     one, other = (drive_all([setup(task)], 1, seed=seed, jobs=1)[0] for seed in (0, 1))
     assert not np.array_equal(one.position[0], other.position[0])
+
+
+class TooFast(Controller):
+    """The first two joints, one for each axis, ten times as fast as the loop lets them be; they drift."""
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        return ("only",)
+
+    @property
+    def input_dim(self) -> int:
+        return 2
+
+    def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
+        return u
+
+    def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
+        return 5.0 * z @ np.eye(2, context.state.shape[-1]) + np.array([0.3, 0.0])
+
+
+def test_people_know_what_the_loop_makes_of_their_inputs(monkeypatch: pytest.MonkeyPatch) -> None:
+    task = Reach(planar(2))
+    fast = Setup(task, TooFast(), None, Person(), 15.0)
+
+    def successes() -> int:
+        return sum(one.figures.success for one in drive_all([fast], 1, seed=0, jobs=1))
+
+    knowing = successes()
+    monkeypatch.setattr(drive, "LoopLimits", lambda *_: UNLIMITED)
+    assert knowing == len(task.goals) > successes()
