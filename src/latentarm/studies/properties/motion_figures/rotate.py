@@ -1,6 +1,7 @@
 """The figure of rotate, after the paper's."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,14 +15,14 @@ from latentarm.studies.drawing import (
     stacked_parts,
     title,
 )
-from latentarm.studies.properties.figures import draw_losses
 from latentarm.studies.properties.motion_figures.shown import (
     CONDITIONED,
     CONTRASTED,
     GRID,
     Decoders,
     Shown,
-    draw_over_z,
+    draw_losses_and_effects,
+    draw_states,
     passed_states,
     spread_states,
     turned,
@@ -64,17 +65,16 @@ def rotate_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     figure = new_figure(sum(PARTS_MM), TWO_COLUMNS_MM)
     figure.suptitle("Rotate: two simulated planar arms of 5 joints, 1-D latent action", fontsize=FONT_SIZE)
     parts = stacked_parts(figure, PARTS_MM)
-    losses, *panels = parts[0].subplots(1, 1 + len(near), squeeze=False)[0]
-    draw_losses(losses, rows, motion.name)
-    for place, (axes, model) in enumerate(zip(panels, near, strict=False)):
-        draw_over_z(axes, rows, motion.name, model.model, _turn_deg(motion, model, three))
-        title(axes, f"{model.look.label}, turn", "" if place else "B")
-        axes.set_ylabel(f"turned in {HOLD_S:g} s (deg)")
-    for place, axes in enumerate(row_of_panels(parts[1], 3 * len(near))):
-        model, state = near[place // 3], place % 3
-        _draw_turns(axes, motion, model, three[state])
-        title(axes, f"{model.look.label}, state {state + 1}")
-        plane(axes, BOX_VIEW, ticks=3)
+    draw_losses_and_effects(
+        parts[0],
+        rows,
+        motion.name,
+        near,
+        lambda model: _turn_deg(motion, model, three),
+        "turn",
+        f"turned in {HOLD_S:g} s (deg)",
+    )
+    draw_states(parts[1], near, three, partial(_draw_turns, motion), BOX_VIEW)
     start = spread_states(states, turn, 12)[0]
     for axes, model in zip(row_of_panels(parts[2], len(shown)), shown, strict=True):
         _draw_rotate_rollout(axes, motion, model, start)
@@ -108,7 +108,7 @@ def _draw_box(axes: "Axes", motion: Rotate, state: FloatArray, colour: str, fill
     axes.fill(*corners.T, facecolor=fill or "none", edgecolor=colour, linewidth=1.0, zorder=2.5)
 
 
-def _draw_turns(axes: "Axes", motion: Rotate, model: Shown, state: FloatArray) -> None:
+def _draw_turns(motion: Rotate, axes: "Axes", model: Shown, state: FloatArray) -> None:
     """The box in one state, and where z = -1 (pale) and z = +1 (dark) turn it."""
     ends = model.hold(state[None], np.array(POSES)[:, None], HOLD_S)[:, 0, -1]
     _draw_box(axes, motion, state, BOX_EDGE, BOX_COLOUR)

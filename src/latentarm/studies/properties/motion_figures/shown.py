@@ -10,8 +10,8 @@ from latentarm.metrics.contract import DecodesActions, next_context
 from latentarm.metrics.effects import axis_grid
 from latentarm.metrics.looks import look_of
 from latentarm.metrics.table import format_figure
-from latentarm.studies.drawing import note
-from latentarm.studies.properties.figures import points
+from latentarm.studies.drawing import View, note, plane, row_of_panels, title
+from latentarm.studies.properties.figures import draw_losses, points
 from latentarm.studies.properties.tables import OURS
 from latentarm.style import SMALL_FONT_SIZE, Look, tidy
 from latentarm.tasks.planar.motion import PlanarMotion
@@ -20,6 +20,7 @@ from latentarm.types import FloatArray, Row
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import SubFigure
 
 
 CONDITIONED: Final = ("cvae", OURS)
@@ -158,3 +159,46 @@ def draw_over_z(axes: "Axes", rows: Sequence[Row], task: str, model: str, effect
     axes.set_xlabel("z")
     axes.legend(loc="lower right", fontsize=SMALL_FONT_SIZE, frameon=False, borderaxespad=0.0)
     tidy(axes)
+
+
+def draw_losses_and_effects(
+    part: "SubFigure",
+    rows: Sequence[Row],
+    task: str,
+    models: Sequence[Shown],
+    effect_of: Callable[[Shown], FloatArray],
+    effect: str,
+    unit: str,
+) -> None:
+    """Draw the losses of all models, then the effect of z in three states with some of them.
+
+    Args:
+        part: where to draw.
+        rows: of the study.
+        task: which task.
+        models: whose effect is drawn.
+        effect_of: as for `draw_over_z`.
+        effect: what it is called in titles.
+        unit: what the y axis says.
+    """
+    losses, *panels = part.subplots(1, 1 + len(models), squeeze=False)[0]
+    draw_losses(losses, rows, task)
+    for place, (axes, model) in enumerate(zip(panels, models, strict=False)):
+        draw_over_z(axes, rows, task, model.model, effect_of(model))
+        title(axes, f"{model.look.label}, {effect}", "" if place else "B")
+        axes.set_ylabel(unit)
+
+
+def draw_states(
+    part: "SubFigure",
+    models: Sequence[Shown],
+    states: FloatArray,
+    draw: Callable[["Axes", Shown, FloatArray], None],
+    view: View,
+) -> None:
+    """Draw what some models do in each of a few states (K, n), a panel for each."""
+    for place, axes in enumerate(row_of_panels(part, len(states) * len(models))):
+        model, state = divmod(place, len(states))
+        draw(axes, models[model], states[state])
+        title(axes, f"{models[model].look.label}, state {state + 1}")
+        plane(axes, view, ticks=3)

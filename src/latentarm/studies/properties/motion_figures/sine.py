@@ -1,13 +1,13 @@
 """The figure of sine, after the paper's."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from latentarm.metrics.effects import axis_grid
 from latentarm.studies.drawing import draw_arm, draw_pose, plane, row_of_panels, stacked_parts, title
-from latentarm.studies.properties.figures import draw_losses
 from latentarm.studies.properties.motion_figures.shown import (
     CONDITIONED,
     CONTRASTED,
@@ -15,7 +15,8 @@ from latentarm.studies.properties.motion_figures.shown import (
     Decoders,
     Shown,
     draw_guides,
-    draw_over_z,
+    draw_losses_and_effects,
+    draw_states,
     passed_states,
     spread_states,
     turned,
@@ -57,17 +58,16 @@ def sine_figure(decoders: Decoders, rows: Sequence[Row]) -> "Figure":
     figure = new_figure(sum(PARTS_MM), TWO_COLUMNS_MM)
     figure.suptitle("Sine: a simulated planar arm of 5 joints, 1-D latent action", fontsize=FONT_SIZE)
     parts = stacked_parts(figure, PARTS_MM)
-    losses, *panels = parts[0].subplots(1, 1 + len(near), squeeze=False)[0]
-    draw_losses(losses, rows, motion.name)
-    for place, (axes, model) in enumerate(zip(panels, near, strict=False)):
-        draw_over_z(axes, rows, motion.name, model.model, _signed_distance_mm(motion, model, three))
-        title(axes, f"{model.look.label}, distance", "" if place else "B")
-        axes.set_ylabel(f"moved in {HOLD_S:g} s (mm)")
-    for place, axes in enumerate(row_of_panels(parts[1], 3 * len(near))):
-        model, state = near[place // 3], place % 3
-        _draw_poses(axes, motion, model, three[state])
-        title(axes, f"{model.look.label}, state {state + 1}")
-        plane(axes, ARM_VIEW, ticks=3)
+    draw_losses_and_effects(
+        parts[0],
+        rows,
+        motion.name,
+        near,
+        lambda model: _signed_distance_mm(motion, model, three),
+        "distance",
+        f"moved in {HOLD_S:g} s (mm)",
+    )
+    draw_states(parts[1], near, three, partial(_draw_poses, motion), ARM_VIEW)
     start = spread_states(states, along, 12)[0]
     for axes, model in zip(row_of_panels(parts[2], len(shown)), shown, strict=True):
         _draw_sine_rollout(axes, motion, model, start)
@@ -88,7 +88,7 @@ def _signed_distance_mm(motion: Sine, model: Shown, states: FloatArray) -> Float
     return 1000.0 * np.sign(moved[..., 0]) * np.linalg.norm(moved, axis=-1)
 
 
-def _draw_poses(axes: "Axes", motion: Sine, model: Shown, state: FloatArray) -> None:
+def _draw_poses(motion: Sine, axes: "Axes", model: Shown, state: FloatArray) -> None:
     """The arm in one state, and where z takes it: pale for z < 0, dark for z > 0."""
     draw_guides(axes, motion)
     ends = model.hold(state[None], POSES[:, None], HOLD_S)[:, 0, -1]
