@@ -145,6 +145,19 @@ def test_a_choice_is_worth_what_equation_24_makes_of_it(residual, beta):
     assert (choices.least >= least - 1e-7).all()
 
 
+def test_a_decoder_that_drifts_beyond_the_dead_zone_is_modelled_as_it_is_there():
+    """At rest the tool stays 0.1 m away; the lightest push releases a drift that takes it to the target."""
+
+    def drifting(u):
+        pushed = np.linalg.norm(u, axis=-1, keepdims=True) > 0.02
+        return np.where(pushed, 0.02 * u, 0.1)
+
+    grid = lattice(2, dead_zone=0.02)
+    model = CostModel(grid, drifting(grid.nodes))
+    assert np.linalg.norm(model.best) == pytest.approx(0.02)
+    assert model.at_edges[:, 0] == pytest.approx((0.02 * 0.02) ** 2, rel=0.1)
+
+
 def test_where_the_model_is_wrong_only_true_costs_count():
     grid = lattice(2)
     shown = CostModel(grid, np.full((len(grid.nodes), 3), 0.05))

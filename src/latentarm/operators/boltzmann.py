@@ -105,10 +105,9 @@ class OneStep(Decision):
 
     over all inputs of length 1 at most that the loop does not take for rest (see
     `latentarm.operators.density`), with the person's own `Foresight` in place of Psi and phi where they do
-    not know these. Distance between poses is
-    ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks one step ahead only, as in the paper:
-    they can get stuck where no single input brings the tool closer. ``beta(t)`` counts from `reset`, by
-    calls of `decide`.
+    not know these. Distance between poses is ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks
+    one step ahead only, as in the paper: they can get stuck where no single input brings the tool closer.
+    ``beta(t)`` counts from `reset`, by calls of `decide`.
 
     A person can also let go, which leaves the tool where it is: one more input of equation 24, with a
     probability of its own, ``rest_share``, where beta is zero.

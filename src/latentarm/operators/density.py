@@ -20,9 +20,9 @@ from scipy.special import logsumexp
 from latentarm.errors import UserError
 from latentarm.types import BoolArray, FloatArray, IntArray
 
-STRETCHES: Final[FloatArray] = np.array([0.0, 0.3, 0.65, 1.0])
+STRETCHES: Final[FloatArray] = np.array([0.01, 0.3, 0.65, 1.0])
 """Where along a direction it is known what an input leaves: 0 at the edge of the dead zone, 1 at full
-deflection."""
+deflection. None is at the edge, where the arm still rests: a decoder that drifts jumps there."""
 
 DIRECTIONS: Final = 64
 """Directions of a disc in which it is known, ..."""
