@@ -15,7 +15,7 @@ settings.register_profile("latentarm", deadline=None)
 settings.register_profile("thorough", max_examples=10_000, deadline=None)
 settings.load_profile("latentarm")
 
-LONGEST_FIRST = ("studies", "models", "parallel", "cli", "docs", "simulation", "control")
+LONGEST_FIRST = ("plugins", "studies", "models", "parallel", "cli", "docs", "simulation", "control")
 """Folders whose files take longest: a worker that begins one last would keep the others waiting."""
 
 
