@@ -2,8 +2,8 @@
 
 ``python scripts/docs_figures.py demo alignment`` redraws those of some commands. All take about an
 hour of one core: demo 4 minutes, properties 11, shared-autonomy 19, alignment 27 (measured).
-``compare`` needs the recordings that are not part of the repository, and about two hours of one core: it runs
-only if named.
+``compare`` needs the recordings that are not part of the repository, and about four hours of one core: it
+runs only if named.
 """
 
 import shutil
@@ -12,20 +12,17 @@ import sys
 import tempfile
 from pathlib import Path
 
-FIGURES = Path(__file__).parents[1] / "docs" / "figures"
+FIGURES = Path(__file__).resolve().parents[1] / "docs" / "figures"
 RECORDINGS = FIGURES.parents[2] / "shared" / "demonstrations"
+RECORDED = ("pick_banana", "pick_cereal", "pour_coffee")
+"""Archives ``panda_NAME.npz`` there, which `compare` is drawn from."""
+
 COMMANDS = {
     "demo": ["demo"],
     "properties": ["reproduce", "properties", "--preset", "paper"],
     "shared-autonomy": ["reproduce", "shared-autonomy", "--preset", "paper", "--seed", "2"],
     "alignment": ["reproduce", "alignment", "--preset", "paper", "--seed", "2"],
-    "compare": [
-        "compare",
-        "--demonstrations",
-        *(str(RECORDINGS / name) for name in ("pick_banana", "pick_cereal", "pour_coffee")),
-        *["--noise", "0.01", "--models", "pca", "ae", "vae", "cae", "cvae", "scl", "scn", "odd_cae"],
-        *["homogeneous", "low_turning", "flow"],
-    ],
+    "compare": ["compare", "--demonstrations", *RECORDED],
 }
 PREFIXES = {
     "demo": "",
@@ -41,9 +38,11 @@ def redraw(name: str) -> None:
     """Run one command and put those of its figures in place that a page shows already."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "made"
-        done = subprocess.run(
-            [sys.executable, "-m", "latentarm", *COMMANDS[name], "--out", str(out)], check=False
-        )
+        latentarm = [sys.executable, "-m", "latentarm"]
+        for recorded in RECORDED if name == "compare" else ():
+            archive = str(RECORDINGS / f"panda_{recorded}.npz")
+            subprocess.run([*latentarm, "import", archive, recorded], cwd=folder, check=True)
+        done = subprocess.run([*latentarm, *COMMANDS[name], "--out", str(out)], cwd=folder, check=False)
         if done.returncode not in (0, 1):  # 1: something was measured and not reached
             raise SystemExit(done.returncode)
         for made in sorted(out.glob("*.png")):
