@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -6,18 +8,17 @@ from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlp
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.control.controller import Controller
+from latentarm.control.safety.config import SafetyConfig
 from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.operators.loop_limits import UNLIMITED
-from latentarm.operators.person import Person
+from latentarm.operators.person import Person, SimulatedPerson
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.planar import planar
-from latentarm.simulation import drive
 from latentarm.simulation.drive import Setup, simulate
 from latentarm.simulation.drives import drive_all
 from latentarm.tasks.reach import Reach
 from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
-from latentarm.types import Context, FloatArray, StepRecord
+from latentarm.types import Context, FloatArray, Input, StepRecord
 
 
 def setup(
@@ -87,7 +88,7 @@ def test_another_seed_is_another_drive() -> None:
 
 
 class TooFast(Controller):
-    """The first two joints, one for each axis, ten times as fast as the loop lets them be; they drift."""
+    """An axis for each joint, twenty times as fast as the loop lets it be."""
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -101,16 +102,20 @@ class TooFast(Controller):
         return u
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
-        return 5.0 * z @ np.eye(2, context.state.shape[-1]) + np.array([0.3, 0.0])
+        return 10.0 * z
 
 
-def test_people_know_what_the_loop_makes_of_their_inputs(monkeypatch: pytest.MonkeyPatch) -> None:
-    task = Reach(planar(2))
-    fast = Setup(task, TooFast(), None, Person(), 15.0)
+def test_nobody_gives_a_push_that_the_loop_takes_for_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[float] = []
+    act = SimulatedPerson.act
 
-    def successes() -> int:
-        return sum(one.figures.success for one in drive_all([fast], 1, seed=0, jobs=1))
+    def watched(self: SimulatedPerson, *seen: Any) -> Input:
+        meant = act(self, *seen)
+        given.append(float(np.linalg.norm(meant.u)))
+        return meant
 
-    knowing = successes()
-    monkeypatch.setattr(drive, "LoopLimits", lambda *_: UNLIMITED)
-    assert knowing == len(task.goals) > successes()
+    monkeypatch.setattr(SimulatedPerson, "act", watched)
+    drive_all([Setup(Reach(planar(2)), TooFast(), None, Person(), 15.0)], 1, seed=0, jobs=1)
+    lengths = np.array(given)
+    assert (lengths > 0).any()
+    assert lengths[lengths > 0].min() > SafetyConfig().dead_zone
