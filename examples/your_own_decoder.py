@@ -27,13 +27,14 @@ class BaseAndElbow(la.Controller):
 
 
 robot = la.load_robot("panda")
-arm = la.KinematicArm(robot, robot.home)
-step = la.Step(robot, BaseAndElbow(), la.SafetyConfig(), dt_s=0.01)
-step.reset(arm.state())
-for tick in range(150):
-    u = np.array([1.0, 0.5]) if tick else np.zeros(2)
-    arm.send(step(la.Input(u), 0.0, arm.state(), 0.01 * tick).command)
-    arm.advance(0.01)
-    if tick == 0:
-        step.enable()
-print(f"The base turned by {np.degrees(arm.state()[0] - robot.home[0]):.0f} degrees.")
+clock, step = la.SimulatedClock(), la.Step(robot, BaseAndElbow(), la.SafetyConfig(), dt_s=0.01)
+with la.make_arm("kinematic", robot, robot.home, clock.now_s) as arm:
+    step.reset(arm.read().q)
+    for tick in range(150):
+        clock.wait_until(0.01 * tick)
+        u = np.array([1.0, 0.5]) if tick else np.zeros(2)
+        arm.send(step(la.Input(u), 0.0, arm.read(), clock.now_s()).command)
+        if tick == 0:
+            arm.enable()
+            step.enable()
+    print(f"The base turned by {np.degrees(arm.read().q[0] - robot.home[0]):.0f} degrees.")

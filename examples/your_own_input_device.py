@@ -25,11 +25,12 @@ class Device(la.InputSource):
 
 
 robot = la.load_robot("panda")
-arm, clock = la.KinematicArm(robot, robot.home), la.SimulatedClock()
+clock = la.SimulatedClock()
 step = la.Step(robot, la.EndEffectorController(robot), la.SafetyConfig())
 joystick = iter([(0.0, 0.0)] * 5 + [(1.0, 0.0)] * 100)  # your device here
-loop = la.ControlLoop(step, arm, Device(joystick), clock, observers=[lambda record: arm.advance(0.01)])
-loop.enable()
-loop.run(ticks=150)
-print(f"The tool is at {np.round(robot.chain.forward(arm.state()).position, 2)} m.")
+with la.make_arm("kinematic", robot, robot.home, clock.now_s) as arm:
+    loop = la.ControlLoop(step, arm, Device(joystick), clock)
+    loop.enable()
+    loop.run(ticks=150)
+    print(f"The tool is at {np.round(robot.chain.forward(arm.read().q).position, 2)} m.")
 print(f"Why it stopped: {step.stopped.reason if step.stopped else 'it did not'}")

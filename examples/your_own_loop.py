@@ -7,27 +7,30 @@ import latentarm as la
 DT_S = 0.01
 
 robot = la.load_robot("panda")
-arm = la.KinematicArm(robot, robot.home)
+clock = la.SimulatedClock()  # la.MonotonicClock() for real time
+arm = la.make_arm("kinematic", robot, robot.home, clock.now_s)
 step = la.Step(robot, la.EndEffectorController(robot), la.SafetyConfig(), dt_s=DT_S)
 
-# The arm starts disengaged. It takes a neutral input, then an explicit enable.
-step.reset(arm.state())
-step(la.Input(np.zeros(2)), 0.0, arm.state(), 0.0)
-step.enable()
+with arm:
+    # Arm and step start disengaged. It takes a neutral input, then an explicit enable.
+    step.reset(arm.read().q)
+    step(la.Input(np.zeros(2)), 0.0, arm.read(), clock.now_s())
+    arm.enable()
+    step.enable()
 
-before = robot.chain.forward(arm.state()).position
-for tick in range(1, 101):
-    u = np.array([0.0, 1.0])  # your stick, switch or straw here
-    age_s = 0.0  # how old that input is by the loop's own clock
-    record = step(la.Input(u), age_s, arm.state(), tick * DT_S)
-    arm.send(record.command)
-    arm.advance(DT_S)
-moved = robot.chain.forward(arm.state()).position - before
-print(f"One second of full stick to the left moved the tool by {np.round(100 * moved, 1)} cm.")
+    before = robot.chain.forward(arm.read().q).position
+    for tick in range(1, 101):
+        clock.wait_until(tick * DT_S)
+        u = np.array([0.0, 1.0])  # your stick, switch or straw here
+        age_s = 0.0  # how old that input is by the loop's own clock
+        record = step(la.Input(u), age_s, arm.read(), clock.now_s())
+        arm.send(record.command)
+    moved = robot.chain.forward(arm.read().q).position - before
+    print(f"One second of full stick to the left moved the tool by {np.round(100 * moved, 1)} cm.")
 
-# Stale input: the arm ramps to rest and stays there until it is enabled again.
-for tick in range(101, 131):
-    record = step(la.Input(u), 0.2, arm.state(), tick * DT_S)
-    arm.send(record.command)
-    arm.advance(DT_S)
-print(f"Then the input went stale: {step.stopped.reason if step.stopped else 'not at all'}")
+    # Stale input: the arm ramps to rest and stays there until it is enabled again.
+    for tick in range(101, 131):
+        clock.wait_until(tick * DT_S)
+        record = step(la.Input(u), 0.2, arm.read(), clock.now_s())
+        arm.send(record.command)
+    print(f"Then the input went stale: {step.stopped.reason if step.stopped else 'not at all'}")

@@ -30,7 +30,7 @@ from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sp
 from latentarm.kinematics.reader import read
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.types import Context, FloatArray, Input
+from latentarm.types import Context, FloatArray, Input, Reading
 
 CLEARANCE_M = SafetyConfig().clearance
 ROUNDING_M = 1e-5
@@ -334,7 +334,8 @@ def drive(robot: Robot, harm: str, period_s: float, rng: np.random.Generator) ->
     controller = Pusher(robot.dof)
     step = Step(robot, controller, SafetyConfig(obstacles=obstacles), dt_s=period_s)
     step.reset(q)
-    step(Input(np.zeros(1)), 0.0, q, 0.0)
+    at_rest = np.zeros(robot.dof)
+    step(Input(np.zeros(1)), 0.0, Reading(q, at_rest, 0.0, 0), 0.0)
     if step.enable() is not None:
         raise RuntimeError("the arm could not be enabled")
     ticks, look = round(PUSH_S / period_s), round(LOOK_S / period_s)
@@ -344,7 +345,8 @@ def drive(robot: Robot, harm: str, period_s: float, rng: np.random.Generator) ->
             step.stop("The drive is over.")
         if tick % max(1, round(0.05 / period_s)) == 0:
             controller.wanted = push.towards(q)
-        record = step(Input(np.ones(1)), 0.0, q, (tick + 1) * period_s)
+        now_s = (tick + 1) * period_s
+        record = step(Input(np.ones(1)), 0.0, Reading(q, at_rest, now_s, tick + 1), now_s)
         if record.command.stop is not None and tick < ticks:
             raise RuntimeError(f"stopped: {record.command.stop.reason}")
         q = q + record.command.velocity * period_s

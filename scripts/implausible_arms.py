@@ -17,14 +17,14 @@ A stop is the first command of zero. Distances are of the tool, by the simulated
 
 import argparse
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from latentarm.arms.contract import Arm
-from latentarm.arms.kinematic import KinematicArm
+from latentarm.arms.catalogue import make_arm
+from latentarm.arms.contract import Arm, ArmSpec, ArmStatus
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
 from latentarm.control.input_port import InputSource
@@ -33,7 +33,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, Context, FloatArray, Input, StepRecord
+from latentarm.types import Command, Context, FloatArray, Input, Reading, StepRecord
 
 PERIOD_S = 0.01
 ENCODER_NOISE_RAD = 1e-5
@@ -77,67 +77,80 @@ class Push(InputSource):
         return Input(np.full(1, float(self._ticks > 5))), 0.0
 
 
-class FaultyArm(Arm):
+class ImplausibleArm(Arm):
     """A simulated arm with a fault from a moment on.
 
     Args:
-        robot: whose joints these are.
-        state: (n,), where it starts, rad.
+        plant: what moves.
         fault: one of `FAULTS`.
         at_s: when the fault begins, s.
         rng: which joint it is of, and the encoders' noise.
     """
 
-    def __init__(
-        self, robot: Robot, state: FloatArray, fault: str, at_s: float, rng: np.random.Generator
-    ) -> None:
-        self.plant = KinematicArm(robot, state)
+    def __init__(self, plant: Arm, fault: str, at_s: float, rng: np.random.Generator) -> None:
+        self.plant = plant
         self._fault, self._at_s, self._rng = fault, at_s, rng
-        self._joint = int(rng.integers(robot.dof))
+        self._joint = int(rng.integers(len(plant.spec.joint_names)))
         self._sign = float(rng.choice([-1.0, 1.0]))
-        self._time_s = 0.0
-        self._past = [state]
+        self._past: list[Reading] = []
         self._held: int | None = None
 
     @property
-    def faulty(self) -> bool:
-        """Whether the fault has begun."""
-        return self._time_s >= self._at_s
-
-    @property
-    def simulated(self) -> bool:
+    def spec(self) -> ArmSpec:
         """See the base class."""
-        return True
+        return self.plant.spec
 
-    def state(self) -> FloatArray:
+    def connect(self) -> None:
+        """See the base class."""
+        self.plant.connect()
+
+    def close(self) -> None:
+        """See the base class."""
+        self.plant.close()
+
+    def read(self) -> Reading:
         """What the encoders say."""
-        ticks_since = round((self._time_s - self._at_s) / PERIOD_S)
-        if not self.faulty:
-            reading = self.plant.state()
-        elif self._fault == "frozen":
-            return self._past[-1 - ticks_since]
-        elif self._fault == "lagging":
-            reading = self._past[max(len(self._past) - 1 - round(0.5 * ticks_since), 0)]
-        else:
-            reading = self.plant.state()
+        true = self.plant.read()
+        if not self._past or self._past[-1].sequence < true.sequence:
+            self._past.append(true)
+        faulty = self._faulty(true)
+        ticks_since = round((true.time_s - self._at_s) / PERIOD_S)
+        q = true.q
+        if faulty and self._fault == "frozen":
+            return replace(true, q=self._past[-1 - ticks_since].q)
+        if faulty and self._fault == "lagging":
+            q = self._past[max(len(self._past) - 1 - round(0.5 * ticks_since), 0)].q
         if self._fault != "frozen":
-            reading = reading + self._rng.normal(scale=ENCODER_NOISE_RAD, size=len(reading))
-        if self.faulty and self._fault == "jumping":
-            reading[self._joint] += 1.5 * self._sign
-        return reading
+            q = q + self._rng.normal(scale=ENCODER_NOISE_RAD, size=len(q))
+        if faulty and self._fault == "jumping":
+            q[self._joint] += 1.5 * self._sign
+        return replace(true, q=q)
 
-    def velocity(self) -> FloatArray:
+    def status(self) -> ArmStatus:
         """See the base class."""
-        return self.plant.velocity()
+        return self.plant.status()
+
+    def enable(self) -> None:
+        """See the base class."""
+        self.plant.enable()
+
+    def disable(self) -> None:
+        """See the base class."""
+        self.plant.disable()
+
+    def recover(self) -> None:
+        """See the base class."""
+        self.plant.recover()
 
     def send(self, command: Command) -> None:
         """See the base class."""
         velocity = command.velocity.copy()
-        if self.faulty and self._fault == "blocked" and velocity.any():
+        faulty = self._faulty(self.plant.read())
+        if faulty and self._fault == "blocked" and velocity.any():
             if self._held is None:
                 self._held = int(np.abs(velocity).argmax())
             velocity[self._held] = 0.0
-        if self.faulty and self._fault == "drifting":
+        if faulty and self._fault == "drifting":
             velocity[self._joint] += 0.2 * self._sign
         self.plant.send(Command(velocity, command.duration_s))
 
@@ -145,11 +158,9 @@ class FaultyArm(Arm):
         """See the base class."""
         self.plant.stop()
 
-    def advance(self, span_s: float) -> None:
-        """Let time pass."""
-        self.plant.advance(span_s)
-        self._time_s += span_s
-        self._past.append(self.plant.state())
+    def _faulty(self, reading: Reading) -> bool:
+        """Whether the fault has begun."""
+        return reading.time_s >= self._at_s
 
 
 @dataclass(frozen=True)
@@ -180,15 +191,16 @@ def drive(robot: Robot, fault: str, seed: int) -> Outcome:
         if inside:
             break
     at_s = 0.01 * int(rng.integers(50, 100))
-    arm = FaultyArm(robot, start, fault, at_s, rng)
-    clock = SimulatedClock([arm.advance])
+    clock = SimulatedClock()
+    arm = ImplausibleArm(make_arm("kinematic", robot, start, clock.now_s), fault, at_s, rng)
+    arm.connect()
     step = Step(robot, Straight(direction), SafetyConfig(), dt_s=PERIOD_S)
     records: list[StepRecord] = []
     states: list[FloatArray] = []
 
     def observe(record: StepRecord) -> None:
         records.append(record)
-        states.append(arm.plant.state())
+        states.append(arm.plant.read().q)
         if len(records) == 2:
             loop.enable()
 

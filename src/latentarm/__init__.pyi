@@ -1,7 +1,11 @@
 from .arms.catalogue import make_arm as make_arm
 from .arms.contract import Arm as Arm
-from .arms.contract import SimulatedArm as SimulatedArm
+from .arms.contract import ArmSpec as ArmSpec
+from .arms.contract import ArmStatus as ArmStatus
 from .arms.kinematic import KinematicArm as KinematicArm
+from .arms.mujoco import Imperfections as Imperfections
+from .arms.mujoco import MujocoArm as MujocoArm
+from .arms.simulated import SimulatedArm as SimulatedArm
 from .assistance.belief import Belief as Belief
 from .assistance.blending import ConfidenceAlpha as ConfidenceAlpha
 from .assistance.blending import FixedAlpha as FixedAlpha
@@ -39,5 +43,6 @@ from .types import Episode as Episode
 from .types import Goal as Goal
 from .types import Input as Input
 from .types import Pose as Pose
+from .types import Reading as Reading
 
 __version__: str

@@ -210,6 +210,23 @@ class Input:
 
 
 @dataclass(frozen=True)
+class Reading:
+    """What an arm measured at one moment.
+
+    Attributes:
+        q: (n,), joint positions, rad.
+        dq: (n,), joint velocities, rad/s.
+        time_s: when they were measured, by the clock of whoever drives the arm, s.
+        sequence: grows with every new reading, across reconnections too.
+    """
+
+    q: FloatArray
+    dq: FloatArray
+    time_s: float
+    sequence: int
+
+
+@dataclass(frozen=True)
 class Stop:
     """A safety filter's refusal.
 

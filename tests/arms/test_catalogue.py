@@ -1,37 +1,31 @@
-"""Arms are made by name; a simulated one can live in real time."""
+"""Arms are made by name; only those that can be driven safely are driven."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from latentarm.arms.catalogue import ARMS, DEFAULT_ARM, make_arm, make_live_arm, make_simulated_arm
-from latentarm.arms.contract import Arm
+from latentarm.arms.catalogue import ARMS, DEFAULT_ARM, make_arm, make_simulated_arm
+from latentarm.arms.contract import ArmSpec, check_arm
+from latentarm.arms.kinematic import KinematicArm
 from latentarm.errors import UserError
+from latentarm.testing.faults import FaultyArm
 from latentarm.types import Command
 
 
-class Hardware(Arm):
-    simulated = False
-
-    def __init__(self, robot, state):
-        self.robot = robot
-
-    def state(self):
-        return self.robot.home
-
-    def velocity(self):
-        return np.zeros(self.robot.dof)
-
-    def send(self, command):
-        raise AssertionError("nothing may be sent")
-
-    def stop(self):
-        pass
+def now_s():
+    return 0.0
 
 
 @pytest.fixture
 def registered(monkeypatch):
-    monkeypatch.setitem(ARMS._loaded, "hardware", Hardware)
-    monkeypatch.setitem(ARMS._loaded, "thing", lambda robot, state: object())
+    def hardware(robot, state, now_s):
+        arm = FaultyArm(KinematicArm(robot, state, now_s), now_s)
+        arm.arm._spec = replace(arm.spec, simulated=False)
+        return arm
+
+    monkeypatch.setitem(ARMS._loaded, "hardware", hardware)
+    monkeypatch.setitem(ARMS._loaded, "thing", lambda robot, state, now_s: object())
     monkeypatch.setattr(ARMS, "_own", {**ARMS._own, "hardware": ":", "thing": ":"})
 
 
@@ -41,31 +35,58 @@ def test_the_default_is_in_the_catalogue():
 
 def test_an_unknown_arm_is_refused(the_panda):
     with pytest.raises(UserError, match="--arm names the arm 'wooden', which is not one of kinematic"):
-        make_arm("wooden", the_panda, the_panda.home)
+        make_arm("wooden", the_panda, the_panda.home, now_s)
 
 
 @pytest.mark.usefixtures("registered")
 def test_what_is_made_must_be_an_arm(the_panda):
     with pytest.raises(UserError, match="--arm thing made object"):
-        make_arm("thing", the_panda, the_panda.home)
+        make_arm("thing", the_panda, the_panda.home, now_s)
 
 
 @pytest.mark.usefixtures("registered")
 def test_time_is_simulated_for_simulated_arms_only(the_panda):
     with pytest.raises(UserError, match="--arm hardware is a real arm"):
-        make_simulated_arm("hardware", the_panda, the_panda.home)
-    assert isinstance(make_live_arm("hardware", the_panda, the_panda.home, lambda: 0.0), Hardware)
+        make_simulated_arm("hardware", the_panda, the_panda.home, now_s)
+    assert not make_arm("hardware", the_panda, the_panda.home, now_s).spec.simulated
 
 
-def test_a_live_arm_moves_as_time_passes_and_stops_by_itself(the_panda):
-    now_s = 5.0
-    arm = make_live_arm("kinematic", the_panda, the_panda.home, lambda: now_s)
+@pytest.mark.parametrize(
+    ("stops_after_s", "why"),
+    [(None, "not known whether"), (float("nan"), "not known whether"), (0.5, "500 ms"), (-0.1, "-100 ms")],
+)
+def test_an_arm_must_say_when_it_stops_by_itself(the_panda, stops_after_s, why):
+    with pytest.raises(UserError, match=f"{why}.*stops by itself"):
+        check_arm(ArmSpec(the_panda.joint_names, 100.0, stops_after_s, simulated=True), the_panda)
+
+
+def test_an_arm_must_have_the_robots_joints(the_panda):
+    other = ArmSpec(("shoulder", "elbow"), 100.0, 0.02, simulated=True)
+    with pytest.raises(UserError, match="joints shoulder, elbow, and panda has joint1"):
+        check_arm(other, the_panda)
+
+
+def test_a_simulated_arm_moves_as_its_clock_goes_on(the_panda):
+    time_s = 5.0
+    arm = make_arm("kinematic", the_panda, the_panda.home, lambda: time_s)
     velocity = np.full(7, 0.1)
-    arm.send(Command(velocity, duration_s=0.05))
-    now_s = 5.02
-    np.testing.assert_allclose(arm.state() - the_panda.home, 0.02 * velocity)
-    np.testing.assert_array_equal(arm.velocity(), velocity)
-    now_s = 6.0
-    np.testing.assert_allclose(arm.state() - the_panda.home, 0.05 * velocity)
-    assert not arm.velocity().any()
-    assert arm.simulated
+    with arm:
+        arm.enable()
+        arm.send(Command(velocity, duration_s=0.05))
+        time_s = 5.02
+        reading = arm.read()
+        np.testing.assert_allclose(reading.q - the_panda.home, 0.02 * velocity)
+        np.testing.assert_array_equal(reading.dq, velocity)
+        assert reading.time_s == time_s
+        time_s = 6.0
+        np.testing.assert_allclose(arm.read().q - the_panda.home, 0.05 * velocity)
+        assert not arm.read().dq.any()
+    assert arm.status().phase == "off"
+    # A clock that goes back tells nothing, and the arm goes on when time does.
+    with arm:
+        arm.enable()
+        arm.send(Command(velocity, duration_s=0.05))
+        before, time_s = arm.read().q, 1.0
+        np.testing.assert_array_equal(arm.read().q, before)
+        time_s = 1.02
+        np.testing.assert_allclose(arm.read().q - before, 0.02 * velocity)

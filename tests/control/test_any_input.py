@@ -14,6 +14,7 @@ from latentarm.control.safety.obstacles import table
 from latentarm.control.step import Step
 from latentarm.kinematics.obstacles import Sphere
 from latentarm.types import Input
+from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__
 """The loop's clock, one period later each time."""
@@ -97,7 +98,7 @@ def drive(robot, scripted, oracle, state, matrix, ticks):
             given = [(Input(u, switch), age, answer)] * repeats
         for index, (one, its_age, its_answer) in enumerate(given):
             controller.answer = None if its_answer is None else _answering(its_answer)
-            record = step(one, its_age, q, now_s())
+            record = stepped(step, one, its_age, q, now_s())
             if index == 0 and len(given) > repeats:
                 step.enable()
             velocity = record.command.velocity
@@ -143,11 +144,11 @@ def test_no_input_gets_an_unsafe_command_out(arm, scripted, oracle, seed, matrix
 def test_no_reading_of_the_joints_gets_an_unsafe_command_out(arm, scripted, readings):
     step = Step(arm, scripted(np.full((2, 7), 0.4)), SafetyConfig(obstacles=OBSTACLES), dt_s=DT)
     step.reset(arm.home)
-    step(Input(np.zeros(2)), 0.0, arm.home, now_s())
+    stepped(step, Input(np.zeros(2)), 0.0, arm.home, now_s())
     step.enable()
     before = before_that = np.zeros(7)
     for reading in [arm.home] * 10 + readings + readings:
-        velocity = step(Input(np.ones(2)), 0.0, reading, now_s()).command.velocity
+        velocity = stepped(step, Input(np.ones(2)), 0.0, reading, now_s()).command.velocity
         limits_kept(step._stack.bounds, before, velocity, before_that)
         before, before_that = velocity, before
     # Readings far out of reach are no reason to rush either.
@@ -168,9 +169,9 @@ def test_no_reading_of_the_joints_gets_an_unsafe_command_out(arm, scripted, read
 def test_an_unusable_input_stops_with_a_reason(arm, scripted, u):
     step = Step(arm, scripted(np.full((2, 7), 0.4)), SafetyConfig())
     step.reset(arm.home)
-    step(Input(np.zeros(2)), 0.0, arm.home, now_s())
+    stepped(step, Input(np.zeros(2)), 0.0, arm.home, now_s())
     assert step.enable() is None
-    record = step(Input(u), 0.0, arm.home, now_s())
+    record = stepped(step, Input(u), 0.0, arm.home, now_s())
     assert record.command.stop is not None
     assert "input" in record.command.stop.reason
     assert not record.input.any()
@@ -179,9 +180,9 @@ def test_an_unusable_input_stops_with_a_reason(arm, scripted, u):
 def test_a_little_past_the_edge_is_cut_off(arm, scripted):
     step = Step(arm, scripted(np.full((2, 7), 0.1)), SafetyConfig())
     step.reset(arm.home)
-    step(Input(np.zeros(2)), 0.0, arm.home, now_s())
+    stepped(step, Input(np.zeros(2)), 0.0, arm.home, now_s())
     step.enable()
-    record = step(Input(np.array([1.05, -1.2])), 0.0, arm.home, now_s())
+    record = stepped(step, Input(np.array([1.05, -1.2])), 0.0, arm.home, now_s())
     assert record.command.stop is None
     np.testing.assert_array_equal(record.input, [1.0, -1.0])
 
@@ -189,7 +190,7 @@ def test_a_little_past_the_edge_is_cut_off(arm, scripted):
 def test_records_are_frozen_and_their_states_are_copies(arm, scripted):
     step = Step(arm, scripted(np.full((2, 7), 0.1)), SafetyConfig())
     state = arm.home.copy()
-    record = step(Input(np.zeros(2)), 0.0, state, now_s())
+    record = stepped(step, Input(np.zeros(2)), 0.0, state, now_s())
     state += 1.0
     np.testing.assert_array_equal(record.state, arm.home)
     with pytest.raises(dataclasses.FrozenInstanceError):

@@ -11,6 +11,7 @@ from latentarm.control.safety.obstacles import table
 from latentarm.control.step import Step
 from latentarm.kinematics.obstacles import Box, Capsule, Sphere
 from latentarm.types import Input
+from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__
 """The loop's clock, one period later each time."""
@@ -85,7 +86,7 @@ def approach_and_back_out(arm, oracle, scripted, seed):
     obstacles, q, harm = scene(arm, oracle, seed)
     controller = scripted(np.zeros((1, 7)))
     step = Step(arm, controller, SafetyConfig(obstacles=obstacles), dt_s=DT)
-    step(Input(np.zeros(1)), 0.0, q, now_s())
+    stepped(step, Input(np.zeros(1)), 0.0, q, now_s())
     assert step.enable() is None
     bounds = step._stack.bounds
     states, hard_stops = [q], 0
@@ -95,7 +96,7 @@ def approach_and_back_out(arm, oracle, scripted, seed):
         for tick in range(ticks):
             if tick % 5 == 0:
                 controller.matrix = harm.towards(q)[None] * 2.0
-            record = step(Input(np.array([u])), 0.0, q, now_s())
+            record = stepped(step, Input(np.array([u])), 0.0, q, now_s())
             assert record.command.stop is None
             if tick % 10 == 0:
                 assert harm.measure.link_speed(q, record.command.velocity) <= 0.25 + 1e-6
@@ -152,18 +153,18 @@ def test_an_arm_that_starts_too_near_can_be_driven_away_but_no_nearer(arm, oracl
     harm = Harm("obstacle", measure, arm.limits, q, q)
     controller = scripted(np.zeros((1, 7)))
     step = Step(arm, controller, SafetyConfig(obstacles=(ball,)), dt_s=DT)
-    step(Input(np.zeros(1)), 0.0, q, now_s())
+    stepped(step, Input(np.zeros(1)), 0.0, q, now_s())
     step.enable()
     start = q
     for u in (1.0, -1.0):
         q = start
         step.reset(q)
-        step(Input(np.zeros(1)), 0.0, q, now_s())
+        stepped(step, Input(np.zeros(1)), 0.0, q, now_s())
         step.enable()
         for tick in range(200):
             if tick % 5 == 0:
                 controller.matrix = harm.towards(q)[None] * 2.0
             before = measure.distances(q)
-            q = q + step(Input(np.array([u])), 0.0, q, now_s()).command.velocity * DT
+            q = q + stepped(step, Input(np.array([u])), 0.0, q, now_s()).command.velocity * DT
             assert (measure.distances(q) >= np.minimum(0.02, before) - 1e-8).all()
     assert measure.clearance(q) > 0.02

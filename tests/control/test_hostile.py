@@ -19,6 +19,7 @@ from latentarm.control.step import Step
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Sphere
 from latentarm.types import Input, Stop
+from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__
 """The loop's clock, one period later each time."""
@@ -31,7 +32,7 @@ NEUTRAL, PUSH = Input(np.zeros(1)), Input(np.ones(1))
 def driven(arm, scripted):
     controller = scripted(np.full((1, 7), 0.3))
     step = Step(arm, controller, SafetyConfig(), dt_s=DT)
-    step(NEUTRAL, 0.0, arm.home, now_s())
+    stepped(step, NEUTRAL, 0.0, arm.home, now_s())
     assert step.enable() is None
     return step, controller
 
@@ -46,7 +47,7 @@ def test_a_controller_cannot_move_what_the_filters_measure_from(driven, arm):
     controller.answer = lie
     q = arm.home
     for _ in range(600):
-        q = q + step(PUSH, 0.0, q, now_s()).command.velocity * DT
+        q = q + stepped(step, PUSH, 0.0, q, now_s()).command.velocity * DT
     assert (q <= arm.limits.upper).all()
 
 
@@ -55,7 +56,7 @@ def test_whoever_sees_a_record_cannot_move_the_arm_with_it(driven, arm, name):
     step, _ = driven
     q = arm.home
     for _ in range(100):
-        record = step(NEUTRAL, 0.0, q, now_s())
+        record = stepped(step, NEUTRAL, 0.0, q, now_s())
         q = q + record.command.velocity * DT
         with pytest.raises(ValueError, match="read-only"):
             (record.command.velocity if name == "velocity" else getattr(record, name))[...] = 0.4
@@ -77,20 +78,20 @@ class WordlessError(Exception):
 )
 def test_inputs_that_cannot_even_be_read_stop_the_arm(driven, arm, given):
     step, _ = driven
-    assert step(PUSH, 0.0, arm.home, now_s()).command.stop is None
-    assert step(given, 0.0, arm.home, now_s()).command.stop is not None
+    assert stepped(step, PUSH, 0.0, arm.home, now_s()).command.stop is None
+    assert stepped(step, given, 0.0, arm.home, now_s()).command.stop is not None
 
 
 @pytest.mark.parametrize("age", [None, "0"])
 def test_an_age_that_is_none_stops_the_arm(driven, arm, age):
     step, _ = driven
-    assert step(PUSH, age, arm.home, now_s()).command.stop is not None
+    assert stepped(step, PUSH, age, arm.home, now_s()).command.stop is not None
 
 
 @pytest.mark.parametrize("state", [None, Raises(), [[1], [1, 2]]])
 def test_a_state_that_is_none_stops_the_arm(driven, state):
     step, _ = driven
-    assert step(PUSH, 0.0, state, now_s()).command.stop is not None
+    assert stepped(step, PUSH, 0.0, state, now_s()).command.stop is not None
 
 
 def test_an_error_without_words_stops_the_arm(driven, arm):
@@ -100,7 +101,7 @@ def test_an_error_without_words_stops_the_arm(driven, arm):
         raise WordlessError
 
     controller.answer = fail
-    assert "WordlessError" in step(PUSH, 0.0, arm.home, now_s()).command.stop.reason
+    assert "WordlessError" in stepped(step, PUSH, 0.0, arm.home, now_s()).command.stop.reason
 
 
 def test_a_stop_that_was_harder_than_ordinary_motion_can_be_taken_up_again(two_arms):
@@ -120,7 +121,7 @@ def test_a_stop_takes_as_long_when_ticks_come_late(driven, arm):
         if tick == 40:
             stopped_s = time_s
             step.stop("Stop.")
-        q = q + step(PUSH, 0.0, q, time_s).command.velocity * 2 * DT
+        q = q + stepped(step, PUSH, 0.0, q, time_s).command.velocity * 2 * DT
         if stopped_s is not None and step.at_rest:
             break
     # The first late tick after the ramp's end is the last.
@@ -141,8 +142,9 @@ def give_up(loop):
 
 
 def loop_of(arm, scripted, script, observers=()):
-    simulated = KinematicArm(arm, arm.home)
-    clock = SimulatedClock([simulated.advance])
+    clock = SimulatedClock()
+    simulated = KinematicArm(arm, arm.home, clock.now_s)
+    simulated.connect()
     controller = scripted(np.full((1, 7), 0.3))
     step = Step(arm, controller, SafetyConfig(), dt_s=DT)
     parts = SimpleNamespace(records=[], arm=simulated, clock=clock, controller=controller, step=step)
@@ -212,7 +214,7 @@ def test_an_arm_that_several_links_are_wedged_with_can_be_backed_out(arm, script
     assert depth < -0.05
     controller = scripted(np.zeros((1, 7)))
     step = Step(arm, controller, SafetyConfig(obstacles=measure.obstacles), dt_s=DT)
-    step(NEUTRAL, 0.0, arm.home, now_s())
+    stepped(step, NEUTRAL, 0.0, arm.home, now_s())
     assert step.enable() is None
     # The way in which what is too near gets further away fastest, all of it at once.
     q, nudge = arm.home, 1e-6 * np.eye(7)
@@ -223,7 +225,7 @@ def test_an_arm_that_several_links_are_wedged_with_can_be_backed_out(arm, script
     out = linprog([0.0] * 7 + [-1.0], most, np.zeros(len(slopes)), bounds=[(-1, 1)] * 7 + [(None, None)])
     controller.matrix = out.x[None, :7]
     for _ in range(200):
-        q = q + step(PUSH, 0.0, q, now_s()).command.velocity * DT
+        q = q + stepped(step, PUSH, 0.0, q, now_s()).command.velocity * DT
         assert measure.clearance(q) >= depth - 1e-8
     assert measure.clearance(q) > depth + 0.01
 

@@ -8,6 +8,7 @@ import pytest
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.types import Input
+from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__
 """The loop's clock, one period later each time."""
@@ -24,7 +25,7 @@ def going(arm, scripted):
     def going(push, **limits):
         step = Step(arm, scripted(MATRIX), SafetyConfig(**limits))
         step.reset(arm.home)
-        step(NEUTRAL, 0.0, arm.home, now_s())
+        stepped(step, NEUTRAL, 0.0, arm.home, now_s())
         assert step.enable() is None
         return step, commands(step, Input(np.array(push)), arm.home, 40)[1]
 
@@ -35,7 +36,7 @@ def commands(step, given, state, ticks):
     """Commands of so many ticks, (ticks, 7), rad/s, and where they have led."""
     sent = []
     for _ in range(ticks):
-        sent.append(step(given, 0.0, state, now_s()).command.velocity)
+        sent.append(stepped(step, given, 0.0, state, now_s()).command.velocity)
         state = state + sent[-1] * DT
     return np.array(sent), state
 

@@ -10,6 +10,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.plausibility import Plausibility
 from latentarm.control.step import STEADY_S, Step
 from latentarm.types import Input
+from stepping import stepped
 
 NOISE_RAD = 1e-3
 PERIODS_S = st.sampled_from([0.002, 0.005, 0.01, 0.02])
@@ -39,12 +40,14 @@ def positions(velocity, dt_s, tau_s):
     return np.array(found)
 
 
-def first_doubt(made, readings, velocity, dt_s):
-    """When and why readings (T, n) are found implausible; None where they never are."""
+def first_doubt(made, readings, velocity, dt_s, every=1):
+    """When and why readings (T, n), new every so many ticks, are found implausible; None where never."""
     before = np.zeros(readings.shape[1])
     for tick, (reading, command) in enumerate(zip(readings, velocity, strict=True)):
         time_s = tick * dt_s
-        said = made.jump(reading, time_s) or made.follow(reading, before, time_s, driven=True)
+        said = made.jump(reading, time_s) or made.follow(
+            reading, before, time_s, new=tick % every == 0, driven=True
+        )
         if said is not None:
             return time_s, said
         before = command
@@ -80,7 +83,34 @@ def test_readings_that_come_rarely_or_in_steps_are_healthy_too(arm, seed, every,
     readings = positions(velocity, 0.01, 0.0)[(np.arange(300) // every) * every]
     if step_rad > 0.0:
         readings = np.round(readings / step_rad) * step_rad
+    assert first_doubt(made, readings, velocity, 0.01, every) is None
+
+
+@given(SEEDS, st.integers(0, 9))
+@settings(deadline=None, max_examples=40)
+def test_exact_readings_of_an_arm_that_lags_are_healthy_too(arm, seed, late):
+    """As a simulated arm without noise gives them; commands may stop and go on within the lag."""
+    rng = np.random.default_rng(seed)
+    made, bounds = make(arm)
+    assert late * bounds.dt_s < bounds.lag_s
+    velocity = commands(rng, 0.5, 300)
+    true = positions(velocity, 0.01, 0.0)
+    readings = true[np.maximum(np.arange(300) - late, 0)]
     assert first_doubt(made, readings, velocity, 0.01) is None
+
+
+@given(SEEDS, st.floats(0.1, 0.5))
+@settings(deadline=None, max_examples=40)
+def test_new_readings_that_repeat_on_the_way_are_noticed_sooner(arm, seed, speed):
+    rng = np.random.default_rng(seed)
+    made, bounds = make(arm)
+    velocity = np.tile(rng.uniform(0.1, 1.0, 7) * speed * rng.choice([-1.0, 1.0], 7), (200, 1))
+    velocity[:, 0] = speed
+    readings = positions(velocity, 0.01, 0.0)[:-1]
+    readings[60:] = readings[60]
+    found_s, said = first_doubt(made, readings, velocity, 0.01)
+    assert 0.6 < found_s <= 0.6 + bounds.config.freeze_margin / speed + 0.02
+    assert "does not change" in said
 
 
 @given(SEEDS, PERIODS_S, st.floats(0.1, 0.5), st.booleans())
@@ -148,14 +178,14 @@ def test_an_arm_that_is_not_driven_may_be_moved_by_hand(arm):
     for tick in range(200):
         q = np.full(7, 0.01 * tick)
         assert made.jump(q, 0.01 * tick) is None
-        assert made.follow(q, np.zeros(7), 0.01 * tick, driven=False) is None
+        assert made.follow(q, np.zeros(7), 0.01 * tick, new=True, driven=False) is None
     # From where it is now, it is expected to follow.
-    assert made.follow(q, np.zeros(7), 2.0, driven=True) is None
+    assert made.follow(q, np.zeros(7), 2.0, new=True, driven=True) is None
 
 
 def test_metres_where_a_joint_slides(gantry):
     made, _ = make(gantry, joint_speed=0.5)
-    assert made.follow(gantry.home, np.zeros(4), 0.0, driven=True) is None
+    assert made.follow(gantry.home, np.zeros(4), 0.0, new=True, driven=True) is None
     assert " m in 10 ms" in made.jump(gantry.home + np.array([0.4, 0.0, 0.0, 0.0]), 0.01)
 
 
@@ -177,7 +207,7 @@ class Rig:
 
     def tick_with(self, u, ticks=1):
         for _ in range(ticks):
-            self.record = self.step(Input(np.full(1, u)), 0.0, self.read(self.q), 0.01 * self.tick)
+            self.record = stepped(self.step, Input(np.full(1, u)), 0.0, self.read(self.q), 0.01 * self.tick)
             self.q = self.q + self.record.command.velocity * 0.01
             self.tick += 1
         return self.record
@@ -278,12 +308,12 @@ def test_not_one_moving_command_follows_a_clock_that_fails(rig, leap_s):
     rig.tick_with(1.0, 60)
     assert rig.record.command.velocity.any()
     time_s = 0.01 * (rig.tick - 1)
-    record = rig.step(Input(np.ones(1)), 0.0, rig.q, time_s + leap_s)
+    record = stepped(rig.step, Input(np.ones(1)), 0.0, rig.q, time_s + leap_s)
     assert not record.command.velocity.any()
     assert "clock" in record.command.stop.reason
     for tick in range(30):
         later_s = time_s + (leap_s if np.isfinite(leap_s) else 0.0) + 0.01 * (tick + 1)
-        record = rig.step(Input(np.ones(1)), 0.0, rig.q, later_s)
+        record = stepped(rig.step, Input(np.ones(1)), 0.0, rig.q, later_s)
         assert not record.command.velocity.any()
 
 
@@ -291,10 +321,10 @@ def test_a_command_counts_for_no_longer_than_it_lasts(arm):
     """After a late tick the arm has stopped by itself, and is where its last command left it."""
     made, bounds = make(arm)
     velocity, q = np.full(7, 0.4), np.zeros(7)
-    made.follow(q, np.zeros(7), 0.0, driven=True)
+    made.follow(q, np.zeros(7), 0.0, new=True, driven=True)
     q = q + velocity * bounds.hold_s
     time_s = 1.0
-    assert made.follow(q, velocity, time_s, driven=True) is None
+    assert made.follow(q, velocity, time_s, new=True, driven=True) is None
     for _ in range(100):
         time_s += 0.01
-        assert made.follow(q + 1e-6 * time_s, np.zeros(7), time_s, driven=True) is None
+        assert made.follow(q + 1e-6 * time_s, np.zeros(7), time_s, new=True, driven=True) is None

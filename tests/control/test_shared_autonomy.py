@@ -21,6 +21,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.shared_autonomy import Choices
 from latentarm.control.step import Step
 from latentarm.types import Context, Goal, Input
+from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__
 """The loop's clock, one period later each time."""
@@ -52,7 +53,7 @@ def make(arm, scripted):
             arm, controller, SafetyConfig(), goals=goals, belief=belief, arbitration=arbitration, **changes
         )
         step.reset(arm.home)
-        step(NEUTRAL, 0.0, arm.home, now_s())
+        stepped(step, NEUTRAL, 0.0, arm.home, now_s())
         assert step.enable() is None
         return step
 
@@ -62,7 +63,7 @@ def make(arm, scripted):
 def run(step, given, state, ticks, age=0.0):
     records = []
     for _ in range(ticks):
-        records.append(step(given, age, state, now_s()))
+        records.append(stepped(step, given, age, state, now_s()))
         state = state + records[-1].command.velocity * step.dt_s
     return records, state
 
@@ -206,9 +207,9 @@ class TestBound:
                 belief=belief,
                 arbitration=FixedAlpha(0.3),
             )
-            step(NEUTRAL, 0.0, arm.home, now_s())
+            stepped(step, NEUTRAL, 0.0, arm.home, now_s())
             step.enable()
-            record = step(PUSH, 0.0, arm.home, now_s())
+            record = stepped(step, PUSH, 0.0, arm.home, now_s())
             expected = radius(SIGMA_H, arm.home, prior, states, prior.argmax(), 0.3)
             assert record.bound_rad == pytest.approx(float(expected))
 
@@ -238,7 +239,7 @@ class TestBound:
         records, state = run(step, NEUTRAL, state, 30)
         assert all(math.isnan(record.bound_rad) for record in records)
         step.stop("enough")
-        assert math.isnan(step(PUSH, 0.0, state, now_s()).bound_rad)
+        assert math.isnan(stepped(step, PUSH, 0.0, state, now_s()).bound_rad)
         for arbitration in (None, FixedAlpha(0.0)):
             records, _ = run(make(arbitration), PUSH, arm.home, 20)
             assert all(math.isnan(record.bound_rad) for record in records)
@@ -258,9 +259,9 @@ class TestBound:
     def test_help_without_a_belief_has_one_too(self, arm, scripted):
         goals = goals_of(arm, 0.3, -0.2)
         step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, arbitration=FixedAlpha(0.4))
-        step(NEUTRAL, 0.0, arm.home, now_s())
+        stepped(step, NEUTRAL, 0.0, arm.home, now_s())
         step.enable()
-        record = step(PUSH, 0.0, arm.home, now_s())
+        record = stepped(step, PUSH, 0.0, arm.home, now_s())
         assert record.bound_rad == pytest.approx(radius_by_hand(arm, arm.home, np.array([0.5, 0.5]), 0.4))
 
     def test_more_help_and_a_surer_belief_make_it_smaller(self, make, arm):

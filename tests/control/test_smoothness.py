@@ -18,6 +18,7 @@ from latentarm.control.safety.obstacles import table
 from latentarm.control.step import Step
 from latentarm.kinematics.obstacles import Sphere
 from latentarm.types import Input
+from stepping import stepped
 
 ROUNDING_RAD_S = 3e-9
 """The stack itself takes commands of a nanoradian per second for rest."""
@@ -46,7 +47,7 @@ def commands(arm, scripted, config, dt_s, seed, events):
     for event, ticks in events:
         if step.stopped is not None and event not in ("stop", "stale", "reading"):
             # The person lets go and enables again, perhaps while the arm still slows down.
-            record = step(Input(np.zeros(2)), 0.0, q, len(velocities) * dt_s)
+            record = stepped(step, Input(np.zeros(2)), 0.0, q, len(velocities) * dt_s)
             velocities.append(record.command.velocity)
             led.append("stop")
             q = q + record.command.velocity * dt_s
@@ -65,7 +66,7 @@ def commands(arm, scripted, config, dt_s, seed, events):
             if event == "broken":
                 given = Input(np.array([np.nan, 0.0]))
             reading = np.full(7, np.nan) if event == "reading" else q
-            record = step(given, age, reading, len(velocities) * dt_s)
+            record = stepped(step, given, age, reading, len(velocities) * dt_s)
             velocities.append(record.command.velocity)
             if step._stack._brake is not None:
                 led.append("stop")

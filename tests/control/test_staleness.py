@@ -9,6 +9,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.stack import SafetyStack
 from latentarm.control.step import Step
 from latentarm.types import Input
+from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__
 """The loop's clock, one period later each time."""
@@ -21,13 +22,13 @@ def test_silence_stops_the_arm_in_time(arm, scripted, dt, seed):
     matrix = rng.uniform(-1.0, 1.0, (2, 7)) * rng.choice([0.1, 1.0])
     step = Step(arm, scripted(matrix), SafetyConfig(), dt_s=dt)
     q = arm.home
-    step(Input(np.zeros(2)), 0.0, q, 0.0)
+    stepped(step, Input(np.zeros(2)), 0.0, q, 0.0)
     step.enable()
     push = Input(rng.choice([-1.0, 1.0], 2))
     now = 0.0
     for _ in range(int(rng.uniform(0.1, 1.5) / dt)):
         now += dt
-        velocity = step(push, 0.0, q, now).command.velocity
+        velocity = stepped(step, push, 0.0, q, now).command.velocity
         q = q + velocity * dt
     assert np.abs(velocity).max() > 0.005
     # The last input arrives somewhere between two ticks.
@@ -36,7 +37,7 @@ def test_silence_stops_the_arm_in_time(arm, scripted, dt, seed):
     before = velocity
     for _ in range(int(0.5 / dt)):
         now += dt
-        record = step(push, now - fresh, q, now)
+        record = stepped(step, push, now - fresh, q, now)
         velocity = record.command.velocity
         q = q + velocity * dt
         assert (np.abs(velocity - before) <= step._stack.bounds.stop_acceleration * dt + 1e-9).all()
@@ -55,16 +56,16 @@ def test_even_at_full_speed_of_every_joint(two_arms, scripted):
     config = SafetyConfig(link_speed=1.5, clearance=0.001)
     step = Step(two_arms, scripted(np.tile([0.5, -0.5], (2, 5))), config)
     q = two_arms.home
-    step(Input(np.zeros(2)), 0.0, q, now_s())
+    stepped(step, Input(np.zeros(2)), 0.0, q, now_s())
     step.enable()
     for _ in range(30):
-        velocity = step(Input(np.array([1.0, 0.0])), 0.0, q, now_s()).command.velocity
+        velocity = stepped(step, Input(np.array([1.0, 0.0])), 0.0, q, now_s()).command.velocity
         q = q + velocity * 0.01
     assert np.abs(velocity).max() == pytest.approx(0.5, abs=0.01)
     ticks = 0
     while velocity.any():
         ticks += 1
-        velocity = step(Input(np.array([1.0, 0.0])), ticks * 0.01, q, now_s()).command.velocity
+        velocity = stepped(step, Input(np.array([1.0, 0.0])), ticks * 0.01, q, now_s()).command.velocity
         q = q + velocity * 0.01
     assert ticks * 0.01 <= 0.150
 
@@ -74,7 +75,7 @@ GRACE = SafetyConfig(input_timeout_s=0.05, input_grace_s=0.07)
 
 def pushed(step, q, gap_s, after_s=0.5):
     """Velocities of an arm whose held stick falls silent for a while; and whether it is still enabled."""
-    step(Input(np.zeros(2)), 0.0, q, 0.0)
+    stepped(step, Input(np.zeros(2)), 0.0, q, 0.0)
     step.enable()
     velocities = []
     last_s = 0.0
@@ -82,7 +83,9 @@ def pushed(step, q, gap_s, after_s=0.5):
         now_s = tick * 0.01
         if not 1.0 < now_s < 1.0 + gap_s:
             last_s = now_s
-        velocities.append(step(Input(np.array([1.0, 0.0])), now_s - last_s, q, now_s).command.velocity)
+        velocities.append(
+            stepped(step, Input(np.array([1.0, 0.0])), now_s - last_s, q, now_s).command.velocity
+        )
         q = q + velocities[-1] * 0.01
     return np.array(velocities), step.stopped
 
@@ -109,10 +112,10 @@ def test_a_longer_one_stops_it_as_soon_as_without_grace(arm, scripted):
 
 def test_an_arm_that_was_stopped_is_not_enabled_by_a_moment_without_inputs(arm, scripted):
     step = Step(arm, scripted(np.full((2, 7), 0.1)), GRACE)
-    step(Input(np.zeros(2)), 0.0, arm.home, 0.0)
+    stepped(step, Input(np.zeros(2)), 0.0, arm.home, 0.0)
     step.enable()
     step.stop("Somebody pressed Stop.")
-    step(Input(np.zeros(2)), 0.08, arm.home, 0.01)
+    stepped(step, Input(np.zeros(2)), 0.08, arm.home, 0.01)
     assert step.enable() is not None
 
 

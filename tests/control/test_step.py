@@ -11,6 +11,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.errors import UserError
 from latentarm.types import Goal, Input
+from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__
 """The loop's clock, one period later each time."""
@@ -28,14 +29,14 @@ def step(arm, scripted):
 
 
 def engaged(step, state):
-    step(NEUTRAL, 0.0, state, now_s())
+    stepped(step, NEUTRAL, 0.0, state, now_s())
     assert step.enable() is None
     return step
 
 
 def run(step, given, state, ticks, age=0.0):
     for _ in range(ticks):
-        record = step(given, age, state, now_s())
+        record = stepped(step, given, age, state, now_s())
         state = state + record.command.velocity * step.dt_s
     return record, state
 
@@ -55,9 +56,9 @@ class TestEngagement:
 
     def test_enable_needs_a_neutral_stick_first(self, step, arm):
         assert step.enable() is not None
-        step(PUSH, 0.0, arm.home, now_s())
+        stepped(step, PUSH, 0.0, arm.home, now_s())
         assert "stick" in step.enable().reason
-        step(NEUTRAL, 0.0, arm.home, now_s())
+        stepped(step, NEUTRAL, 0.0, arm.home, now_s())
         assert step.enable() is None
         record, _ = run(step, PUSH, arm.home, 5)
         assert record.command.velocity.any()
@@ -71,17 +72,17 @@ class TestEngagement:
         assert moving.max() > 0.05
         if how == "operator":
             step.stop("The operator pressed Stop.")
-            record = step(PUSH, 0.0, state, now_s())
+            record = stepped(step, PUSH, 0.0, state, now_s())
         elif how == "stale":
-            record = step(PUSH, 1.0, state, now_s())
+            record = stepped(step, PUSH, 1.0, state, now_s())
         elif how == "nan":
-            record = step(Input(np.array([np.nan, 0.0])), 0.0, state, now_s())
+            record = stepped(step, Input(np.array([np.nan, 0.0])), 0.0, state, now_s())
         elif how == "raises":
             step._controller.answer = lambda context: 1 / 0
-            record = step(PUSH, 0.0, state, now_s())
+            record = stepped(step, PUSH, 0.0, state, now_s())
             step._controller.answer = None
         else:
-            record = step(PUSH, 0.0, np.full(7, np.nan), now_s())
+            record = stepped(step, PUSH, 0.0, np.full(7, np.nan), now_s())
         assert record.command.stop is not None
         # Ramped, never a step, and then at rest for good, whatever the stick does.
         assert (np.abs(record.command.velocity) > 0.0).any()
@@ -108,7 +109,7 @@ class TestEngagement:
             elsewhere = elsewhere + 0.01
             run(step, NEUTRAL, elsewhere, 1)
         engaged(step, elsewhere)
-        record = step(PUSH, 0.0, elsewhere, now_s())
+        record = stepped(step, PUSH, 0.0, elsewhere, now_s())
         np.testing.assert_array_equal(record.state, elsewhere)
         assert np.abs(record.command.velocity).max() <= step._stack.bounds.acceleration.max() * 0.01 + 1e-12
 
@@ -116,13 +117,13 @@ class TestEngagement:
         engaged(step, arm.home)
         step.stop("first")
         step.stop("second")
-        assert step(PUSH, 1.0, arm.home, now_s()).command.stop.reason == "first"
+        assert stepped(step, PUSH, 1.0, arm.home, now_s()).command.stop.reason == "first"
 
     def test_an_arm_that_halted_by_itself_is_not_told_to_move_again(self, step, arm):
         engaged(step, arm.home)
         _, state = run(step, PUSH, arm.home, 60)
         step.halted("too late")
-        record = step(PUSH, 0.0, state, now_s())
+        record = stepped(step, PUSH, 0.0, state, now_s())
         assert not record.command.velocity.any()
         assert record.command.stop.reason == "too late"
 
@@ -177,7 +178,7 @@ class TestAlgorithm:
         )
         engaged(step, arm.home)
         time_s = now_s()
-        record = step(PUSH, 0.0, arm.home, time_s)
+        record = stepped(step, PUSH, 0.0, arm.home, time_s)
         np.testing.assert_allclose(record.action_human, MATRIX[0])
         expected = 0.25 * (goals[0].configuration - arm.home) + 0.75 * (goals[1].configuration - arm.home)
         np.testing.assert_allclose(record.action_assist, expected)
@@ -206,7 +207,7 @@ class TestAlgorithm:
         changed = []
         for _ in range(20):
             before = step.belief
-            step(PUSH, 0.0, arm.home, now_s())
+            stepped(step, PUSH, 0.0, arm.home, now_s())
             changed.append(not np.array_equal(before, step.belief))
         assert sum(changed) == 4
 
@@ -214,13 +215,13 @@ class TestAlgorithm:
         engaged(step, arm.home)
         press = Input(np.zeros(2), switch_mode=True)
         for _ in range(5):
-            step(press, 0.0, arm.home, now_s())
+            stepped(step, press, 0.0, arm.home, now_s())
         assert step.mode == 1
-        step(NEUTRAL, 0.0, arm.home, now_s())
-        step(press, 0.0, arm.home, now_s())
+        stepped(step, NEUTRAL, 0.0, arm.home, now_s())
+        stepped(step, press, 0.0, arm.home, now_s())
         assert step.mode == 2
-        step(NEUTRAL, 0.0, arm.home, now_s())
-        step(press, 0.0, arm.home, now_s())
+        stepped(step, NEUTRAL, 0.0, arm.home, now_s())
+        stepped(step, press, 0.0, arm.home, now_s())
         assert step.mode == 0
 
     def test_the_same_ticks_give_the_same_records(self, arm, scripted):
@@ -228,7 +229,7 @@ class TestAlgorithm:
             step = engaged(Step(arm, scripted(MATRIX), SafetyConfig()), arm.home)
             state, found = arm.home, []
             for tick in range(50):
-                record = step(Input(np.array([np.sin(tick), 1.0])), 0.0, state, tick * 0.01)
+                record = stepped(step, Input(np.array([np.sin(tick), 1.0])), 0.0, state, tick * 0.01)
                 state = state + record.command.velocity * 0.01
                 found.append(record.command.velocity)
             return np.array(found)
@@ -248,14 +249,14 @@ class TestAlgorithm:
     def test_a_controller_that_gives_no_velocity_stops_the_arm(self, step, arm, answer):
         engaged(step, arm.home)
         step._controller.answer = lambda context: answer
-        record = step(PUSH, 0.0, arm.home, now_s())
+        record = stepped(step, PUSH, 0.0, arm.home, now_s())
         assert "controller" in record.command.stop.reason
 
 
 def test_a_mode_can_be_chosen_and_none_that_is_not_there(arm, scripted):
     step = Step(arm, scripted(np.zeros((2, 7)), ("one", "two", "three")), SafetyConfig())
     step.choose_mode(2)
-    assert step(Input(np.zeros(2)), 0.0, arm.home, now_s()).mode == 2
+    assert stepped(step, Input(np.zeros(2)), 0.0, arm.home, now_s()).mode == 2
     for mode in (-1, 3):
         with pytest.raises(UserError, match="modes 0 to 2"):
             step.choose_mode(mode)

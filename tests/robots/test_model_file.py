@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from latentarm.arms.kinematic import KinematicArm
+from latentarm.control.clock import SimulatedClock
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.model_file import load_model_file
@@ -29,13 +30,16 @@ def test_a_third_partys_arm_loads_and_can_be_driven(which, tool, dof, request):
     assert 5 <= len(robot.capsules) <= 16
     assert len(robot.self_pairs) <= 40
     # Resolved rates lift the tool straight up.
-    simulated = KinematicArm(robot, robot.home)
+    clock = SimulatedClock()
+    simulated = KinematicArm(robot, robot.home, clock.now_s)
+    simulated.connect()
+    simulated.enable()
     start = robot.chain.forward(robot.home).position
     for _ in range(50):
-        rates = np.linalg.pinv(robot.chain.jacobian(simulated.state()))[:, 2] * 0.02
+        rates = np.linalg.pinv(robot.chain.jacobian(simulated.read().q))[:, 2] * 0.02
         simulated.send(Command(rates, duration_s=0.02))
-        simulated.advance(0.02)
-    moved = robot.chain.forward(simulated.state()).position - start
+        clock.wait_until(clock.now_s() + 0.02)
+    moved = robot.chain.forward(simulated.read().q).position - start
     np.testing.assert_allclose(moved, [0, 0, 0.02], atol=1e-4)
 
 

@@ -15,8 +15,8 @@ import uvicorn
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from latentarm.arms.catalogue import make_live_arm
-from latentarm.control.clock import SimulatedClock
+from latentarm.arms.catalogue import make_arm
+from latentarm.control.clock import Clock, SimulatedClock
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process.drive import Drive, Steering
@@ -72,6 +72,22 @@ def said(told: Any) -> str:
     return " ".join(Notice(**one).text for one in (state["note"], state["reason"]) if one is not None)
 
 
+class Watched(Clock):
+    """A simulated clock that says when time has passed."""
+
+    def __init__(self, passed: Callable[[float], None]) -> None:
+        self._clock = SimulatedClock()
+        self._passed = passed
+
+    def now_s(self) -> float:
+        return self._clock.now_s()
+
+    def wait_until(self, time_s: float) -> None:
+        if time_s > self.now_s():
+            self._clock.wait_until(time_s)
+            self._passed(time_s)
+
+
 class Desk:
     """A drive in this process, in simulated time: both ends of the channel are here.
 
@@ -80,12 +96,13 @@ class Desk:
 
     def __init__(self, setup: DriveSetup, folder: Path) -> None:
         self.setup = setup
-        self.clock = SimulatedClock([self._passed])
+        self.clock = Watched(self._passed)
         reading, self.orders = Pipe(duplex=False)
         self.channel = new_channel(reading)
         self.orphaned = False
         self.writer = EpisodeWriter(folder)
-        self.arm = make_live_arm(setup.spec.arm, setup.task.robot, setup.start, self.clock.now_s)
+        self.arm = make_arm(setup.spec.arm, setup.task.robot, setup.start, self.clock.now_s)
+        self.arm.connect()
         self.drive = Drive(
             setup,
             self.arm,
@@ -121,8 +138,8 @@ class Desk:
     def times(self) -> np.ndarray:
         return np.array([record.time_s for record in self.records])
 
-    def _passed(self, span_s: float) -> None:
-        self.each_tick(self.clock.now_s())
+    def _passed(self, now_s: float) -> None:
+        self.each_tick(now_s)
 
     def _saw(self, record: Any) -> None:
         self.records.append(record)

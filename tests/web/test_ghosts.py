@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from latentarm.arms.kinematic import KinematicArm
+from latentarm.control.clock import SimulatedClock
 from latentarm.types import Context, Input
 from latentarm.web.arm_process.drive_setup import PERIOD_S
 from latentarm.web.arm_process.ghosts import GhostPaths
@@ -22,15 +23,18 @@ def looked(setup, q, mode):
 
 def driven(setup, q, u, mode):
     """Where the tool is after a second of a full deflection, through all safety filters."""
-    step, arm = setup.step(), KinematicArm(setup.task.robot, q)
+    step, clock = setup.step(), SimulatedClock()
+    arm = KinematicArm(setup.task.robot, q, clock.now_s)
+    arm.connect()
+    arm.enable()
     step.reset(q)
     step.choose_mode(mode)
-    step(Input(np.zeros(2)), 0.0, q, 0.0)
+    step(Input(np.zeros(2)), 0.0, arm.read(), 0.0)
     step.enable()
     for tick in range(1, 101):
-        arm.send(step(Input(np.array(u)), 0.0, arm.state(), tick * PERIOD_S).command)
-        arm.advance(PERIOD_S)
-    return setup.task.robot.chain.forward(arm.state()).position
+        clock.wait_until(tick * PERIOD_S)
+        arm.send(step(Input(np.array(u)), 0.0, arm.read(), clock.now_s()).command)
+    return setup.task.robot.chain.forward(arm.read().q).position
 
 
 @pytest.mark.parametrize("mode", ["latent", "assisted", "end_effector"])
@@ -57,14 +61,17 @@ def test_ghosts_do_not_go_through_the_table(setup):
     for _ in range(12):
         path = np.array(looked(setup, q, index).left)
         assert path[:, 2].min() > 0.0
-        step, arm = setup.step(), KinematicArm(setup.task.robot, q)
+        step, clock = setup.step(), SimulatedClock()
+        arm = KinematicArm(setup.task.robot, q, clock.now_s)
+        arm.connect()
+        arm.enable()
         step.reset(q)
         step.choose_mode(index)
-        step(Input(np.zeros(2)), 0.0, q, 0.0)
+        step(Input(np.zeros(2)), 0.0, arm.read(), 0.0)
         step.enable()
         for tick in range(1, 21):
-            arm.send(step(Input(np.array([-1.0, 0.0])), 0.0, arm.state(), tick * PERIOD_S).command)
-            arm.advance(PERIOD_S)
-        q = arm.state()
+            clock.wait_until(tick * PERIOD_S)
+            arm.send(step(Input(np.array([-1.0, 0.0])), 0.0, arm.read(), clock.now_s()).command)
+        q = arm.read().q
     lowest = chain.forward(q).position
     np.testing.assert_allclose(np.array(looked(setup, q, index).left)[-1], lowest, atol=0.03)

@@ -3,8 +3,7 @@
 from collections.abc import Callable
 from typing import Final, Protocol, cast
 
-from latentarm.arms.contract import Arm, SimulatedArm
-from latentarm.arms.live import LiveArm
+from latentarm.arms.contract import Arm
 from latentarm.errors import UserError
 from latentarm.plugins import Catalogue
 from latentarm.robots.robot import Robot
@@ -14,12 +13,13 @@ from latentarm.types import FloatArray
 class ArmFactory(Protocol):
     """What makes an arm; the class of an arm does."""
 
-    def __call__(self, robot: Robot, state: FloatArray) -> Arm:
-        """An arm that has not moved.
+    def __call__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
+        """An arm that is not connected.
 
         Args:
             robot: whose joints these are.
             state: (n,), where a simulated arm starts, rad; a real arm is where it is.
+            now_s: the clock that readings are timed by, s; never goes back.
         """
         ...
 
@@ -31,53 +31,47 @@ def _factory(name: str, thing: object) -> ArmFactory:
 
 
 ARMS: Final = Catalogue(
-    "latentarm.arms", "arm", {"kinematic": "latentarm.arms.kinematic:KinematicArm"}, _factory
+    "latentarm.arms",
+    "arm",
+    {
+        "kinematic": "latentarm.arms.kinematic:KinematicArm",
+        "mujoco": "latentarm.arms.mujoco:MujocoArm",
+    },
+    _factory,
 )
 
 DEFAULT_ARM: Final = "kinematic"
 
 
-def make_arm(name: str, robot: Robot, state: FloatArray) -> Arm:
-    """An arm of the catalogue.
+def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
+    """An arm of the catalogue; it is not connected yet.
 
     Args:
         name: a name in `ARMS`.
         robot: whose joints these are.
         state: (n,), where a simulated arm starts, rad.
+        now_s: the clock that readings are timed by, s; never goes back. A simulated arm moves as it goes on.
 
     Raises:
         UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is not an
         arm.
     """
-    arm = cast(object, ARMS.find(name, "--arm")(robot, state))  # a plug-in may break the contract
+    arm = cast(object, ARMS.find(name, "--arm")(robot, state, now_s))  # a plug-in may break the contract
     if not isinstance(arm, Arm):
         raise UserError(f"--arm {name} made {type(arm).__name__}, not a latentarm.arms.contract.Arm.")
     return arm
 
 
-def make_simulated_arm(name: str, robot: Robot, state: FloatArray) -> SimulatedArm:
+def make_simulated_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
     """An arm for simulated time; see `make_arm`.
 
     Raises:
-        UserError: as `make_arm`, and where time cannot be simulated for the arm.
+        UserError: as `make_arm`, and where the arm is real: it would not wait for simulated time.
     """
-    arm = make_arm(name, robot, state)
-    if not isinstance(arm, SimulatedArm):
+    arm = make_arm(name, robot, state, now_s)
+    if not arm.spec.simulated:
         raise UserError(
             f"--arm {name} is a real arm, and time is simulated here: choose a simulated one, such as"
             f" {DEFAULT_ARM}."
         )
     return arm
-
-
-def make_live_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
-    """An arm in real time: a simulated one moves as time passes; see `make_arm`.
-
-    Args:
-        name: a name in `ARMS`.
-        robot: whose joints these are.
-        state: (n,), where a simulated arm starts, rad.
-        now_s: the time, s; never goes back.
-    """
-    arm = make_arm(name, robot, state)
-    return LiveArm(arm, now_s) if isinstance(arm, SimulatedArm) else arm

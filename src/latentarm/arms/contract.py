@@ -1,75 +1,171 @@
 """What the control loop needs of an arm, real or simulated."""
 
+import math
 from abc import ABC, abstractmethod
-from typing import final
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Final, Literal, Self, final
 
 from latentarm.errors import UserError
 from latentarm.robots.notices import assumed_limits
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, FloatArray
+from latentarm.types import Command, Reading
+
+ArmPhase = Literal["off", "disabled", "ready", "moving", "fault", "emergency_stop"]
+"""What state an arm is in."""
+
+STOPS_AFTER_S: Final = 0.1
+"""An arm that takes longer than this to notice that its commands have ended is refused, s."""
+
+
+@final
+@dataclass(frozen=True)
+class ArmSpec:
+    """What an arm is, as its driver knows it.
+
+    Attributes:
+        joint_names: n names, in the order of readings and commands.
+        rate_hz: how many commands it takes per second at most.
+        stops_after_s: when a command's ``duration_s`` has passed without another one, the arm begins to stop
+            by itself within this time, s. None where nobody knows: such an arm is not driven.
+        simulated: whether it is simulated; `check_arm` is stricter with a real one.
+    """
+
+    joint_names: tuple[str, ...]
+    rate_hz: float
+    stops_after_s: float | None
+    simulated: bool
+
+
+@final
+@dataclass(frozen=True)
+class ArmStatus:
+    """Whether an arm can move, and if not, why.
+
+    Attributes:
+        phase: *off*: not connected. *disabled*: connected, takes no commands. *ready*: enabled, at rest.
+            *moving*: enabled, in motion. *fault*: it has stopped by itself and takes no commands.
+            *emergency_stop*: somebody has pressed the button on the arm.
+        reason: one short sentence for the person; "" where there is nothing to say.
+        recoverable: whether `Arm.recover` can end the fault.
+    """
+
+    phase: ArmPhase
+    reason: str = ""
+    recoverable: bool = False
+
+    @property
+    def takes_commands(self) -> bool:
+        """Whether a command moves the arm now."""
+        return self.phase in ("ready", "moving")
 
 
 class Arm(ABC):
     """An arm that is driven by joint velocities of bounded duration.
 
-    An arm must come to rest by itself once a command's ``duration_s`` has passed without a new one.
+    Once a command's ``duration_s`` has passed without another one, the arm comes to rest by itself, however
+    the process that drives it may have ended. It moves for no other reason than a command that it was sent
+    while it was enabled: connecting, reconnecting, enabling, recovering and closing never move it, and what
+    it was sent before does not count afterwards.
+
+    No method waits for the arm, except `connect` and `close`. As a context manager it is connected, and
+    closed at the end.
     """
 
     @property
     @abstractmethod
-    def simulated(self) -> bool:
-        """Whether the arm is simulated; `check_limits` is stricter for a real one."""
+    def spec(self) -> ArmSpec:
+        """What it is; known before it is connected."""
 
     @abstractmethod
-    def state(self) -> FloatArray:
-        """(n,), measured joint positions, rad."""
+    def connect(self) -> None:
+        """Open the connection, or open it again; then there is a first reading, and the arm is disabled.
+
+        Raises:
+            UserError: there is no arm, or it does not fit its robot.
+        """
 
     @abstractmethod
-    def velocity(self) -> FloatArray:
-        """(n,), measured joint velocities, rad/s."""
+    def close(self) -> None:
+        """Stop the arm and end the connection; closing twice is no error."""
+
+    @abstractmethod
+    def read(self) -> Reading:
+        """The newest reading. Where no new one has come, that is the one before, as old as it is.
+
+        Raises:
+            RuntimeError: the arm was never connected.
+        """
+
+    @abstractmethod
+    def status(self) -> ArmStatus:
+        """Whether the arm can move, and if not, why."""
+
+    @abstractmethod
+    def enable(self) -> None:
+        """Ask a disabled arm to take commands; `status` says when it does."""
+
+    @abstractmethod
+    def disable(self) -> None:
+        """Stop the arm, and take no commands until it is enabled again."""
+
+    @abstractmethod
+    def recover(self) -> None:
+        """Ask an arm to end a recoverable fault; afterwards it is disabled."""
 
     @abstractmethod
     def send(self, command: Command) -> None:
-        """Take a command; it replaces the one before."""
+        """Take a command; it replaces the one before. An arm that is not enabled ignores it."""
 
     @abstractmethod
     def stop(self) -> None:
-        """Stop now and forget the last command."""
+        """Stop now and forget the last command; the arm stays enabled."""
 
-
-class SimulatedArm(Arm):
-    """A simulated arm. Its time passes only in `advance`."""
-
-    @property
     @final
-    def simulated(self) -> bool:
-        """True."""
-        return True
+    def __enter__(self) -> Self:
+        """Connect."""
+        self.connect()
+        return self
 
-    @abstractmethod
-    def advance(self, dt_s: float) -> None:
-        """Let time pass.
+    @final
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Close."""
+        self.close()
 
-        Args:
-            dt_s: how long, s.
 
-        Raises:
-            UserError: ``dt_s`` is not finite or not above zero.
-        """
-
-
-def check_limits(arm: Arm, robot: Robot) -> None:
-    """Refuse to drive a real arm within assumed limits.
+def check_arm(spec: ArmSpec, robot: Robot) -> None:
+    """Refuse to drive an arm that cannot be driven safely.
 
     Args:
-        arm: what is to be driven.
-        robot: what is known of it.
+        spec: what the arm's driver knows of it.
+        robot: what is to be driven.
 
     Raises:
-        UserError: the arm is real, and one of its limits is assumed.
+        UserError: its joints are not the robot's; nobody knows when it stops by itself, or it is too late;
+            or the arm is real and one of its limits is assumed.
     """
+    if spec.joint_names != robot.joint_names:
+        raise UserError(
+            f"The arm has the joints {', '.join(spec.joint_names)}, and {robot.name} has"
+            f" {', '.join(robot.joint_names)}: choose the robot that the arm is."
+        )
+    if spec.stops_after_s is None or not 0.0 <= spec.stops_after_s <= STOPS_AFTER_S:
+        known = (
+            "It is not known whether this arm"
+            if spec.stops_after_s is None or math.isnan(spec.stops_after_s)
+            else f"This arm takes {1000 * spec.stops_after_s:.0f} ms until it"
+        )
+        raise UserError(
+            f"{known} stops by itself when no more commands come: an arm must do so within"
+            f" {1000 * STOPS_AFTER_S:.0f} ms."
+        )
     assumed = assumed_limits(robot)
-    if assumed and not arm.simulated:
+    if assumed and not spec.simulated:
         raise UserError(
             f"{robot.name} is a real arm, and its {assumed} is not known but assumed: state the"
             " manufacturer's figures in a file and name it with --limits FILE."

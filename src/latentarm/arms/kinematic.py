@@ -1,13 +1,16 @@
 """An arm without inertia: it does what it is told, and stops by itself when told nothing more."""
 
-from typing import final
+from collections.abc import Callable
+from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import SimulatedArm
-from latentarm.errors import UserError
+from latentarm.arms.simulated import SimulatedArm
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, FloatArray
+from latentarm.types import FloatArray
+
+RATE_HZ: Final = 1000.0
+"""It takes commands as fast as any loop sends them."""
 
 
 @final
@@ -19,64 +22,25 @@ class KinematicArm(SimulatedArm):
     Args:
         robot: whose joints these are.
         state: (n,), where the arm starts, rad.
+        now_s: the clock, s; never goes back.
 
     Raises:
         UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
     """
 
-    def __init__(self, robot: Robot, state: FloatArray) -> None:
-        start = np.array(state, dtype=np.float64)
-        if start.shape != (robot.dof,) or not np.isfinite(start).all():
-            raise UserError(
-                f"An arm with {robot.dof} joints needs {robot.dof} finite joint positions to start from."
-            )
-        if robot.limits.violation(start).any():
-            joint = int(np.argmax(robot.limits.violation(start)))
-            raise UserError(
-                f"The arm cannot start with {robot.joint_names[joint]} at {start[joint]:.4g}: its limits are"
-                f" {robot.limits.lower[joint]:.4g} and {robot.limits.upper[joint]:.4g}."
-            )
+    def __init__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> None:
+        super().__init__(robot, state, now_s, rate_hz=RATE_HZ, stops_after_s=0.0)
         self._limits = robot.limits
-        self._state = start
+        self._state = np.array(state, dtype=np.float64)
         self._velocity = np.zeros(robot.dof)
-        self._left_s = 0.0
 
-    def state(self) -> FloatArray:
-        """(n,), joint positions, rad."""
-        return self._state.copy()
-
-    def velocity(self) -> FloatArray:
-        """(n,), joint velocities, rad/s; zero once the last command has run out."""
-        return self._velocity.copy()
-
-    def send(self, command: Command) -> None:
-        """Take a command; it replaces the one before.
-
-        Raises:
-            ValueError: the velocity has the wrong shape or is not finite: no safety filter sends that.
-        """
-        velocity = np.array(command.velocity, dtype=np.float64)
-        if velocity.shape != self._state.shape or not np.isfinite(velocity).all():
-            raise ValueError(f"a command needs {len(self._state)} finite joint velocities")
-        self._velocity = velocity
-        self._left_s = max(float(command.duration_s), 0.0)
-
-    def stop(self) -> None:
-        """Stop now and forget the last command."""
-        self._velocity = np.zeros_like(self._velocity)
-        self._left_s = 0.0
-
-    def advance(self, dt_s: float) -> None:
-        """Let time pass; see the base class."""
-        if not (np.isfinite(dt_s) and dt_s > 0.0):
-            raise UserError(f"The simulated arm's time step is {dt_s} s: it must be above zero.")
-        moving = min(dt_s, self._left_s)
-        moved = self._state + self._velocity * moving
+    def _pass(self, span_s: float, commanded: FloatArray) -> None:
+        moved = self._state + commanded * span_s
         self._state = np.clip(moved, self._limits.lower, self._limits.upper)
-        self._left_s -= dt_s
-        # A hair of rounding must not stop an arm whose commands last exactly one step.
-        if self._left_s <= -1e-9:
-            self.stop()
-        else:
-            self._velocity = np.where(moved == self._state, self._velocity, 0.0)
-            self._left_s = max(self._left_s, 0.0)
+        self._velocity = np.where(moved == self._state, commanded, 0.0)
+
+    def _measure(self) -> tuple[FloatArray, FloatArray, float]:
+        return self._state.copy(), self._velocity.copy(), 0.0
+
+    def _halt(self) -> None:
+        self._velocity = np.zeros_like(self._velocity)

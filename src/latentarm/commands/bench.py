@@ -16,6 +16,7 @@ from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import show
+from latentarm.control.clock import SimulatedClock
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.latent import LatentController
@@ -123,23 +124,27 @@ class _TimedStep:
             arbitration=FixedAlpha(),
             dt_s=dt_s,
         )
-        self._arm = make_simulated_arm(DEFAULT_ARM, task.robot, task.robot.home)
+        self._clock = SimulatedClock()
+        self._arm = make_simulated_arm(DEFAULT_ARM, task.robot, task.robot.home, self._clock.now_s)
         self._took_s: list[float] = []
-        self._step.reset(self._arm.state())
-        self._step(Input(np.zeros(2)), 0.0, self._arm.state(), 0.0)
+        self._arm.connect()
+        reading = self._arm.read()
+        self._step.reset(reading.q)
+        self._step(Input(np.zeros(2)), 0.0, reading, self._clock.now_s())
+        self._arm.enable()
         self._step.enable()
 
     def tick(self, u: FloatArray, tick: int) -> FloatArray:
         """One step, timed; then the arm moves. Returns the state that the step saw."""
-        state, given = self._arm.state(), Input(u)
+        self._clock.wait_until((tick + 1) * self._step.dt_s)
+        reading, given = self._arm.read(), Input(u)
         began = time.perf_counter()
-        record = self._step(given, 0.0, state, (tick + 1) * self._step.dt_s)
+        record = self._step(given, 0.0, reading, self._clock.now_s())
         self._took_s.append(time.perf_counter() - began)
         if record.command.stop is not None:
             raise RuntimeError(f"the timed arm was stopped: {record.command.stop.reason}")
         self._arm.send(record.command)
-        self._arm.advance(self._step.dt_s)
-        return state
+        return reading.q
 
     def median_us(self) -> float:
         """The median after the warm-up, µs."""

@@ -3,7 +3,6 @@
 import sys
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
 from typing import final
 
 
@@ -46,15 +45,10 @@ def _monotonic_s() -> float:
 
 @final
 class SimulatedClock(Clock):
-    """Time that passes only while something waits: a one-minute drive takes as long as it computes.
+    """Time that passes only while something waits: a one-minute drive takes as long as it computes."""
 
-    Args:
-        followers: called with every span that passes, s, such as a simulated arm's ``advance``.
-    """
-
-    def __init__(self, followers: Sequence[Callable[[float], None]] = ()) -> None:
+    def __init__(self) -> None:
         self._now_s = 0.0
-        self._followers = tuple(followers)
 
     def now_s(self) -> float:
         """See the base class."""
@@ -62,8 +56,4 @@ class SimulatedClock(Clock):
 
     def wait_until(self, time_s: float) -> None:
         """See the base class."""
-        span = time_s - self._now_s
-        if span > 0.0:
-            self._now_s = time_s
-            for follower in self._followers:
-                follower(span)
+        self._now_s = max(self._now_s, time_s)

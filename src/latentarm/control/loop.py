@@ -5,15 +5,19 @@ import queue
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import Arm, check_limits
+from latentarm.arms.contract import Arm, ArmStatus, check_arm
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
+from latentarm.errors import UserError
 from latentarm.types import StepRecord
+
+ENABLING_S: Final = 5.0
+"""An arm that has not become ready for so long after it was asked to is left disabled, s."""
 
 
 @final
@@ -97,6 +101,10 @@ class ControlLoop:
     itself: the watchdog stops it for good, until the person enables it again. Missed ticks are skipped; the
     loop never catches up on them.
 
+    An arm that takes no commands any more (a fault, an emergency stop, a lost connection) disengages `Step`,
+    and moves again only after the person has enabled it. `enable` then also recovers the arm and enables it,
+    which may take it some seconds. When the loop ends, it disables the arm.
+
     The command is sent before observers see the record, so that a slow recorder costs slack, not lag.
 
     `enable`, `stop` and `finish` may be called from any thread. They never block. The next tick handles a
@@ -104,13 +112,13 @@ class ControlLoop:
 
     Args:
         step: Algorithm 1.
-        arm: what is driven.
+        arm: what is driven; connected.
         source: where inputs come from.
         clock: the time.
         observers: called with every record, in the loop's thread.
 
     Raises:
-        UserError: the arm is a real one whose limits are assumed.
+        UserError: the arm cannot be driven safely, see `check_arm`; or it takes fewer commands per second.
     """
 
     def __init__(
@@ -121,7 +129,12 @@ class ControlLoop:
         clock: Clock,
         observers: Sequence[Callable[[StepRecord], None]] = (),
     ) -> None:
-        check_limits(arm, step.robot)
+        check_arm(arm.spec, step.robot)
+        if arm.spec.rate_hz < (1.0 - 1e-9) / step.dt_s:
+            raise UserError(
+                f"The loop runs at {1.0 / step.dt_s:g} Hz, but the arm takes {arm.spec.rate_hz:g} commands"
+                " per second: choose a lower rate."
+            )
         self._step = step
         self._arm = arm
         self._source = source
@@ -134,6 +147,7 @@ class ControlLoop:
         self._finished = threading.Event()
         self._stop_reasons: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._enable_asked = threading.Event()
+        self._enabling_since_s: float | None = None
         self._ending = False
 
     def enable(self) -> None:
@@ -166,7 +180,7 @@ class ControlLoop:
         Returns:
             How punctual the loop was.
         """
-        self._step.reset(self._arm.state())
+        self._step.reset(self._arm.read().q)
         self._start_s = self._sent_s = self._clock.now_s()
         self._next = 0
         self._ending = False
@@ -179,7 +193,7 @@ class ControlLoop:
             try:
                 self._come_to_rest(())
             finally:
-                self._arm.stop()
+                self._arm.disable()
         return self.statistics()
 
     def _come_to_rest(self, observers: Sequence[Callable[[StepRecord], None]]) -> None:
@@ -194,6 +208,31 @@ class ControlLoop:
             return False
         self._arm.stop()
         self._step.halted("The loop was too late; the arm has stopped by itself.")
+        return True
+
+    def _heed(self, status: ArmStatus) -> None:
+        """Disengage where the arm takes no commands: it has stopped by itself, or somebody stopped it."""
+        if not status.takes_commands and self._step.stopped is None:
+            self._step.halted(status.reason)
+
+    def _try_to_enable(self, now_s: float) -> bool:
+        """Enable the arm and then the step; whether that is over, one way or the other."""
+        status = self._arm.status()
+        if status.phase == "fault" and status.recoverable:
+            self._arm.recover()
+            status = self._arm.status()
+        if status.phase == "disabled":
+            self._arm.enable()
+            status = self._arm.status()
+        if status.takes_commands:
+            self._step.enable()
+            return True
+        if self._enabling_since_s is None:
+            self._enabling_since_s = now_s
+        waiting = status.phase == "disabled" or (status.phase == "fault" and status.recoverable)
+        if waiting and now_s - self._enabling_since_s <= ENABLING_S:
+            return False
+        self._step.refuse(status.reason)
         return True
 
     def _await_tick(self) -> tuple[float, float]:
@@ -223,23 +262,23 @@ class ControlLoop:
             self._step.stop(self._stop_reasons.get())
             stopped = True
         given, age_s = self._source.latest(now_s)
-        record = self._step(given, age_s, self._arm.state(), now_s)
+        self._heed(self._arm.status())
+        record = self._step(given, age_s, self._arm.read(), now_s)
         ready_s = self._clock.now_s()
         if not overrun and self._ran_out(ready_s):
             # The step itself took too long: it decided for an arm that was still moving.
             overrun = True
-            record = self._step(given, math.inf, self._arm.state(), ready_s)
+            record = self._step(given, math.inf, self._arm.read(), ready_s)
             ready_s = self._clock.now_s()
         # Counted from before it is sent: the arm's own count begins no earlier.
         self._sent_s = ready_s
         self._step.sent(ready_s)
         self._arm.send(record.command)
         self._log.add(now_s - due_s, self._clock.now_s() - due_s, overrun=overrun)
-        if self._enable_asked.is_set():
+        # Nobody is enabled in the tick of a stop, or while the loop is ending.
+        if self._enable_asked.is_set() and (stopped or self._ending or self._try_to_enable(now_s)):
             self._enable_asked.clear()
-            # Not if the arm was stopped in the same tick, or the loop is ending.
-            if not (stopped or self._ending):
-                self._step.enable()
+            self._enabling_since_s = None
         # Before observers: if one fails, this tick must not run twice.
         self._next += 1
         for observe in observers:

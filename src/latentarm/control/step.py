@@ -12,13 +12,14 @@ from latentarm.control.controller import Controller
 from latentarm.control.engagement import Engagement
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.filter import Freshness
+from latentarm.control.safety.newest_reading import NewestReading
 from latentarm.control.safety.plausibility import Plausibility
 from latentarm.control.safety.stack import Passed, SafetyStack
 from latentarm.control.safety.timekeeping import Timekeeping
 from latentarm.control.shared_autonomy import SharedAutonomy
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, Context, FloatArray, Goal, Input, StepRecord, Stop
+from latentarm.types import Command, Context, FloatArray, Goal, Input, Reading, StepRecord, Stop
 
 _ABSURD = 2.0
 """Inputs slightly above 1 come from a stick's corners and are clipped; above this the interface is broken."""
@@ -42,11 +43,11 @@ class Step:
     passes the `SafetyStack`; nothing else can move the arm.
 
     The arm starts disengaged. After a neutral input, `enable` engages it. Whatever stops it (the
-    operator, an input that is too old, a number that is not one, a reading of the joints that cannot be
-    true, a controller that fails) disengages it again: a ramped stop, then neutral, then `enable`::
+    operator, an input that is too old, a number that is not one, a reading of the joints that is too old or
+    cannot be true, a controller that fails) disengages it again: a ramped stop, then neutral, then `enable`::
 
-        step.reset(arm.state())
-        step(neutral, 0.0, arm.state(), now)
+        step.reset(arm.read().q)
+        step(neutral, 0.0, arm.read(), now)
         step.enable()
 
     An input within the dead zone means no motion, whatever the decoder returns for zero, and no help, unless
@@ -95,6 +96,7 @@ class Step:
         self._plausibility = Plausibility(self._stack.bounds, robot)
         self._hold_s = self._stack.bounds.hold_s
         self._timekeeping = Timekeeping(self._hold_s)
+        self._newest_reading = NewestReading(self._stack.bounds.reading_timeout_s, self._hold_s)
         self._time_s = self._steady_s = -math.inf
         self._unreadable = _sealed(np.full(robot.dof, math.nan))
         self._no_motion = _sealed(np.zeros(robot.dof))
@@ -162,6 +164,7 @@ class Step:
         self._stack.reset()
         self._plausibility.reset()
         self._timekeeping.reset()
+        self._newest_reading.reset()
         self._time_s = self._steady_s = -math.inf
         self._engagement = Engagement()
         self._mode = 0
@@ -207,6 +210,14 @@ class Step:
         """
         self._engagement.stop(Stop(reason))
 
+    def refuse(self, reason: str) -> None:
+        """Keep the arm disengaged for this reason, whatever the reason was until now.
+
+        Args:
+            reason: one short sentence for the person.
+        """
+        self._engagement.replace(Stop(reason))
+
     def halted(self, reason: str) -> None:
         """Record that a command ran out and the arm stopped by itself; stay stopped.
 
@@ -216,13 +227,13 @@ class Step:
         self._engagement.stop(Stop(reason))
         self._stack.reset()
 
-    def __call__(self, given: Input, input_age_s: float, state: FloatArray, time_s: float) -> StepRecord:
+    def __call__(self, given: Input, input_age_s: float, reading: Reading, time_s: float) -> StepRecord:
         """One pass through Algorithm 1.
 
         Args:
             given: the person's newest input.
             input_age_s: for how long it has been the newest, by the loop's own clock, s.
-            state: (n,), measured joint positions, rad.
+            reading: the arm's newest.
             time_s: the loop's clock, s.
 
         Returns:
@@ -233,12 +244,11 @@ class Step:
             self.halted(lost)
         self._time_s = time_s
         self._stack.tick(time_s)
-        q = self._joint_positions(state)
-        if q is None:
-            stop = Stop("The arm's joint positions are not numbers near its limits.", untrusted=True)
-            self._engagement.stop(stop)
+        q = self._positions_now(reading, time_s)
+        if isinstance(q, Stop):
+            self._engagement.stop(q)
             return self._record(time_s, self._unreadable, Passed(self._stack.stop()))
-        if self._doubts(q, time_s):
+        if self._doubts(q, time_s, new=self._newest_reading.new):
             return self._record(time_s, q, Passed(self._stack.stop()))
         if self._falters(input_age_s):
             return self._record(time_s, q, Passed(self._stack.stop(), _FALTERING))
@@ -255,11 +265,11 @@ class Step:
             return self._record(time_s, q, self._passed(self._no_motion, q, input_age_s))
         return self._driven(u, input_age_s, q, time_s)
 
-    def _doubts(self, q: FloatArray, time_s: float) -> bool:
+    def _doubts(self, q: FloatArray, time_s: float, *, new: bool) -> bool:
         """Whether a reading cannot be true; the arm is disengaged for it."""
         jumped = self._plausibility.jump(q, time_s)
         driven = jumped is None and self._engagement.stopped is None
-        astray = self._plausibility.follow(q, self._stack.velocity, time_s, driven=driven)
+        astray = self._plausibility.follow(q, self._stack.velocity, time_s, new=new, driven=driven)
         if jumped is not None:
             # Reported even if the arm is already disengaged: nobody may enable it without knowing.
             self._steady_s = time_s + STEADY_S
@@ -330,6 +340,19 @@ class Step:
         if math.hypot(*values) <= self._config.dead_zone:
             return self._no_input
         return _sealed(np.array([min(max(value, -1.0), 1.0) for value in values]))
+
+    def _positions_now(self, reading: Reading, time_s: float) -> FloatArray | Stop:
+        """The joint positions of a reading that is new enough, or why they cannot be used."""
+        try:
+            refused = self._newest_reading.refusal(reading, time_s)
+        except Exception as error:  # noqa: BLE001 - whatever a driver gives
+            refused = f"The arm's reading cannot be used ({_said(error)})."
+        if refused is not None:
+            return Stop(refused, untrusted=True)
+        q = self._joint_positions(reading.q)
+        if q is None:
+            return Stop("The arm's joint positions are not numbers near its limits.", untrusted=True)
+        return q
 
     def _joint_positions(self, state: FloatArray) -> FloatArray | None:
         """The state as a private copy of (n,) floats, or None where it is not that."""

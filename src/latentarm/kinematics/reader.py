@@ -21,7 +21,7 @@ _SITE = int(mujoco.mjtObj.mjOBJ_SITE)
 
 @final
 @dataclass(frozen=True, eq=False)
-class Reading:
+class ModelChain:
     """A chain together with where its parts are in the model.
 
     Attributes:
@@ -39,7 +39,7 @@ class Reading:
     base_bodies: tuple[int, ...]
 
 
-def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> Reading:
+def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> ModelChain:
     """Read the joints between the world and the end-effectors.
 
     Joints off that path (fingers, say) are frozen where the model's "home" key frame has them, or
@@ -101,7 +101,7 @@ def read(model: mujoco.MjModel, end_effectors: Sequence[str]) -> Reading:
     frames = tuple(
         Frame(name, int(body_link[body]), body_transform[body] @ local) for name, body, local in tools
     )
-    return Reading(
+    return ModelChain(
         chain=Chain(
             joint_names=chain.joint_names,
             parent=chain.parent,

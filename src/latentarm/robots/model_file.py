@@ -10,7 +10,7 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
-from latentarm.kinematics.reader import Reading, read
+from latentarm.kinematics.reader import ModelChain, read
 from latentarm.robots.assemble import assemble
 from latentarm.robots.end_effector import AmbiguousEndEffectorError, choose_end_effector
 from latentarm.robots.limits import JointLimits, LimitSources, Source
@@ -124,7 +124,7 @@ def _as_mjcf(spec: mujoco.MjSpec, path: Path) -> str:
     return spec.to_xml()
 
 
-def _limits(model: mujoco.MjModel, reading: Reading, velocity: Mapping[str, float]) -> JointLimits:
+def _limits(model: mujoco.MjModel, reading: ModelChain, velocity: Mapping[str, float]) -> JointLimits:
     assumed = [SLIDE if slide else HINGE for slide in reading.chain.slide]
     given = model.jnt_range[reading.joints]
     # MuJoCo ignores a reversed range; here it is an error.
@@ -149,7 +149,7 @@ def _source(known: bool) -> Source:
     return "model" if known else "assumed"
 
 
-def _home(model: mujoco.MjModel, reading: Reading, limits: JointLimits) -> FloatArray:
+def _home(model: mujoco.MjModel, reading: ModelChain, limits: JointLimits) -> FloatArray:
     """(n,), where the robot starts, rad."""
     key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home")
     if key >= 0:

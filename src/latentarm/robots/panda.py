@@ -23,6 +23,9 @@ LIMITS = JointLimits(
 )
 """Franka control-parameters documentation."""
 
+TORQUE_LIMIT = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
+"""Of each joint, N m; the same documentation."""
+
 TOOL_SPEED_LIMIT = 1.7
 """Cartesian limit of the end-effector, m/s."""
 
@@ -129,6 +132,8 @@ def panda() -> Robot:
             name=f"joint{i + 1}",
             axis=[0.0, 0.0, 1.0],
             range=[LIMITS.lower[i], LIMITS.upper[i]],
+            actfrclimited=True,
+            actfrcrange=[-TORQUE_LIMIT[i], TORQUE_LIMIT[i]],
             armature=0.1,
             damping=[1.0, 0.0, 0.0],
         )

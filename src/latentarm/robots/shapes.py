@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from latentarm.kinematics.chain import Capsules, Chain
 from latentarm.kinematics.distances import segment_distance
-from latentarm.kinematics.reader import Reading
+from latentarm.kinematics.reader import ModelChain
 from latentarm.robots.limits import JointLimits
 from latentarm.types import BoolArray, FloatArray, IntArray
 
@@ -29,7 +29,7 @@ Balls = tuple[FloatArray, FloatArray]
 """Centres (K, 3), m, and radii (K,), m, of balls whose convex hull covers a shape."""
 
 
-def read_capsules(model: mujoco.MjModel, reading: Reading) -> Capsules:
+def read_capsules(model: mujoco.MjModel, reading: ModelChain) -> Capsules:
     """Capsules that cover a robot: its moving links and the fixed bodies that carry them.
 
     Spheres and capsules stay as they are; a cylinder becomes the capsule around its axis; boxes,
@@ -156,7 +156,7 @@ def _as_balls(capsule: tuple[FloatArray, FloatArray, float]) -> Balls:
     return np.stack([start, end]), np.array([radius, radius])
 
 
-def _belongs(model: mujoco.MjModel, reading: Reading, body: int) -> bool:
+def _belongs(model: mujoco.MjModel, reading: ModelChain, body: int) -> bool:
     """Whether a body is part of the robot: moved by it, carrying it, or fixed to what carries it."""
     if reading.body_link[body] >= 0:
         return True

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from latentarm.arms.catalogue import DEFAULT_ARM, make_simulated_arm
+from latentarm.arms.contract import check_arm
 from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import Arbitration
 from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
@@ -104,30 +106,34 @@ def simulate(
     task, controller = setup.task, setup.controller
     dt_s = 1.0 / RATE_HZ
     start = task.sample_start(goal, rng)
-    arm = make_simulated_arm(setup.arm, task.robot, start)
+    clock = SimulatedClock()
     step = _step(setup, dt_s)
     operator = SimulatedPerson(task.robot, setup.person, dt_s, LoopLimits(step.dead_zone, step.joint_speed))
     remaining = list(task.waypoints(goal, manner))
     since_s = 0.0
     check_not_done(task, start, remaining)
-    step.reset(start)
-    records = [step(Input(np.zeros(controller.input_dim)), 0.0, start, 0.0)]
-    step.enable()
-    for tick in range(1, int(setup.time_limit_s * RATE_HZ) + 1):
-        state = arm.state()
-        pose = task.robot.chain.forward(state)
-        while remaining and task.reached(pose, remaining[0]):
-            remaining.pop(0)
-            since_s = (tick - 1) * dt_s
-        if not remaining:
-            break
-        context = Context(state=state, belief=step.belief)
-        given = operator.act(context, controller, step.mode, remaining[0], rng)
-        records.append(step(given, 0.0, state, tick * dt_s))
-        if watch is not None:
-            watch(records[-1])
-        arm.send(records[-1].command)
-        arm.advance(dt_s)
+    with make_simulated_arm(setup.arm, task.robot, start, clock.now_s) as arm:
+        check_arm(arm.spec, task.robot)
+        reading = arm.read()
+        step.reset(reading.q)
+        records = [step(Input(np.zeros(controller.input_dim)), 0.0, reading, clock.now_s())]
+        arm.enable()
+        step.enable()
+        for tick in range(1, int(setup.time_limit_s * RATE_HZ) + 1):
+            clock.wait_until(tick * dt_s)
+            reading = arm.read()
+            pose = task.robot.chain.forward(reading.q)
+            while remaining and task.reached(pose, remaining[0]):
+                remaining.pop(0)
+                since_s = (tick - 1) * dt_s
+            if not remaining:
+                break
+            context = Context(state=reading.q, belief=step.belief)
+            given = operator.act(context, controller, step.mode, remaining[0], rng)
+            records.append(step(given, 0.0, reading, clock.now_s()))
+            if watch is not None:
+                watch(records[-1])
+            arm.send(records[-1].command)
     return _trace(records, setup, goal, manner, remaining, since_s)
 
 

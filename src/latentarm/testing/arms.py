@@ -1,25 +1,32 @@
-"""Contract tests of simulated arms."""
+"""Contract tests of arms."""
 
 from functools import cache
+from typing import get_args
 
 import numpy as np
 import pytest
 
 from latentarm.arms.catalogue import ArmFactory
-from latentarm.arms.contract import SimulatedArm
-from latentarm.errors import UserError
+from latentarm.arms.contract import Arm, ArmPhase, check_arm
+from latentarm.control.clock import SimulatedClock
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
+from latentarm.testing.fault_trials import FAULTS, Fault, try_fault
 from latentarm.types import Command, FloatArray
 
 DT_S = 0.02
 
+ZERO_COMMAND_S = 0.15
+"""From a fault to a command of zero, s."""
+
+REST_S = 0.4
+"""From a fault until the arm stands still, s."""
 
 _panda = cache(panda)
 
 
 class ArmContract:
-    """Tests of an arm.
+    """Tests of an arm in simulated time.
 
     Override the fixture ``make``, and ``robot`` if the arm is not for a Panda::
 
@@ -31,10 +38,12 @@ class ArmContract:
     Attributes:
         tolerance_rad: allowed distance from where the commands lead, rad; larger for an arm with inertia.
         settling_s: how long it may take to come to rest, s.
+        trials: how often each fault is tried.
     """
 
     tolerance_rad = 1e-9
     settling_s = 0.0
+    trials = 1
 
     @pytest.fixture
     def make(self) -> ArmFactory:
@@ -47,11 +56,21 @@ class ArmContract:
         return _panda()
 
     @pytest.fixture
-    def arm(self, make: ArmFactory, robot: Robot) -> SimulatedArm:
+    def clock(self) -> SimulatedClock:
+        """The arm's clock."""
+        return SimulatedClock()
+
+    @pytest.fixture
+    def new_arm(self, make: ArmFactory, robot: Robot, clock: SimulatedClock) -> Arm:
         """An arm at home that has just been made."""
-        arm = make(robot, robot.home)
-        assert isinstance(arm, SimulatedArm), "these tests let time pass, so they are for simulated arms"
-        return arm
+        return make(robot, robot.home, clock.now_s)
+
+    @pytest.fixture
+    def arm(self, new_arm: Arm) -> Arm:
+        """The same arm, connected and enabled."""
+        new_arm.connect()
+        new_arm.enable()
+        return new_arm
 
     @pytest.fixture
     def velocity(self, robot: Robot) -> FloatArray:
@@ -59,87 +78,179 @@ class ArmContract:
         middle = (robot.limits.lower + robot.limits.upper) / 2
         return np.linspace(0.02, 0.05, robot.dof) * np.where(robot.home < middle, 1.0, -1.0)
 
-    def test_being_made_does_not_move_it(self, arm: SimulatedArm, robot: Robot) -> None:
-        arm.advance(DT_S)
-        np.testing.assert_allclose(arm.state(), robot.home, atol=self.tolerance_rad)
-        assert not arm.velocity().any()
-        assert arm.simulated
+    def test_it_says_what_it_is(self, new_arm: Arm, robot: Robot) -> None:
+        check_arm(new_arm.spec, robot)
+        assert new_arm.spec.simulated, "these tests let time pass, so they are for simulated arms"
+        assert new_arm.spec.rate_hz > 0.0
+
+    def test_nothing_moves_it_before_it_is_enabled(
+        self, new_arm: Arm, robot: Robot, clock: SimulatedClock, velocity: FloatArray
+    ) -> None:
+        assert new_arm.status().phase == "off"
+        with pytest.raises(RuntimeError, match="connected"):
+            new_arm.read()
+        new_arm.send(Command(velocity, duration_s=10.0))
+        new_arm.connect()
+        assert new_arm.status().phase == "disabled"
+        new_arm.send(Command(velocity, duration_s=10.0))
+        _wait(clock, 0.5)
+        new_arm.enable()
+        _wait(clock, 0.5)
+        assert new_arm.status().phase == "ready"
+        self._at_rest(new_arm, clock, robot.home)
+
+    def test_its_status_says_why_it_takes_no_commands(self, new_arm: Arm) -> None:
+        assert new_arm.status().reason
+        new_arm.connect()
+        status = new_arm.status()
+        assert status.phase in get_args(ArmPhase)
+        assert not status.takes_commands
+        assert status.reason
 
     def test_it_moves_by_velocity_times_time(
-        self, arm: SimulatedArm, robot: Robot, velocity: FloatArray
+        self, arm: Arm, robot: Robot, clock: SimulatedClock, velocity: FloatArray
     ) -> None:
-        for _ in range(50):
-            arm.send(Command(velocity, duration_s=DT_S))
-            arm.advance(DT_S)
-        moved = arm.state() - robot.home
+        self._drive(arm, clock, velocity, ticks=50)
+        assert arm.status().phase == "moving"
+        moved = arm.read().q - robot.home
         np.testing.assert_allclose(moved, velocity * 50 * DT_S, atol=self.tolerance_rad)
 
-    def test_it_reads_the_velocity_that_it_moves_at(self, arm: SimulatedArm, velocity: FloatArray) -> None:
-        for _ in range(50):
-            arm.send(Command(velocity, duration_s=DT_S))
-            arm.advance(DT_S)
-        np.testing.assert_allclose(arm.velocity(), velocity, atol=self.tolerance_rad / DT_S)
+    def test_it_reads_the_velocity_that_it_moves_at(
+        self, arm: Arm, clock: SimulatedClock, velocity: FloatArray
+    ) -> None:
+        self._drive(arm, clock, velocity, ticks=50)
+        np.testing.assert_allclose(arm.read().dq, velocity, atol=self.tolerance_rad / DT_S)
+
+    def test_its_readings_say_when_they_were_taken(self, arm: Arm, clock: SimulatedClock) -> None:
+        before = arm.read()
+        for _ in range(5):
+            _wait(clock, DT_S)
+            reading = arm.read()
+            assert clock.now_s() - DT_S < reading.time_s <= clock.now_s()
+            assert reading.sequence > before.sequence
+            before = reading
 
     def test_it_stops_by_itself_when_no_command_comes(
-        self, arm: SimulatedArm, robot: Robot, velocity: FloatArray
+        self, arm: Arm, robot: Robot, clock: SimulatedClock, velocity: FloatArray
     ) -> None:
         arm.send(Command(velocity, duration_s=0.05))
         for _ in range(10):
-            arm.advance(DT_S)
-        self._at_rest(arm, robot.home + velocity * 0.05)
+            _wait(clock, DT_S)
+            arm.read()
+        self._at_rest(arm, clock, robot.home + velocity * 0.05)
 
-    def test_a_command_runs_out_within_a_longer_step(
-        self, arm: SimulatedArm, robot: Robot, velocity: FloatArray
+    def test_a_command_runs_out_even_if_nobody_asks(
+        self, arm: Arm, robot: Robot, clock: SimulatedClock, velocity: FloatArray
     ) -> None:
         arm.send(Command(velocity, duration_s=0.05))
-        arm.advance(1.0)
-        self._at_rest(arm, robot.home + velocity * 0.05)
+        _wait(clock, 1.0)
+        self._at_rest(arm, clock, robot.home + velocity * 0.05)
 
     def test_a_command_replaces_the_one_before(
-        self, arm: SimulatedArm, robot: Robot, velocity: FloatArray
+        self, arm: Arm, robot: Robot, clock: SimulatedClock, velocity: FloatArray
     ) -> None:
         arm.send(Command(velocity, duration_s=10.0))
         arm.send(Command(np.zeros(robot.dof), duration_s=DT_S))
-        arm.advance(DT_S)
-        self._at_rest(arm, robot.home)
+        _wait(clock, DT_S)
+        self._at_rest(arm, clock, robot.home)
 
-    def test_stop_forgets_the_command(self, arm: SimulatedArm, robot: Robot, velocity: FloatArray) -> None:
+    def test_stop_forgets_the_command(
+        self, arm: Arm, robot: Robot, clock: SimulatedClock, velocity: FloatArray
+    ) -> None:
         arm.send(Command(velocity, duration_s=1.0))
         arm.stop()
-        arm.advance(DT_S)
-        self._at_rest(arm, robot.home)
+        _wait(clock, DT_S)
+        self._at_rest(arm, clock, robot.home)
+        assert arm.status().phase == "ready"
 
-    def test_a_joint_stays_within_its_limits(self, arm: SimulatedArm, robot: Robot) -> None:
+    @pytest.mark.parametrize("how", ["disable", "close"])
+    def test_disabling_and_closing_stop_it_for_good(
+        self, arm: Arm, clock: SimulatedClock, velocity: FloatArray, how: str
+    ) -> None:
+        self._drive(arm, clock, velocity, ticks=10)
+        getattr(arm, how)()
+        getattr(arm, how)()
+        _wait(clock, self.settling_s + DT_S)
+        assert arm.status().phase == {"disable": "disabled", "close": "off"}[how]
+        # What comes again after a lost connection never moves by itself, nor by what it is sent too early.
+        arm.connect()
+        assert arm.status().phase == "disabled"
+        rested = arm.read().q
+        arm.send(Command(velocity, duration_s=10.0))
+        _wait(clock, 0.5)
+        arm.connect()
+        self._at_rest(arm, clock, rested)
+        arm.enable()
+        self._drive(arm, clock, velocity, ticks=10)
+        assert (np.abs(arm.read().q - rested) > 5 * DT_S * np.abs(velocity)).all()
+
+    def test_a_closed_arm_has_no_new_readings(self, arm: Arm, clock: SimulatedClock) -> None:
+        before = arm.read()
+        arm.close()
+        _wait(clock, 1.0)
+        assert arm.read().time_s <= before.time_s
+        sequence = arm.read().sequence
+        arm.connect()
+        assert arm.read().sequence > sequence
+
+    def test_a_joint_stays_within_its_limits(self, arm: Arm, robot: Robot, clock: SimulatedClock) -> None:
         velocity = np.zeros(robot.dof)
         velocity[0] = 2.0
         arm.send(Command(velocity, duration_s=100.0))
-        for _ in range(200):
-            arm.advance(0.5)
-        assert arm.state()[0] <= robot.limits.upper[0] + self.tolerance_rad
-        assert abs(arm.velocity()[0]) <= self.tolerance_rad / DT_S
+        _wait(clock, 5.0)
+        assert arm.read().q[0] <= robot.limits.upper[0] + self.tolerance_rad
+        assert abs(arm.read().dq[0]) <= self.tolerance_rad / DT_S
 
-    def test_nobody_can_reach_into_its_state(self, arm: SimulatedArm, robot: Robot) -> None:
-        arm.state()[:] = 9.0
-        arm.velocity()[:] = 9.0
-        np.testing.assert_allclose(arm.state(), robot.home, atol=self.tolerance_rad)
-        assert not arm.velocity().any()
+    def test_nobody_can_reach_into_its_state(self, arm: Arm, robot: Robot, clock: SimulatedClock) -> None:
+        reading = arm.read()
+        reading.q[:] = 9.0
+        reading.dq[:] = 9.0
+        _wait(clock, DT_S)
+        self._at_rest(arm, clock, robot.home)
 
     @pytest.mark.parametrize("wrong", ["short", "nan", "matrix"])
     def test_a_command_that_no_filter_would_send_is_an_error(
-        self, arm: SimulatedArm, robot: Robot, wrong: str
+        self, arm: Arm, robot: Robot, wrong: str
     ) -> None:
         n = robot.dof
         velocity = {"short": np.zeros(n - 1), "nan": np.full(n, np.nan), "matrix": np.zeros((1, n))}[wrong]
         with pytest.raises(ValueError, match=f"{n} finite joint velocities"):
             arm.send(Command(velocity, duration_s=DT_S))
 
-    @pytest.mark.parametrize("dt_s", [0.0, -1.0, np.nan, np.inf])
-    def test_time_must_pass(self, arm: SimulatedArm, dt_s: float) -> None:
-        with pytest.raises(UserError, match="time step"):
-            arm.advance(dt_s)
+    @pytest.mark.parametrize("fault", list(FAULTS))
+    def test_it_is_at_rest_soon_after_a_fault(self, make: ArmFactory, robot: Robot, fault: Fault) -> None:
+        for seed in range(self.trials):
+            self._stopped_in_time(make, robot, fault, seed)
 
-    def _at_rest(self, arm: SimulatedArm, state: FloatArray) -> None:
+    @pytest.mark.parametrize("late_ticks", [1, 2, 3, 4, 5])
+    def test_it_is_driven_by_late_readings_and_stopped(
+        self, make: ArmFactory, robot: Robot, late_ticks: int
+    ) -> None:
+        for seed in range(self.trials):
+            self._stopped_in_time(make, robot, "stop_pressed", seed, 0.01 * late_ticks)
+
+    def _stopped_in_time(
+        self, make: ArmFactory, robot: Robot, fault: Fault, seed: int, late_s: float = 0.0
+    ) -> None:
+        trial = try_fault(make, robot, fault, seed, late_s)
+        assert 0.0 < trial.zero_command_s <= ZERO_COMMAND_S
+        assert 0.0 < trial.rest_s <= REST_S
+        assert trial.moved_rad <= self.tolerance_rad
+        assert trial.moves_again
+        assert trial.reason
+
+    def _drive(self, arm: Arm, clock: SimulatedClock, velocity: FloatArray, ticks: int) -> None:
+        for _ in range(ticks):
+            arm.send(Command(velocity, duration_s=2.5 * DT_S))
+            _wait(clock, DT_S)
+            arm.read()
+
+    def _at_rest(self, arm: Arm, clock: SimulatedClock, state: FloatArray) -> None:
         if self.settling_s:
-            arm.advance(self.settling_s)
-        np.testing.assert_allclose(arm.state(), state, atol=self.tolerance_rad)
-        assert (np.abs(arm.velocity()) <= self.tolerance_rad / DT_S).all()
+            _wait(clock, self.settling_s)
+        np.testing.assert_allclose(arm.read().q, state, atol=self.tolerance_rad)
+        assert (np.abs(arm.read().dq) <= self.tolerance_rad / DT_S).all()
+
+
+def _wait(clock: SimulatedClock, span_s: float) -> None:
+    clock.wait_until(clock.now_s() + span_s)

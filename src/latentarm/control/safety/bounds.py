@@ -49,6 +49,7 @@ class Bounds:
         stop_acceleration: (n,), for stops, rad/s².
         stop_jerk: (n,), for stops, rad/s³.
         hold_s: how long one command lasts, s.
+        reading_timeout_s: how old the newest reading may be, s.
         lag_s: how far readings may lag behind commands, s.
         stop_s: the longest stop, s.
         reach_s: an upper bound of the distance that a command and its brake cover, over its speed, s.
@@ -120,6 +121,7 @@ class Bounds:
                 " lower joint_speed (link_speed where joints slide) or input_timeout_s, or raise"
                 " stop_fraction or the rate."
             )
+        self.reading_timeout_s = min(config.reading_periods * dt_s, STOPPED_WITHIN_S - dt_s - self.stop_s)
         if config.input_timeout_s + config.input_grace_s > STOPPED_WITHIN_S:
             raise UserError(
                 f"The safety limits input_timeout_s and input_grace_s are"

@@ -67,6 +67,8 @@ class SafetyConfig:
         dead_zone: inputs no longer than this are zero, in [0, 0.5].
         command_periods: for how many periods of the loop one command lasts; past that the arm stops
             by itself. At least 1.5, so that an ordinary delay does not stop it.
+        reading_periods: how many periods of the loop old the newest reading of the arm may be; less where the
+            stop after it would not be over 0.15 s after that reading. At least 1.
         jump_margin: a reading that lies farther from the one before it than the joint can move in the time
             between them, by more than this, stops the arm, rad (m where a joint slides, here and below).
         freeze_margin: a reading that repeats exactly while its joint was commanded to move farther than this
@@ -96,6 +98,7 @@ class SafetyConfig:
     input_grace_s: float = 0.0
     dead_zone: float = 0.02
     command_periods: float = 2.5
+    reading_periods: float = 5.0
     jump_margin: float = 0.03
     freeze_margin: float = 0.01
     following_error: float = 0.05
@@ -131,13 +134,14 @@ _RANGES: dict[str, tuple[float, float, str]] = {
     "input_grace_s": (0.0, 0.15, "s"),
     "dead_zone": (0.0, 0.5, "of full input"),
     "command_periods": (1.5, 10.0, "periods"),
+    "reading_periods": (1.0, 50.0, "periods"),
     "jump_margin": (0.0, 0.5, "rad"),
     "freeze_margin": (0.0, 0.5, "rad"),
     "following_error": (0.0, 0.5, "rad"),
     "following_lag_s": (0.0, 0.5, "s"),
     "following_window_s": (0.0, 10.0, "s"),
 }
-_MAY_TOUCH = ("input_grace_s", "dead_zone", "command_periods")
+_MAY_TOUCH = ("input_grace_s", "dead_zone", "command_periods", "reading_periods")
 
 
 def _figure(name: str, value: object) -> float:

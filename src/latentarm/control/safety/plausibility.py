@@ -1,5 +1,6 @@
 """Whether the joint readings are plausible, given what the arm was commanded to do."""
 
+import math
 from collections import deque
 from typing import final
 
@@ -34,7 +35,9 @@ class Plausibility:
     two moments are compared: the displacement since an earlier moment, the anchor, lies between
     ``min c - max c_anchor`` and ``max c - min c_anchor``, minima and maxima taken over the ``lag_s`` before
     each. Only what lies outside counts as an error, so a lag within ``lag_s`` never adds up to one, however
-    fast the arm moves. The anchor is at most ``following_window_s`` old, so slow drift is no error either.
+    fast the arm moves. A joint that has been commanded one way for longer than any lag must be moving: where
+    its new readings repeat, the commanded displacement counts in full. The anchor is at most
+    ``following_window_s`` old, so slow drift is no error either.
 
     Args:
         bounds: the limits.
@@ -64,6 +67,8 @@ class Plausibility:
         self._anchors: deque[tuple[float, FloatArray]] = deque()
         self._repeats = False
         self._anchor_at_change = self._commanded_at_change = self._commanded
+        # For longer than any lag, whenever in a period a reading may have been taken.
+        self._velocities: deque[FloatArray] = deque(maxlen=math.ceil(bounds.lag_s / bounds.dt_s) + 2)
 
     def reset(self) -> None:
         """Forget all history, for an arm at rest."""
@@ -94,13 +99,16 @@ class Plausibility:
             f" in {1000 * elapsed_s:.0f} ms: check the arm and its encoder."
         )
 
-    def follow(self, reading: FloatArray, velocity: FloatArray, time_s: float, *, driven: bool) -> str | None:
+    def follow(
+        self, reading: FloatArray, velocity: FloatArray, time_s: float, *, new: bool, driven: bool
+    ) -> str | None:
         """Add a reading and check whether it agrees with the commands.
 
         Args:
             reading: (n,), measured joint positions, rad, finite.
             velocity: (n,), the command since the reading before, rad/s.
             time_s: the loop's clock, s.
+            new: whether it was measured since the reading before.
             driven: whether the arm is expected to follow its commands. An arm at rest that is not enabled may
                 be moved by hand: then every reading is the anchor for what comes.
 
@@ -129,6 +137,10 @@ class Plausibility:
         now = both - reach
         if self._repeats:
             frozen = np.maximum.reduce(now - self._anchor_at_change)
+            if new and len(self._velocities) == self._velocities.maxlen:
+                directions = np.sign(self._velocities)
+                ahead = directions[-1] * (self._commanded - self._commanded_at_change)[0]
+                frozen = np.where(repeated & (directions == directions[-1]).all(axis=0), ahead, frozen)
             if largest(frozen) > self._freeze:
                 return self._froze(int(frozen.argmax()))
         error = now - self._oldest(time_s, anchor)
@@ -160,11 +172,13 @@ class Plausibility:
         self._span, self._span_ends_s = 0, time_s + self._bucket_s
         self._repeats = False
         self._anchor_at_change, self._commanded_at_change = _BOTH_SIGNS * reading, self._commanded
+        self._velocities.clear()
         self._anchors.clear()
         self._anchors.append((time_s, self._anchor_at_change))
 
     def _integrate(self, velocity: FloatArray, time_s: float) -> None:
         """Advance the commanded position and its extremes over the last ``lag_s``."""
+        self._velocities.append(velocity)
         before = self._commanded
         passed_s = min(time_s - self._time_s, self._hold_s)
         self._commanded = before + (passed_s * _BOTH_SIGNS) * velocity

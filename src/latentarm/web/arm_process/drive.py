@@ -314,7 +314,7 @@ class Drive:
             profile=spec.profile,
             loading=self.change is not None,
             q=tuple(self._seen.tolist()),
-            speed=float(np.abs(self._arm.velocity()).max()),
+            speed=float(np.abs(self._arm.read().dq).max()),
             tool=(tool[0], tool[1], tool[2]),
             ghosts=self._ghosts.newest,
             belief=tuple(record.belief.tolist()),

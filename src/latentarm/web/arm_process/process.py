@@ -19,7 +19,7 @@ from typing import Final, TypeVar, final
 
 from threadpoolctl import threadpool_limits
 
-from latentarm.arms.catalogue import make_live_arm
+from latentarm.arms.catalogue import make_arm
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.errors import UserError
@@ -86,15 +86,19 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                     case None:
                         break
                     case Reset():
+                        arm.close()
                         arm = _arm(setup, clock)
                     case ChooseProfile(name=name):
                         setup, note = _loaded(partial(_other_profile, setup, name), setup)
                     case ChooseRun(run=run):
                         spec = replace(setup.spec, run=Path(run), profile=None)
+                        before = arm
                         (setup, arm), note = _loaded(partial(_other_run, spec, clock), (setup, arm))
                         if note is None:
+                            before.close()
                             steering.mode, steering.axes = setup.modes[0], 0
         finally:
+            arm.close()
             writer.close()
             gc.unfreeze()
 
@@ -106,7 +110,9 @@ def _ask_for_priority() -> None:
 
 
 def _arm(setup: DriveSetup, clock: Clock) -> Arm:
-    return make_live_arm(setup.spec.arm, setup.task.robot, setup.start, clock.now_s)
+    arm = make_arm(setup.spec.arm, setup.task.robot, setup.start, clock.now_s)
+    arm.connect()
+    return arm
 
 
 def _other_profile(setup: DriveSetup, name: str | None) -> DriveSetup:

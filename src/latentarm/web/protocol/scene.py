@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
-from latentarm.kinematics.reader import Reading, read
+from latentarm.kinematics.reader import ModelChain, read
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray
 
@@ -94,7 +94,7 @@ def _visible(model: mujoco.MjModel) -> list[int]:
     return [geom for geom in drawn if model.geom_group[geom] < _VISIBLE_GROUPS] or drawn
 
 
-def _geom(model: mujoco.MjModel, reading: Reading, geom: int) -> dict[str, object]:
+def _geom(model: mujoco.MjModel, reading: ModelChain, geom: int) -> dict[str, object]:
     body = int(model.geom_bodyid[geom])
     rotation = np.empty(9)
     mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])

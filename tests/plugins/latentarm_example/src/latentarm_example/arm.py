@@ -1,32 +1,32 @@
 """An arm whose encoders count: a reading is a whole number of counts."""
 
+from collections.abc import Callable
+
 import numpy as np
 
-from latentarm.arms.contract import SimulatedArm
-from latentarm.arms.kinematic import KinematicArm
+from latentarm.arms.simulated import SimulatedArm
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, FloatArray
+from latentarm.types import FloatArray
 
 COUNT_RAD = 1e-5
 
 
 class CountingArm(SimulatedArm):
-    """The kinematic arm, read with finite resolution."""
+    """It does what it is told, and is read with finite resolution."""
 
-    def __init__(self, robot: Robot, state: FloatArray) -> None:
-        self._arm = KinematicArm(robot, state)
+    def __init__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> None:
+        super().__init__(robot, state, now_s, rate_hz=200.0, stops_after_s=0.0)
+        self._limits = robot.limits
+        self._q = np.array(state, dtype=np.float64)
+        self._dq = np.zeros(robot.dof)
 
-    def state(self) -> FloatArray:
-        return np.round(self._arm.state() / COUNT_RAD) * COUNT_RAD
+    def _pass(self, span_s: float, commanded: FloatArray) -> None:
+        moved = self._q + commanded * span_s
+        self._q = np.clip(moved, self._limits.lower, self._limits.upper)
+        self._dq = np.where(moved == self._q, commanded, 0.0)
 
-    def velocity(self) -> FloatArray:
-        return self._arm.velocity()
+    def _measure(self) -> tuple[FloatArray, FloatArray, float]:
+        return np.round(self._q / COUNT_RAD) * COUNT_RAD, self._dq.copy(), 0.0
 
-    def send(self, command: Command) -> None:
-        self._arm.send(command)
-
-    def stop(self) -> None:
-        self._arm.stop()
-
-    def advance(self, dt_s: float) -> None:
-        self._arm.advance(dt_s)
+    def _halt(self) -> None:
+        self._dq = np.zeros_like(self._dq)

@@ -1,0 +1,185 @@
+"""An arm in MuJoCo: inertia, torque limits and a velocity servo."""
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, final
+
+import mujoco
+import numpy as np
+
+from latentarm.arms.servo import Servo, add_servos, drop_actuators, hold_still_joints, torque_limits
+from latentarm.arms.simulated import SimulatedArm
+from latentarm.errors import UserError
+from latentarm.kinematics.reader import read, reference_positions
+from latentarm.robots.robot import Robot
+from latentarm.types import FloatArray
+
+STEP_S: Final = 0.001
+"""Time step of the physics and of the servo, s."""
+
+_HARD_STOP: Final = (2.0 * STEP_S, 1.0)
+"""Joints end at stops of metal: as stiff as the time step allows."""
+
+RATE_HZ: Final = 1000.0
+"""How many commands the servo takes per second."""
+
+
+@final
+@dataclass(frozen=True)
+class Imperfections:
+    """What a simulated arm has in common with a real one besides its inertia.
+
+    Attributes:
+        position_noise_rad: SD of the noise on positions, rad.
+        velocity_noise_rad_s: SD of the noise on velocities, rad/s.
+        delay_s: how old every reading is, s.
+        payload_kg: mass at the end-effector that the arm's gravity compensation does not know, kg.
+        seed: of the noise.
+
+    Raises:
+        UserError: a figure is negative or not finite.
+    """
+
+    position_noise_rad: float = 0.0
+    velocity_noise_rad_s: float = 0.0
+    delay_s: float = 0.0
+    payload_kg: float = 0.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("position_noise_rad", "velocity_noise_rad_s", "delay_s", "payload_kg"):
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise UserError(f"A simulated arm's {name} is {getattr(self, name)}: it must be 0 or more.")
+
+
+@final
+class MujocoArm(SimulatedArm):
+    """A robot in MuJoCo, driven by torques.
+
+    Each joint has a velocity servo at 1 kHz: a torque in proportion to the error of the velocity and to that
+    of its integral. Gravity is compensated for the robot's own bodies. The servo follows a command no faster
+    than the joint may accelerate, and slows down as fast as that once a command has run out or was taken
+    back. Torques end at the limits of the robot's model. What the model does not drive stays where it is.
+
+    Args:
+        robot: whose model is simulated.
+        state: (n,), where the arm starts, rad.
+        now_s: the clock, s; never goes back.
+        imperfections: of the arm and its sensors.
+
+    Raises:
+        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits; or the model
+            states no torque limit for a joint.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        state: FloatArray,
+        now_s: Callable[[], float],
+        imperfections: Imperfections | None = None,
+    ) -> None:
+        super().__init__(robot, state, now_s, rate_hz=RATE_HZ, stops_after_s=STEP_S)
+        self._imperfections = imperfections or Imperfections()
+        self._model, self._joints = _world(robot, state, self._imperfections.payload_kg)
+        self._positions = self._model.jnt_qposadr[self._joints]
+        self._speeds = self._model.jnt_dofadr[self._joints]
+        self._data = mujoco.MjData(self._model)
+        self._data.qpos[:] = reference_positions(robot.model())
+        self._data.qpos[self._positions] = state
+        self._servo = Servo(self._model, self._data, self._joints, robot.limits.acceleration * STEP_S)
+        self._behind_s = 0.0
+        self._rng = np.random.default_rng(self._imperfections.seed)
+        self._measured: deque[tuple[float, FloatArray, FloatArray]] = deque()
+        self._note()
+
+    def truth(self) -> tuple[FloatArray, FloatArray]:
+        """Where the joints are by now, (n,), rad, and how fast they move, (n,), rad/s, whatever is read."""
+        self._elapse()
+        return self._data.qpos[self._positions].copy(), self._data.qvel[self._speeds].copy()
+
+    def _pass(self, span_s: float, commanded: FloatArray) -> None:
+        self._behind_s += span_s
+        steps = int((self._behind_s + 1e-9) / STEP_S)
+        self._behind_s -= steps * STEP_S
+        if steps:
+            self._servo.run(steps, commanded)
+            self._note()
+
+    def _note(self) -> None:
+        """Keep what is measured now for as long as readings are delayed."""
+        time_s = float(self._data.time)
+        q, dq = self._data.qpos[self._positions].copy(), self._data.qvel[self._speeds].copy()
+        self._measured.append((time_s, q, dq))
+        while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._imperfections.delay_s - 1e-9:
+            self._measured.popleft()
+
+    def _measure(self) -> tuple[FloatArray, FloatArray, float]:
+        time_s, q, dq = self._measured[0]
+        noise = self._imperfections
+        q = q + self._rng.normal(0.0, noise.position_noise_rad, q.shape)
+        dq = dq + self._rng.normal(0.0, noise.velocity_noise_rad_s, dq.shape)
+        return q, dq, float(self._data.time) - time_s + max(self._behind_s, 0.0)
+
+    def _halt(self) -> None:
+        """Nothing: without a command the servo slows down from the next step on."""
+
+
+def _world(robot: Robot, state: FloatArray, payload_kg: float) -> tuple[mujoco.MjModel, np.ndarray]:
+    """The robot's model with servos, and the model's id of each of the robot's joints."""
+    spec = mujoco.MjSpec.from_string(robot.mjcf)
+    bare = spec.compile()
+    found = read(bare, [tool.name for tool in robot.chain.tools])
+    torque = torque_limits(bare, found.joints, robot)
+    inertia = _inertia(bare, found.joints, state)
+    drop_actuators(spec)
+    hold_still_joints(spec, bare, found.joints)
+    add_servos(spec, bare, found.joints, torque, inertia)
+    _let_first_links_turn(spec, bare, found.joints)
+    for joint in spec.joints:
+        joint.solref_limit[:] = _HARD_STOP
+    for body in spec.bodies:
+        body.gravcomp = 1.0
+    if payload_kg > 0.0:
+        _hang(spec, robot, payload_kg)
+    spec.option.timestep = STEP_S
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    return spec.compile(), found.joints
+
+
+def _inertia(model: mujoco.MjModel, joints: np.ndarray, state: FloatArray) -> FloatArray:
+    """(n,), what each joint moves by itself at the start, kg m²; kg where it slides."""
+    data = mujoco.MjData(model)
+    data.qpos[:] = reference_positions(model)
+    data.qpos[model.jnt_qposadr[joints]] = state
+    mujoco.mj_forward(model, data)
+    whole = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, whole)
+    return np.diag(whole)[model.jnt_dofadr[joints]]
+
+
+def _let_first_links_turn(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: np.ndarray) -> None:
+    """No contact between a link and the base that it turns on, as between any other link and its parent."""
+    for body in {int(model.jnt_bodyid[joint]) for joint in joints}:
+        parent = int(model.body_parentid[body])
+        if parent and model.body_weldid[parent] == 0:
+            spec.add_exclude(bodyname1=_named(spec, parent), bodyname2=_named(spec, body))
+
+
+def _named(spec: mujoco.MjSpec, body: int) -> str:
+    """The name of a body, which gets one where it has none."""
+    found = next(one for one in spec.bodies if one.id == body)
+    found.name = found.name or f"body{body}"
+    return str(found.name)
+
+
+def _hang(spec: mujoco.MjSpec, robot: Robot, payload_kg: float) -> None:
+    """Add a ball at the end-effector that gravity compensation does not hold."""
+    name = robot.chain.tools[0].name
+    site = spec.site(name)
+    parent, place = (spec.body(name), [0.0, 0.0, 0.0]) if site is None else (site.parent, list(site.pos))
+    ball = parent.add_body(name="payload", pos=place)
+    ball.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[0.03, 0.0, 0.0], mass=payload_kg, contype=0, conaffinity=0
+    )

@@ -1,0 +1,175 @@
+"""Velocity servos for the joints of a MuJoCo model, in place of whatever actuators it has."""
+
+from typing import Final, final
+
+import mujoco
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.kinematics.reader import reference_positions
+from latentarm.robots.robot import Robot
+from latentarm.types import FloatArray, IntArray
+
+STIFFNESS_PER_S: Final = 100.0
+"""Natural frequency of a joint that only its servo moves, rad/s; it is critically damped."""
+
+_JOINT: Final = int(mujoco.mjtTrn.mjTRN_JOINT)
+_AFFINE: Final = int(mujoco.mjtBias.mjBIAS_NONE)
+
+
+@final
+class Servo:
+    """Runs the servos that `add_servos` has added.
+
+    Args:
+        model: compiled with the servos: those that hold positions first, then those that hold velocities.
+        data: what moves.
+        joints: (n,), the driven joints of the model.
+        quickening: (n,), the most that a joint's velocity may change in a time step, rad/s.
+    """
+
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, joints: IntArray, quickening: FloatArray
+    ) -> None:
+        self._model, self._data = model, data
+        self._n = len(joints)
+        self._positions = model.jnt_qposadr[joints]
+        self._quickening = quickening
+        self._velocity = np.zeros(self._n)
+        stiffness = model.actuator_gainprm[: self._n, 0]
+        self._farthest = model.jnt_actfrcrange[joints, 1] / stiffness
+        data.act[: self._n] = data.qpos[self._positions]
+
+    def run(self, steps: int, commanded: FloatArray) -> None:
+        """Let time steps pass.
+
+        Args:
+            steps: how many.
+            commanded: (n,), velocity to reach and then to keep, rad/s.
+        """
+        while steps and (self._velocity != commanded).any():
+            change = np.clip(commanded - self._velocity, -self._quickening, self._quickening)
+            self._velocity = np.where(
+                np.abs(commanded - self._velocity) <= self._quickening, commanded, self._velocity + change
+            )
+            self._step(1)
+            steps -= 1
+        if steps:
+            self._step(steps)
+
+    def _step(self, steps: int) -> None:
+        n = self._n
+        self._data.ctrl[:n] = self._velocity
+        self._data.ctrl[n:] = self._velocity
+        mujoco.mj_step(self._model, self._data, steps)
+        # A joint that is held must not wind its servo up, or it would leap once it is free.
+        q = self._data.qpos[self._positions]
+        self._data.act[:n] = np.clip(self._data.act[:n], q - self._farthest, q + self._farthest)
+
+
+def torque_limits(model: mujoco.MjModel, joints: IntArray, robot: Robot) -> FloatArray:
+    """(n,), the largest torque of each joint as its model states it, N m; N where it slides.
+
+    That of the joint itself counts before that of its actuators.
+
+    Args:
+        model: the robot's own.
+        joints: (n,), ids of its joints.
+        robot: for what is said where a limit is missing.
+
+    Raises:
+        UserError: neither a joint nor an actuator of it has a limit.
+    """
+    limits = np.zeros(len(joints))
+    for index, joint in enumerate(joints):
+        if model.jnt_actfrclimited[joint]:
+            limits[index] = np.abs(model.jnt_actfrcrange[joint]).min()
+        else:
+            limits[index] = sum(
+                _strength(model, actuator)
+                for actuator in range(model.nu)
+                if model.actuator_trntype[actuator] == _JOINT and model.actuator_trnid[actuator, 0] == joint
+            )
+        if not limits[index] > 0.0:
+            raise UserError(
+                f"The model of {robot.name} states no torque limit for joint {robot.joint_names[index]!r}:"
+                " give the joint an actuatorfrcrange, or an actuator with a forcerange."
+            )
+    return limits
+
+
+def _strength(model: mujoco.MjModel, actuator: int) -> float:
+    """The largest force of an actuator on its joint; 0 where there is no limit."""
+    gear = abs(float(model.actuator_gear[actuator, 0]))
+    if model.actuator_forcelimited[actuator]:
+        return gear * float(np.abs(model.actuator_forcerange[actuator]).min())
+    if model.actuator_ctrllimited[actuator] and model.actuator_biastype[actuator] == _AFFINE:
+        gain = abs(float(model.actuator_gainprm[actuator, 0]))
+        return gear * gain * float(np.abs(model.actuator_ctrlrange[actuator]).min())
+    return 0.0
+
+
+def drop_actuators(spec: mujoco.MjSpec) -> None:
+    """Remove the model's own actuators, and what may refer to them."""
+    for part in (*spec.sensors, *spec.keys, *spec.actuators):
+        spec.delete(part)
+
+
+def hold_still_joints(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArray) -> None:
+    """Hold every hinge and slide that is not driven where the model starts.
+
+    Args:
+        spec: gets the constraints.
+        model: compiled from it.
+        joints: (n,), ids of the joints that are driven.
+    """
+    held = reference_positions(model)
+    driven = {int(joint) for joint in joints}
+    following = {int(model.eq_obj1id[i]) for i in range(model.neq) if model.eq_active0[i]}
+    for joint in spec.joints:
+        if joint.type not in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE):
+            continue
+        if joint.id in driven or joint.id in following:
+            continue
+        joint.name = joint.name or f"joint{joint.id}"
+        at = int(model.jnt_qposadr[joint.id])
+        spec.add_equality(
+            type=mujoco.mjtEq.mjEQ_JOINT,
+            name1=joint.name,
+            objtype=mujoco.mjtObj.mjOBJ_JOINT,
+            data=[held[at] - model.qpos0[at], *([0.0] * 11)],
+        )
+
+
+def add_servos(
+    spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArray, torque: FloatArray, inertia: FloatArray
+) -> None:
+    """Add a velocity servo to each joint: for the velocity's integral, and for the velocity itself.
+
+    Args:
+        spec: gets the servos; it has no actuators.
+        model: compiled from it.
+        joints: (n,), ids of the joints.
+        torque: (n,), largest torque of both together and of gravity compensation, N m.
+        inertia: (n,), what each joint moves, kg m².
+    """
+    of = {joint.id: joint for joint in spec.joints}
+    stiffness = STIFFNESS_PER_S**2 * inertia
+    damping = 2.0 * STIFFNESS_PER_S * inertia
+    for index, joint in enumerate(int(joint) for joint in joints):
+        of[joint].name = of[joint].name or f"joint{joint}"
+        of[joint].actfrclimited = True
+        of[joint].actfrcrange = [-torque[index], torque[index]]
+        of[joint].actgravcomp = True
+    for gain, kind in ((stiffness, "integral"), (damping, "velocity")):
+        for index, joint in enumerate(int(joint) for joint in joints):
+            servo = spec.add_actuator(
+                name=f"{of[joint].name} {kind}", target=of[joint].name, trntype=mujoco.mjtTrn.mjTRN_JOINT
+            )
+            servo.gaintype, servo.biastype = mujoco.mjtGain.mjGAIN_FIXED, mujoco.mjtBias.mjBIAS_AFFINE
+            servo.gainprm[0] = gain[index]
+            if kind == "integral":
+                servo.dyntype, servo.actdim = mujoco.mjtDyn.mjDYN_INTEGRATOR, 1
+                servo.biasprm[1] = -gain[index]
+            else:
+                servo.biasprm[2] = -gain[index]

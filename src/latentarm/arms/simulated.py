@@ -1,0 +1,207 @@
+"""What all simulated arms have in common: when they take commands, and how their time passes."""
+
+import math
+from abc import abstractmethod
+from collections.abc import Callable
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.arms.contract import Arm, ArmPhase, ArmSpec, ArmStatus
+from latentarm.errors import UserError
+from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.robots.robot import Robot
+from latentarm.types import Command, FloatArray, Reading
+
+_CLOCK_DIGITS: Final = 9
+"""Time passes in whole nanoseconds, so that equal periods of a clock are equally long for the arm."""
+
+_SETTLED_S: Final = 1.0
+"""An arm without a command is at rest after this time, s: no more of it is simulated."""
+
+_REASONS: Final[dict[ArmPhase, str]] = {
+    "off": "The arm is not connected.",
+    "disabled": "The arm is not enabled yet.",
+}
+
+
+class SimulatedArm(Arm):
+    """A simulated arm. It moves as its clock goes on, whether anybody asks or not.
+
+    With a real clock it lives in real time; with a simulated one, time passes when that does. Either way it
+    stops by itself once a command has run out, as a real arm must.
+
+    Args:
+        robot: whose joints these are.
+        state: (n,), where the arm starts, rad.
+        now_s: the clock, s; never goes back.
+        rate_hz: how many commands it takes per second.
+        stops_after_s: how soon it notices that a command has run out, s.
+
+    Raises:
+        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        state: FloatArray,
+        now_s: Callable[[], float],
+        *,
+        rate_hz: float,
+        stops_after_s: float,
+    ) -> None:
+        check_start(robot, state)
+        self._spec = ArmSpec(robot.joint_names, rate_hz, stops_after_s, simulated=True)
+        self._now_s = now_s
+        self._at_s = now_s()
+        self._phase: ArmPhase = "off"
+        self._rest = np.zeros(robot.dof)
+        self._commanded = self._rest
+        self._left_s = 0.0
+        self._newest: Reading | None = None
+        self._read_at_s = self._at_s
+
+    @abstractmethod
+    def _pass(self, span_s: float, commanded: FloatArray) -> None:
+        """Let time pass.
+
+        Args:
+            span_s: how long, s; above zero.
+            commanded: (n,), the velocity that is commanded throughout, rad/s.
+        """
+
+    @abstractmethod
+    def _measure(self) -> tuple[FloatArray, FloatArray, float]:
+        """Positions (n,), rad, velocities (n,), rad/s, and how old they are, s; the caller's own arrays."""
+
+    @abstractmethod
+    def _halt(self) -> None:
+        """The command was taken back: stop as fast as the arm can."""
+
+    @property
+    @final
+    def spec(self) -> ArmSpec:
+        """See the base class."""
+        return self._spec
+
+    @final
+    def connect(self) -> None:
+        """See the base class."""
+        self._elapse()
+        if self._phase == "off":
+            self._phase = "disabled"
+            self._renew()
+
+    @final
+    def close(self) -> None:
+        """See the base class."""
+        self.disable()
+        self._phase = "off"
+
+    @final
+    def read(self) -> Reading:
+        """See the base class."""
+        if self._newest is None:
+            raise RuntimeError("an arm has no reading before it is connected")
+        self._elapse()
+        if self._phase == "off" or self._read_at_s == self._at_s:
+            return self._newest
+        return self._renew()
+
+    @final
+    def status(self) -> ArmStatus:
+        """See the base class."""
+        self._elapse()
+        phase = self._phase
+        if phase == "ready" and self._newest is not None and np.abs(self._newest.dq).max() > STILL_RAD_S:
+            phase = "moving"
+        return ArmStatus(phase, _REASONS.get(phase, ""))
+
+    @final
+    def enable(self) -> None:
+        """See the base class."""
+        if self._phase == "disabled":
+            self._phase = "ready"
+
+    @final
+    def disable(self) -> None:
+        """See the base class."""
+        self.stop()
+        if self._phase == "ready":
+            self._phase = "disabled"
+
+    @final
+    def recover(self) -> None:
+        """Nothing: a simulated arm has no faults of its own."""
+
+    @final
+    def send(self, command: Command) -> None:
+        """See the base class.
+
+        Raises:
+            ValueError: the velocity has the wrong shape or is not finite: no safety filter sends that.
+        """
+        velocity = np.array(command.velocity, dtype=np.float64)
+        if velocity.shape != self._rest.shape or not np.isfinite(velocity).all():
+            raise ValueError(f"a command needs {len(self._rest)} finite joint velocities")
+        self._elapse()
+        if self._phase == "ready":
+            self._commanded = velocity
+            self._left_s = max(float(command.duration_s), 0.0)
+
+    @final
+    def stop(self) -> None:
+        """See the base class."""
+        self._elapse()
+        self._commanded, self._left_s = self._rest, 0.0
+        self._halt()
+        self._read_at_s = math.nan  # what was read in this moment no longer holds
+
+    def _elapse(self) -> None:
+        """Let the time pass that has passed."""
+        now_s = self._now_s()
+        span_s = round(now_s - self._at_s, _CLOCK_DIGITS)
+        if span_s == 0.0:
+            return
+        self._at_s = now_s
+        if span_s < 0.0:
+            return  # the clock has gone back: nobody knows how much time has passed
+        commanded_s = min(span_s, self._left_s)
+        if commanded_s > 0.0:
+            self._pass(commanded_s, self._commanded)
+        self._left_s = round(self._left_s - commanded_s, _CLOCK_DIGITS)
+        idle_s = round(span_s - commanded_s, _CLOCK_DIGITS)
+        if idle_s > 0.0:
+            self._commanded = self._rest
+            self._pass(min(idle_s, _SETTLED_S), self._rest)
+
+    def _renew(self) -> Reading:
+        q, dq, age_s = self._measure()
+        sequence = 0 if self._newest is None else self._newest.sequence + 1
+        self._newest = Reading(q, dq, self._at_s - age_s, sequence)
+        self._read_at_s = self._at_s
+        return self._newest
+
+
+def check_start(robot: Robot, state: FloatArray) -> None:
+    """Refuse to start an arm where it cannot be.
+
+    Args:
+        robot: whose joints these are.
+        state: (n,), where the arm is to start, rad.
+
+    Raises:
+        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
+    """
+    start = np.array(state, dtype=np.float64)
+    if start.shape != (robot.dof,) or not np.isfinite(start).all():
+        raise UserError(
+            f"An arm with {robot.dof} joints needs {robot.dof} finite joint positions to start from."
+        )
+    if robot.limits.violation(start).any():
+        joint = int(np.argmax(robot.limits.violation(start)))
+        raise UserError(
+            f"The arm cannot start with {robot.joint_names[joint]} at {start[joint]:.4g}: its limits are"
+            f" {robot.limits.lower[joint]:.4g} and {robot.limits.upper[joint]:.4g}."
+        )
