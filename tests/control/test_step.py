@@ -204,10 +204,10 @@ class TestAlgorithm:
         belief = BoltzmannBelief([goal.configuration for goal in goals], period_s=0.05)
         step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, belief=belief)
         engaged(step, arm.home)
-        changed = []
+        changed, q = [], arm.home
         for _ in range(20):
             before = step.belief
-            stepped(step, PUSH, 0.0, arm.home, now_s())
+            q = q + 0.01 * stepped(step, PUSH, 0.0, q, now_s()).command.velocity
             changed.append(not np.array_equal(before, step.belief))
         assert sum(changed) == 4
 
