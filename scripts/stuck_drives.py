@@ -2,7 +2,7 @@
 
 For every drive of the greedy operator that fails, the largest gain of any held input out of a fine grid, and
 whether the planning operator completes the same drive. For example:
-python scripts/stuck_drives.py demo/runs/scl
+python scripts/stuck_drives.py default_model/scl/run
 """
 
 import sys

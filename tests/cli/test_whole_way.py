@@ -8,6 +8,7 @@ from unittest.mock import Mock
 import pytest
 
 from latentarm.demonstrations.dataset import read_dataset
+from latentarm.models.catalogue import DEFAULT_MODEL
 from result_rows import rows_in
 
 Run = Callable[..., tuple[int, str, str]]
@@ -111,8 +112,9 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
     config = DemoOptions(Path("demo"), drives=1, jobs=1, json=True)
     sizes = Sizes(episodes=9, seeds=1, epochs=1)
     rows = run_demo(config, sizes)
-    alone = {("cvae", "latent"), ("scl", "latent"), (None, "end_effector")}
-    helped = {("cvae", "latent_assist"), ("scl", "latent_assist")}
+    models = {DEFAULT_MODEL, "cvae"}
+    alone = {(None, "end_effector"), *((model, "latent") for model in models)}
+    helped = {(model, "latent_assist") for model in models}
     others = {
         (model, f"{condition}, {person}")
         for model, condition in alone

@@ -49,8 +49,8 @@ from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.server.addresses import TeleopConfig
 from latentarm.web.server.app import serve
 
-MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae", "scl")))
-"""The default model, the paper's and the linear one."""
+MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae")))
+"""The default model and the paper's."""
 
 TIME_LIMIT_S = 60.0
 
@@ -211,7 +211,7 @@ def _write_page(
         f" seed {config.seed}; mean ± SD over the drives, failed ones included"
         f" (they end after {TIME_LIMIT_S:g} s). No person took part.\n\n"
         f"{_people_tables(tables)}"
-        f"The figures show the {MODELS[0]}, driven by the {SHOWN} operator."
+        f"The figures show the model {MODELS[0]}, driven by the {SHOWN} operator."
         " ![Paths of the tool](paths.png)\n\n"
         "![Inputs over time](inputs.png)\n\n"
         "## The latent spaces, on held-out episodes\n\n"

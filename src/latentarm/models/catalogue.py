@@ -44,7 +44,7 @@ KINDS: Final = Catalogue(
 )
 """What each kind is, in the order in which tables and figures show them. Needs no torch."""
 
-DEFAULT_MODEL: Final = "cvae"
+DEFAULT_MODEL: Final = "homogeneous"
 """What `train`, the demo and the page use unless another is named; docs/decisions/0031 has the rule."""
 
 

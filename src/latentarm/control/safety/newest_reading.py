@@ -17,7 +17,8 @@ class NewestReading:
 
     Args:
         timeout_s: how old the newest reading may be, s.
-        ahead_s: how much newer than its tick a reading may be, s: arms go on measuring after the tick has begun.
+        ahead_s: how much newer than its tick a reading may be, s: arms go on measuring after the tick has
+            begun.
 
     Attributes:
         new: whether the reading was not the newest one already the time before.
