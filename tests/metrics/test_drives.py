@@ -32,8 +32,13 @@ def test_the_figures_of_a_drive_are_those_of_its_record(gantry):
         record(4.0, [3, 4, 0], mode=0),
     ]
     target = Pose(position=np.array([3.0, 4.0, 2.0]), rotation=np.eye(3))
-    drive = measure_drive(records, gantry, target, success=True)
+    elsewhere = Pose(position=np.array([0.0, 0.0, 1.0]), rotation=np.eye(3))
+    drive = measure_drive(records, gantry, target, [elsewhere, target], success=True)
     assert drive.time_s == pytest.approx(3.0)
+    assert drive.idle_s == 0.0
+    # 1 m from the other goal, then √10 from it (√20 from the target), then 2 from the target.
+    assert drive.goal_error_m_s == pytest.approx(0.5 * 1.0 + 2.0 * np.sqrt(10.0) + 0.5 * 2.0)
+    assert drive.goal_error_m == pytest.approx(drive.goal_error_m_s / 3.0)
     assert drive.input_magnitude == pytest.approx(0.5 * 1.0 + 2.0 * 1.0 + 0.5 * np.sqrt(2.0))
     assert drive.mode_switches == 2
     assert drive.path_length == pytest.approx(7.0)
@@ -43,24 +48,33 @@ def test_the_figures_of_a_drive_are_those_of_its_record(gantry):
 
 def test_a_drive_of_one_step_went_nowhere(gantry):
     target = Pose(position=np.zeros(3), rotation=np.eye(3))
-    drive = measure_drive([record(2.0, [1, 0, 0], u=(1.0, 0.0))], gantry, target, success=False)
+    drive = measure_drive([record(2.0, [1, 0, 0], u=(1.0, 0.0))], gantry, target, [target], success=False)
     assert (drive.time_s, drive.input_magnitude, drive.path_length) == (0.0, 0.0, 0.0)
+    assert (drive.idle_s, drive.turned_round, drive.goal_error_m_s) == (0.0, 0.0, 0.0)
+    assert drive.goal_error_m == pytest.approx(1.0)
     assert drive.final_distance == pytest.approx(1.0)
 
 
 def test_no_steps_are_no_drive(gantry):
     with pytest.raises(ValueError, match="without a single step"):
-        measure_drive([], gantry, Pose(np.zeros(3), np.eye(3)), success=False)
+        measure_drive([], gantry, Pose(np.zeros(3), np.eye(3)), [], success=False)
 
 
 def test_rows_hold_mean_sd_and_number_of_a_condition():
-    drives = [Drive(True, 4.0, 2.0, 1, 0.5, 0.01, 5.0), Drive(False, 8.0, 4.0, 3, 0.7, 0.03, 30.0)]
+    drives = [
+        Drive(True, 4.0, 1.0, 2.0, 0.1, 1, 0.5, 0.8, 0.2, 0.01, 5.0),
+        Drive(False, 8.0, 3.0, 4.0, 0.3, 3, 0.7, 2.4, 0.3, 0.03, 30.0),
+    ]
     subject = Subject("drive", task="table", condition="latent")
     rows = {row.measure: row for row in drive_rows(subject, drives)}
     assert rows["success_rate"].mean == 0.5
     assert rows["time_s"].mean == pytest.approx(6.0)
     assert rows["time_s"].sd == pytest.approx(np.std([4.0, 8.0], ddof=1))
     assert rows["mode_switches"].mean == pytest.approx(2.0)
+    assert rows["idle_s"].mean == pytest.approx(2.0)
+    assert rows["turned_round"].mean == pytest.approx(0.2)
+    assert rows["goal_error_m_s"].unit == "m s"
+    assert rows["goal_error_m"].mean == pytest.approx(0.25)
     assert {row.n for row in rows.values()} == {2}
     assert {row.condition for row in rows.values()} == {"latent"}
     assert rows["path_length"].unit == rows["final_distance"].unit == "m"

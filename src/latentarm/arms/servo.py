@@ -14,7 +14,7 @@ STIFFNESS_PER_S: Final = 100.0
 """Natural frequency of a joint that only its servo moves, rad/s; it is critically damped."""
 
 _JOINT: Final = int(mujoco.mjtTrn.mjTRN_JOINT)
-_AFFINE: Final = int(mujoco.mjtBias.mjBIAS_NONE)
+_NO_BIAS: Final = int(mujoco.mjtBias.mjBIAS_NONE)
 
 
 @final
@@ -103,7 +103,7 @@ def _strength(model: mujoco.MjModel, actuator: int) -> float:
     gear = abs(float(model.actuator_gear[actuator, 0]))
     if model.actuator_forcelimited[actuator]:
         return gear * float(np.abs(model.actuator_forcerange[actuator]).min())
-    if model.actuator_ctrllimited[actuator] and model.actuator_biastype[actuator] == _AFFINE:
+    if model.actuator_ctrllimited[actuator] and model.actuator_biastype[actuator] == _NO_BIAS:
         gain = abs(float(model.actuator_gainprm[actuator, 0]))
         return gear * gain * float(np.abs(model.actuator_ctrlrange[actuator]).min())
     return 0.0

@@ -1,4 +1,4 @@
-"""Measures of a drive: success, time, input, mode switches, path and final distance."""
+"""Measures of a drive: success, time, input, mode switches, path, and distances from goals and target."""
 
 import itertools
 from collections.abc import Sequence
@@ -8,6 +8,7 @@ import numpy as np
 
 from latentarm.kinematics.rotations import angle_between
 from latentarm.metrics.contract import PlacesTool
+from latentarm.metrics.stick import idle_time, turned_round_share
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.types import FloatArray, Pose, Row, StepRecord
 
@@ -19,18 +20,26 @@ class Drive:
     Attributes:
         success: the task was done.
         time_s: from the first step to the last, s.
+        idle_s: time without input, s.
         input_magnitude: integral of ‖u‖ over time, s (seconds of full deflection of one axis).
+        turned_round: share of the time in which the stick points away from where it pointed a moment ago.
         mode_switches: how often the controller's mode changed.
         path_length: way of the tool through space, m.
+        goal_error_m_s: integral over time of the tool's distance to the goal that is closest to it, m s.
+        goal_error_m: mean of the same distance over time, m.
         final_distance: of the tool from the target at the end, m.
         final_angle_deg: of the tool from the target's orientation at the end, degrees.
     """
 
     success: bool
     time_s: float
+    idle_s: float
     input_magnitude: float
+    turned_round: float
     mode_switches: int
     path_length: float
+    goal_error_m_s: float
+    goal_error_m: float
     final_distance: float
     final_angle_deg: float
 
@@ -50,8 +59,31 @@ def mode_switches(mode: Sequence[int]) -> int:
     return sum(now != before for before, now in itertools.pairwise(mode))
 
 
+def goal_error(time_s: FloatArray, position: FloatArray, goals: FloatArray) -> tuple[float, float]:
+    """*Goal Error* of the paper's third user study: the "total distance to the closest plate".
+
+    Args:
+        time_s: (T,), s.
+        position: (T, 3), the tool; it counts until the next time, m.
+        goals: (G, 3), m.
+
+    Returns:
+        The integral over time, m s, and the mean, m; for a drive that took no time, 0 and the distance.
+    """
+    closest = np.linalg.norm(position[:, None] - goals, axis=-1).min(axis=1)
+    total = float(closest[:-1] @ np.diff(time_s))
+    took_s = float(time_s[-1] - time_s[0])
+    return total, total / took_s if took_s > 0.0 else float(closest[0])
+
+
 def measure_drive(
-    records: Sequence[StepRecord], chain: PlacesTool, target: Pose, *, success: bool, tool: int = 0
+    records: Sequence[StepRecord],
+    chain: PlacesTool,
+    target: Pose,
+    goals: Sequence[Pose],
+    *,
+    success: bool,
+    tool: int = 0,
 ) -> Drive:
     """Figures of a drive from its record.
 
@@ -59,6 +91,7 @@ def measure_drive(
         records: every step in order; the last holds the state in which the drive ended.
         chain: the robot's forward kinematics.
         target: where the tool was to end.
+        goals: all that the person might have wanted; at least one.
         success: whether the task says that it was done.
         tool: which end-effector, where there are several.
 
@@ -70,12 +103,18 @@ def measure_drive(
     time_s = np.array([record.time_s for record in records])
     pose = chain.forward(np.stack([record.state for record in records]), tool)
     position = pose.position
+    u = np.stack([record.input for record in records])
+    total, mean = goal_error(time_s, position, np.stack([goal.position for goal in goals]))
     return Drive(
         success=success,
         time_s=float(time_s[-1] - time_s[0]),
-        input_magnitude=input_magnitude(time_s, np.stack([record.input for record in records])),
+        idle_s=idle_time(time_s, u),
+        input_magnitude=input_magnitude(time_s, u),
+        turned_round=turned_round_share(time_s, u),
         mode_switches=mode_switches([record.mode for record in records]),
         path_length=path_length(position),
+        goal_error_m_s=total,
+        goal_error_m=mean,
         final_distance=float(np.linalg.norm(position[-1] - target.position)),
         final_angle_deg=float(np.rad2deg(angle_between(pose.rotation[-1], target.rotation))),
     )
@@ -90,8 +129,12 @@ def drive_rows(subject: Subject, drives: Sequence[Drive]) -> list[Row]:
     return [
         summarise(subject, "success_rate", [drive.success for drive in drives]),
         summarise(subject, "time_s", [drive.time_s for drive in drives]),
+        summarise(subject, "idle_s", [drive.idle_s for drive in drives]),
         summarise(subject, "input_magnitude", [drive.input_magnitude for drive in drives]),
+        summarise(subject, "turned_round", [drive.turned_round for drive in drives]),
         summarise(subject, "mode_switches", [drive.mode_switches for drive in drives]),
         summarise(subject, "path_length", [drive.path_length for drive in drives]),
+        summarise(subject, "goal_error_m_s", [drive.goal_error_m_s for drive in drives]),
+        summarise(subject, "goal_error_m", [drive.goal_error_m for drive in drives]),
         summarise(subject, "final_distance", [drive.final_distance for drive in drives]),
     ]

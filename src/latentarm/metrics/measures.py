@@ -220,6 +220,19 @@ MEASURES: Final[dict[str, Measure]] = {
     "findings": Measure("1", "findings", "lower", "how many thresholds of the verdict the model misses"),
     "success_rate": Measure("1", "success rate", "higher", "share of the drives that did the task"),
     "time_s": Measure("s", "time", "lower", "duration of a drive, failed ones included"),
+    "idle_s": Measure("s", "time without input", "lower", "time of a drive in which the input is zero"),
+    "turned_round": Measure(
+        "1",
+        "share of the time turned round",
+        "lower",
+        "share of the time in which the stick is more than 90° from where it was within the last 0.5 s",
+    ),
+    "goal_error_m_s": Measure(
+        "m s", "goal error, total", "lower", "integral over time of the tool's distance to the closest goal"
+    ),
+    "goal_error_m": Measure(
+        "m", "goal error, mean", "lower", "mean over time of the tool's distance to the closest goal"
+    ),
     "input_magnitude": Measure(
         "s", "input magnitude", "lower", "integral of ‖u‖ over time, seconds of full deflection of one axis"
     ),

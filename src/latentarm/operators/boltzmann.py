@@ -14,7 +14,7 @@ from latentarm.operators.density import CostModel, InputDensity, Lattice
 from latentarm.operators.imagination import Imagination
 from latentarm.operators.moment import Moment
 from latentarm.operators.rationality import boltzmann
-from latentarm.types import FloatArray, Input
+from latentarm.types import FloatArray, Input, Pose
 
 
 @final
@@ -71,6 +71,10 @@ class BoltzmannConfig:
                 raise UserError(
                     f"The simulated person's {name} must be in [0, 0.5), not {getattr(self, name)}."
                 )
+
+    def missed(self, target: Pose, reached: Pose) -> FloatArray:
+        """How far poses are from the target, (..., 6), m; a radian counts as `rotation_weight`."""
+        return pose_error(target, reached) * np.repeat([1.0, self.rotation_weight], 3)
 
 
 @final
@@ -167,9 +171,9 @@ class OneStep(Decision):
         foresight = imagination.foresight(rng)
 
         def residuals(tried: FloatArray, in_modes: Sequence[int]) -> FloatArray:
-            """(M, K, 6), m, what K inputs leave in each of M modes; a radian counts `rotation_weight`."""
+            """(M, K, 6), m, what K inputs leave in each of M modes."""
             reached = foresight(tried, moment.context, controller, in_modes, config.horizon_s)
-            return pose_error(moment.target, reached) * np.repeat([1.0, config.rotation_weight], 3)
+            return config.missed(moment.target, reached)
 
         left = residuals(inputs, modes)
         models = [CostModel(lattice, one[1:]) for one in left]

@@ -7,7 +7,6 @@ import numpy as np
 
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
-from latentarm.kinematics.rotations import pose_error
 from latentarm.operators.boltzmann import BoltzmannConfig, OneStep
 from latentarm.operators.decision import Decision
 from latentarm.operators.hand import within_reach
@@ -209,9 +208,8 @@ class Planning(Decision):
         return np.stack(ends)[length - 1, np.arange(len(plans))]
 
     def _residual(self, state: FloatArray, target: Pose) -> FloatArray:
-        """How far, (..., 6), m, the tool is from the target, a radian counted as the config says."""
-        off = pose_error(target, self._chain.forward(state))
-        return off * np.repeat([1.0, self._config.rotation_weight], 3)
+        """How far, (..., 6), m, the tool is from the target."""
+        return self._config.missed(target, self._chain.forward(state))
 
 
 def _step(flat: FloatArray, residual: FloatArray, slope: FloatArray, damping: FloatArray) -> FloatArray:

@@ -157,7 +157,9 @@ def _trace(
     chain = setup.task.robot.chain
     waypoints: tuple[Pose, ...] = setup.task.waypoints(goal, manner)
     return Trace(
-        figures=measure_drive(records, chain, waypoints[-1], success=not remaining),
+        figures=measure_drive(
+            records, chain, waypoints[-1], [goal.pose for goal in setup.task.goals], success=not remaining
+        ),
         goal=goal,
         progress=1.0 - len(remaining) / len(waypoints),
         ending=why_it_ended(records, chain, remaining[0] if remaining else None, since_s),
