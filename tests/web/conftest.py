@@ -4,7 +4,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from latentarm.arms.catalogue import make_arm
 from latentarm.control.clock import Clock, SimulatedClock
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
+from latentarm.testing.faults import FaultyArm
 from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.process import ControlProcess
@@ -101,7 +102,8 @@ class Desk:
         self.channel = new_channel(reading)
         self.orphaned = False
         self.writer = EpisodeWriter(folder)
-        self.arm = make_arm(setup.spec.arm, setup.task.robot, setup.start, self.clock.now_s)
+        plant = make_arm(setup.spec.arm, setup.task.robot, setup.start, self.clock.now_s)
+        self.arm = FaultyArm(plant, self.clock.now_s)
         self.arm.connect()
         self.drive = Drive(
             setup,
@@ -149,13 +151,25 @@ class Desk:
             self.reports.append(report)
 
 
-@pytest.fixture
-def desk(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
-    desk = Desk(setup, tmp_path / "teleop")
+@contextmanager
+def a_desk(setup: DriveSetup, folder: Path) -> Iterator[Desk]:
+    desk = Desk(setup, folder)
     yield desk
     desk.writer.close()
     desk.orders.close()
     desk.channel.orders.close()
+
+
+@pytest.fixture
+def desk(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
+    with a_desk(setup, tmp_path / "teleop") as desk:
+        yield desk
+
+
+@pytest.fixture
+def desk_in_physics(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
+    with a_desk(replace(setup, spec=replace(setup.spec, arm="mujoco")), tmp_path / "teleop") as desk:
+        yield desk
 
 
 @dataclass

@@ -1,0 +1,83 @@
+"""What the page says and does when something happens to the arm, in simulated time."""
+
+import numpy as np
+
+from latentarm.web.protocol.channel import Enable
+
+from .conftest import said
+
+PRESSED = "The emergency stop on the arm is pressed."
+
+
+def drive(desk, happenings, enabled_at_s=(0.1,)):
+    """Push after 0.5 s, but let go for 0.3 s around each later Enable."""
+    todo = sorted(happenings.items())
+
+    def tick(now_s):
+        for at_s in enabled_at_s:
+            if abs(now_s - at_s) < 0.005:
+                desk.order(Enable(driver=1, stops=desk.channel.stop.version))
+        neutral = now_s < 0.5 or any(abs(now_s - at_s) < 0.15 for at_s in enabled_at_s)
+        desk.give(0.0 if neutral else 1.0, 0.0)
+        while todo and now_s >= todo[0][0]:
+            todo.pop(0)[1]()
+
+    desk.each_tick = tick
+
+
+def reported(desk, at_s):
+    return min(desk.reports, key=lambda report: abs(report.time_s - at_s))
+
+
+def moving(desk, first_s, last_s):
+    times = desk.times()
+    return bool(desk.speeds()[(times > first_s) & (times < last_s)].any())
+
+
+def test_an_emergency_stop_is_shown_and_enabling_waits_for_its_release(desk):
+    drive(
+        desk,
+        {1.0: desk.arm.press_emergency_stop, 2.0: desk.arm.release_emergency_stop},
+        enabled_at_s=(0.1, 1.5, 2.5),
+    )
+    desk.run(3.5)
+    assert moving(desk, 0.6, 1.0)
+    assert PRESSED in said(reported(desk, 1.2))
+    assert PRESSED in said(reported(desk, 1.7))
+    assert not moving(desk, 1.02, 2.5)
+    assert moving(desk, 2.8, 3.4)
+
+
+def test_after_a_collision_enable_recovers_the_arm(desk):
+    drive(
+        desk,
+        {1.0: lambda: desk.arm.break_down("The arm has hit something.", recoverable=True)},
+        enabled_at_s=(0.1, 1.5),
+    )
+    desk.run(2.5)
+    assert "The arm has hit something." in said(reported(desk, 1.2))
+    assert not moving(desk, 1.02, 1.5)
+    assert moving(desk, 1.8, 2.4)
+
+
+def test_a_lost_connection_to_the_arm_is_said_in_a_sentence(desk):
+    drive(desk, {1.0: desk.arm.cut})
+    desk.run(2.0)
+    report = reported(desk, 1.5)
+    assert "newest reading is 60 ms old" in said(report)
+    # What is shown is where the arm was last seen.
+    assert np.isfinite(report.q).all()
+    assert np.isfinite(report.tool).all()
+
+
+def test_the_arm_in_physics_is_driven_and_at_rest_soon_after_letting_go(desk_in_physics):
+    desk = desk_in_physics
+    drive(desk, {}, enabled_at_s=(0.1, 1.65))  # lets go from 1.5 to 1.8 s
+    desk.run(1.75)
+    assert reported(desk, 1.0).phase == "moving"
+    assert reported(desk, 1.0).speed > 0.05
+    assert reported(desk, 1.74).speed < 0.01
+    start, end = (
+        desk.setup.task.robot.chain.forward(np.array(reported(desk, at_s).q)) for at_s in (0.4, 1.4)
+    )
+    assert np.linalg.norm(end.position - start.position) > 0.05
