@@ -9,6 +9,7 @@ import pytest
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.demonstrations.info import INFO_PATH
+from latentarm.demonstrations.npz_file import read_npz
 from latentarm.demonstrations.validation import LIMIT_TOLERANCE_RAD, validate
 from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
@@ -39,7 +40,12 @@ def test_the_real_recordings_import_whole(real: Path, tmp_path: Path, name: str)
             assert len(np.concatenate(values)) == FILES[name]
         toggles = [episode.extras.get("observation.gripper_toggled") for episode in demonstrations.episodes]
         if arrays["gripper_toggles"].size:
-            assert np.flatnonzero(np.concatenate(toggles)).tolist() == arrays["gripper_toggles"].tolist()
+            state = np.concatenate(toggles).ravel()
+            assert set(state) == {0.0, 1.0}
+            # It changes after every toggle, and goes back to 0 at the start of an episode.
+            changes = np.flatnonzero(np.diff(state))
+            inside = set(changes) - {end - 1 for end in arrays["episode_ends"]}
+            assert inside == set(arrays["gripper_toggles"]) - {end - 1 for end in arrays["episode_ends"]}
         else:
             assert toggles == [None] * 15
     assert all(episode.action is None for episode in demonstrations.episodes)
@@ -56,6 +62,25 @@ def test_a_state_may_pass_a_limit_by_no_more_than_the_tolerance(panda_limits: Jo
         UserError, match=r"here: episode 0, sample 0: joint a is at 2\.9083 rad, above its upper"
     ):
         validate(at(panda_limits.upper + 1.1 * LIMIT_TOLERANCE_RAD), "here", panda_limits)
+
+
+@pytest.mark.parametrize(
+    ("toggles", "state"),
+    [
+        ([2], [0, 0, 0, 1, 1, 1, 0, 0, 0, 0]),
+        ([1, 4], [0, 0, 1, 1, 1, 0, 0, 0, 0, 0]),
+        ([4, 1, 7], [0, 0, 1, 1, 1, 0, 0, 0, 1, 1]),
+        ([5, 6], [0, 0, 0, 0, 0, 0, 0, 1, 1, 1]),  # the first comes after its episode's last sample
+        ([3, 3], [0] * 10),  # there and back between two samples
+        ([9], [0] * 10),
+    ],
+)
+def test_toggles_of_a_gripper_become_its_state(tmp_path: Path, toggles: list[int], state: list[int]) -> None:
+    q = np.linspace(0.0, 0.1, 70).reshape(10, 7) + panda().home
+    np.savez(tmp_path / "a.npz", q=q, episode_ends=[6, 10], rate_hz=10.0, gripper_toggles=toggles)
+    episodes = read_npz(tmp_path / "a.npz").episodes
+    found = np.concatenate([episode.extras["observation.gripper_toggled"] for episode in episodes])
+    assert found.ravel().tolist() == state
 
 
 def test_npz_actions_and_times_are_kept(tmp_path: Path) -> None:

@@ -32,6 +32,7 @@ MAX_ARRAYS: Final = 100
 
 TEXTS: Final = ("joint_names", "robot")
 GRIPPER_FEATURE: Final = "observation.gripper_toggled"
+"""Whether the gripper is other than when the episode began: 0 or 1."""
 
 
 def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None) -> Demonstrations:
@@ -67,7 +68,7 @@ def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None
             )
     extras = {feature: by_sample[key] for key, feature in FEATURES.items() if key in by_sample}
     if arrays.get("gripper_toggles", np.empty(0)).size:
-        extras[GRIPPER_FEATURE] = _gripper(arrays["gripper_toggles"], len(q), source)
+        extras[GRIPPER_FEATURE] = _gripper(arrays["gripper_toggles"], ends, source)
     episodes = tuple(
         Episode(
             state=q[start:end],
@@ -179,11 +180,16 @@ def _episode_ends(values: NDArray[np.generic], samples: int, source: Path) -> li
     return ends
 
 
-def _gripper(toggles: NDArray[np.generic], samples: int, source: Path) -> FloatArray:
-    """(N, 1), one where the gripper has been toggled an odd number of times."""
+def _gripper(toggles: NDArray[np.generic], ends: list[int], source: Path) -> FloatArray:
+    """(N, 1), one where the gripper has been toggled an odd number of times since its episode began.
+
+    So it is the gripper's state, as far as the toggles tell: 0 is how the episode began, open or closed.
+    """
+    samples = ends[-1]
     index: IntArray = toggles.astype(np.int64)
     if toggles.ndim != 1 or toggles.dtype.kind not in "iu" or index.min() < 0 or index.max() >= samples:
         raise UserError(f"{source}: 'gripper_toggles' must be indices of its {samples} samples.")
-    changed = np.zeros((samples, 1))
-    changed[index] = 1.0
-    return changed
+    toggled = np.bincount(index, minlength=samples)
+    # A toggle counts from the sample after it on.
+    each = [np.cumsum([0, *one[:-1]]) % 2 for one in np.split(toggled, ends[:-1])]
+    return np.concatenate(each)[:, None].astype(np.float64)
