@@ -216,7 +216,7 @@ class Reading:
     Attributes:
         q: (n,), joint positions, rad.
         dq: (n,), joint velocities, rad/s.
-        time_s: when they were measured, by the clock of whoever drives the arm, s.
+        time_s: when they were measured, on the control loop's clock, s.
         sequence: grows with every new reading, across reconnections too.
     """
 
