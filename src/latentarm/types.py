@@ -196,6 +196,10 @@ class Context:
     belief: FloatArray
 
 
+GripperAsk = Literal["open", "close", "toggle"]
+"""What a person asks of a gripper."""
+
+
 @dataclass(frozen=True)
 class Input:
     """What the person does with their interface at one moment.
@@ -203,10 +207,26 @@ class Input:
     Attributes:
         u: (d,), each entry in [-1, 1].
         switch_mode: the person asks for the controller's next mode.
+        gripper: what the person asks of the gripper; None asks nothing. Like a mode switch it counts once,
+            however long it is held.
     """
 
     u: FloatArray
     switch_mode: bool = False
+    gripper: GripperAsk | None = None
+
+
+@dataclass(frozen=True)
+class GripperReading:
+    """What a gripper measured at one moment.
+
+    Attributes:
+        width_m: opening between the fingers, m.
+        holding: whether something is held between them.
+    """
+
+    width_m: float
+    holding: bool = False
 
 
 @dataclass(frozen=True)
@@ -218,12 +238,14 @@ class Reading:
         dq: (n,), joint velocities, rad/s.
         time_s: when they were measured, on the control loop's clock, s.
         sequence: grows with every new reading, across reconnections too.
+        gripper: of its gripper, or None where it has none.
     """
 
     q: FloatArray
     dq: FloatArray
     time_s: float
     sequence: int
+    gripper: GripperReading | None = None
 
 
 @dataclass(frozen=True)
@@ -242,6 +264,21 @@ class Stop:
 
 
 @dataclass(frozen=True)
+class GripperCommand:
+    """Where a gripper is to go, and how hard it may press.
+
+    Attributes:
+        width_m: opening to reach, m.
+        speed_m_s: how fast the opening may change, m/s.
+        force_n: how hard the fingers may press together, N; a gripper that holds something keeps this force.
+    """
+
+    width_m: float
+    speed_m_s: float
+    force_n: float
+
+
+@dataclass(frozen=True)
 class Command:
     """What leaves the safety filter for the robot.
 
@@ -250,12 +287,15 @@ class Command:
         duration_s: the robot must stop by itself if no new command arrives within this time.
         stop: why the arm is being stopped, or None.
         limited_by: names of the filters that changed what was asked for.
+        gripper: where the gripper is to go, or None where it is to stay as it is. Unlike a velocity it does
+            not run out: what is held must not fall when commands end.
     """
 
     velocity: FloatArray
     duration_s: float
     stop: Stop | None = None
     limited_by: tuple[str, ...] = ()
+    gripper: GripperCommand | None = None
 
 
 @dataclass(frozen=True)
@@ -275,6 +315,7 @@ class StepRecord:
         command: what was sent.
         bound_rad: radius ``delta / b(g)`` of the ball about the likeliest goal that help towards the
             goals constrains the arm to (equation 14), rad; NaN without goals or help.
+        gripper: what the gripper measured, or None without one.
     """
 
     time_s: float
@@ -288,6 +329,7 @@ class StepRecord:
     mode: int
     command: Command
     bound_rad: float = math.nan
+    gripper: GripperReading | None = None
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import Final, Literal, Self, final
 
 from latentarm.errors import UserError
+from latentarm.robots.gripper import Gripper
 from latentarm.robots.notices import assumed_limits
 from latentarm.robots.robot import Robot
 from latentarm.types import Command, Reading
@@ -29,12 +30,14 @@ class ArmSpec:
         stops_after_s: when a command's ``duration_s`` has passed without another one, the arm begins to stop
             by itself within this time, s. None where nobody knows: such an arm is not driven.
         simulated: whether it is simulated; `check_arm` is stricter with a real one.
+        gripper: its gripper, or None where it has none.
     """
 
     joint_names: tuple[str, ...]
     rate_hz: float
     stops_after_s: float | None
     simulated: bool
+    gripper: Gripper | None = None
 
 
 @final

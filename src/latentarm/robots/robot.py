@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, final
 
 from latentarm.kinematics.chain import Capsules, Chain
+from latentarm.robots.gripper import Gripper
 from latentarm.robots.limits import JointLimits, Source
 from latentarm.types import FloatArray, IntArray, StatedLimits
 
@@ -30,6 +31,7 @@ class Robot:
         still_joints: joints of the model's arms that do not move the end-effector; they stay where they are.
         driven_fingers: joints that look like a gripper's and are driven as the arm's.
         stated_limits: what a limits file says of it, or None.
+        gripper: its gripper, or None where it has none that can be driven.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Robot:
     still_joints: tuple[str, ...] = ()
     driven_fingers: tuple[str, ...] = ()
     stated_limits: StatedLimits | None = None
+    gripper: Gripper | None = None
 
     @property
     def dof(self) -> int:
