@@ -149,8 +149,8 @@ def check_arm(spec: ArmSpec, robot: Robot) -> None:
         robot: what is to be driven.
 
     Raises:
-        UserError: its joints are not the robot's; nobody knows when it stops by itself, or it is too late;
-            or the arm is real and one of its limits is assumed.
+        UserError: its joints are not the robot's, or the robot's gripper is missing; nobody knows when it
+            stops by itself, or it is too late; or the arm is real and one of its limits is assumed.
     """
     if spec.joint_names != robot.joint_names:
         raise UserError(
@@ -166,6 +166,10 @@ def check_arm(spec: ArmSpec, robot: Robot) -> None:
         raise UserError(
             f"{known} stops by itself when no more commands come: an arm must do so within"
             f" {1000 * STOPS_AFTER_S:.0f} ms."
+        )
+    if robot.gripper is not None and spec.gripper is None:
+        raise UserError(
+            f"{robot.name} has a gripper, and the arm has none: choose the robot that the arm is."
         )
     assumed = assumed_limits(robot)
     if assumed and not spec.simulated:

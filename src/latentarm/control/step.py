@@ -12,6 +12,7 @@ from latentarm.control.controller import Controller
 from latentarm.control.engagement import Engagement
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.filter import Freshness
+from latentarm.control.safety.gripper import GripperFilter
 from latentarm.control.safety.newest_reading import NewestReading
 from latentarm.control.safety.plausibility import Plausibility
 from latentarm.control.safety.stack import Passed, SafetyStack
@@ -49,6 +50,9 @@ class Step:
         step.reset(arm.read().q)
         step(neutral, 0.0, arm.read(), now)
         step.enable()
+
+    What an input asks of the gripper passes a filter of its own (see `GripperFilter`); an arm that stops
+    drops nothing.
 
     An input within the dead zone means no motion, whatever the decoder returns for zero, and no help, unless
     the arbitration acts at rest. An enabled arm then moves by itself while inputs are fresh.
@@ -102,6 +106,8 @@ class Step:
         self._no_motion = _sealed(np.zeros(robot.dof))
         self._no_input = _sealed(np.zeros(controller.input_dim))
         self._engagement = Engagement()
+        self._gripper = GripperFilter(robot.gripper, safety)
+        self._faltering = False
         self._mode = 0
         self._switch_held = False
 
@@ -165,6 +171,7 @@ class Step:
         self._plausibility.reset()
         self._timekeeping.reset()
         self._newest_reading.reset()
+        self._gripper.reset()
         self._time_s = self._steady_s = -math.inf
         self._engagement = Engagement()
         self._mode = 0
@@ -243,7 +250,9 @@ class Step:
             self._plausibility.reset()
             self.halted(lost)
         self._time_s = time_s
+        self._faltering = False
         self._stack.tick(time_s)
+        self._gripper.tick()
         q = self._positions_now(reading, time_s)
         if isinstance(q, Stop):
             self._engagement.stop(q)
@@ -251,6 +260,7 @@ class Step:
         if self._doubts(q, time_s, new=self._newest_reading.new):
             return self._record(time_s, q, Passed(self._stack.stop()))
         if self._falters(input_age_s):
+            self._faltering = True
             return self._record(time_s, q, Passed(self._stack.stop(), _FALTERING))
         u = self._usable(given, input_age_s)
         if isinstance(u, Stop):
@@ -259,6 +269,7 @@ class Step:
         neutral = u is self._no_input
         self._engagement.saw(neutral)
         self._switch(bool(given.switch_mode))
+        self._gripper.ask(given.gripper, engaged=self._engagement.stopped is None)
         if self._engagement.stopped is not None:
             return self._record(time_s, q, Passed(self._stack.stop()))
         if neutral and not self._shared.acts_at_rest:
@@ -308,7 +319,20 @@ class Step:
             return self._record(time_s, q, self._refused(stop), u)
         passed = self._passed(wanted, q, input_age_s)
         command = self._command(passed)
-        return StepRecord(time_s, q, u, z, a_h, a_r, alpha, context.belief, self._mode, command, bound_rad)
+        return StepRecord(
+            time_s=time_s,
+            state=q,
+            input=u,
+            latent=z,
+            action_human=a_h,
+            action_assist=a_r,
+            alpha=alpha,
+            belief=context.belief,
+            mode=self._mode,
+            command=command,
+            bound_rad=bound_rad,
+            gripper=self._gripper.reading,
+        )
 
     def _passed(self, wanted: FloatArray, q: FloatArray, input_age_s: float) -> Passed:
         """Through the safety stack; a refusal disengages."""
@@ -329,6 +353,8 @@ class Step:
                 return stale
             u = np.asarray(given.u)
             bool(given.switch_mode)
+            if not self._gripper.known(given.gripper):
+                return Stop("The input asks the gripper for something that it cannot do.")
         except Exception as error:  # noqa: BLE001 - a ragged list, None, whatever an interface gives
             return Stop(f"The input cannot be read ({_said(error)}).")
         if u.shape != self._no_input.shape or u.dtype.kind not in "iuf":
@@ -344,7 +370,7 @@ class Step:
     def _positions_now(self, reading: Reading, time_s: float) -> FloatArray | Stop:
         """The joint positions of a reading that is new enough, or why they cannot be used."""
         try:
-            refused = self._newest_reading.refusal(reading, time_s)
+            refused = self._newest_reading.refusal(reading, time_s) or self._gripper.saw(reading.gripper)
         except Exception as error:  # noqa: BLE001 - whatever a driver gives
             refused = f"The arm's reading cannot be used ({_said(error)})."
         if refused is not None:
@@ -375,7 +401,9 @@ class Step:
         self._switch_held = wanted
 
     def _command(self, passed: Passed) -> Command:
-        return Command(passed.velocity, self._hold_s, self._engagement.stopped, passed.limited_by)
+        stopped = self._engagement.stopped
+        gripper = self._gripper.command(engaged=stopped is None, falters=self._faltering)
+        return Command(passed.velocity, self._hold_s, stopped, passed.limited_by, gripper)
 
     def _record(
         self, time_s: float, q: FloatArray, passed: Passed, u: FloatArray | None = None
@@ -393,6 +421,7 @@ class Step:
             belief=self._shared.belief,
             mode=self._mode,
             command=self._command(passed),
+            gripper=self._gripper.reading,
         )
 
 

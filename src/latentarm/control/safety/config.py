@@ -79,6 +79,8 @@ class SafetyConfig:
             late on top of it. A longer lag delays the detection of faults by as much.
         following_window_s: time over which displacements are compared, s. A longer window detects slower
             joints that do not follow, but mistakes drift that accumulates over it for an error.
+        gripper_speed: fastest change of a gripper's opening, m/s.
+        gripper_force: largest force with which a gripper's fingers press together, N.
         workspace: where the arm may be, or None for anywhere.
         obstacles: what the arm must keep clear of.
 
@@ -104,6 +106,8 @@ class SafetyConfig:
     following_error: float = 0.05
     following_lag_s: float = 0.05
     following_window_s: float = 1.0
+    gripper_speed: float = 0.05
+    gripper_force: float = 20.0
     workspace: Workspace | None = None
     obstacles: tuple[Obstacle, ...] = ()
 
@@ -140,6 +144,8 @@ _RANGES: dict[str, tuple[float, float, str]] = {
     "following_error": (0.0, 0.5, "rad"),
     "following_lag_s": (0.0, 0.5, "s"),
     "following_window_s": (0.0, 10.0, "s"),
+    "gripper_speed": (0.0, 1.0, "m/s"),
+    "gripper_force": (0.0, 500.0, "N"),
 }
 _MAY_TOUCH = ("input_grace_s", "dead_zone", "command_periods", "reading_periods")
 
