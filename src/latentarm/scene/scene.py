@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import HalfSpace
 from latentarm.scene.thing import Bond, Grains, Interior, Thing
-from latentarm.types import FloatArray, Pose
+from latentarm.types import BoolArray, FloatArray, Pose
 
 TABLE: Final = "table"
 """Name of the table in `SceneState.force_n`."""
@@ -95,8 +95,8 @@ class SceneState:
     grains: Mapping[str, FloatArray]
     force_n: Mapping[tuple[str, str], float]
 
-    def inside(self, grains: str, container: str, interior: Interior) -> int:
-        """How many grains are in a container.
+    def inside(self, grains: str, container: str, interior: Interior) -> BoolArray:
+        """Which grains are in a container, (K,).
 
         Args:
             grains: their name.
@@ -106,4 +106,4 @@ class SceneState:
         pose = self.poses[container]
         local = (self.grains[grains] - pose.position) @ pose.rotation
         in_height = (local[:, 2] >= interior.bottom_m) & (local[:, 2] <= interior.top_m)
-        return int((in_height & (np.hypot(local[:, 0], local[:, 1]) <= interior.radius_m)).sum())
+        return in_height & (np.hypot(local[:, 0], local[:, 1]) <= interior.radius_m)

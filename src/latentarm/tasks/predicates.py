@@ -1,0 +1,288 @@
+"""What can be true of things: the conditions that steps of tasks wait for, and those that end a run."""
+
+from dataclasses import dataclass, field
+from typing import final
+
+import numpy as np
+
+from latentarm.scene.scene import TOOL, SceneState
+from latentarm.scene.thing import Interior
+from latentarm.types import FloatArray
+
+
+@final
+@dataclass(frozen=True)
+class Above:
+    """The tool is over a thing.
+
+    Attributes:
+        thing: its name.
+        aside_m: how far aside it may be, m.
+        lowest_m: how far over the thing's middle it must be, at least, m.
+        highest_m: at most, m.
+    """
+
+    thing: str
+    aside_m: float
+    lowest_m: float
+    highest_m: float
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it is."""
+        away = state.tool.position - state.poses[self.thing].position
+        near = np.hypot(away[0], away[1]) <= self.aside_m
+        return bool(near and self.lowest_m <= away[2] <= self.highest_m)
+
+
+@final
+@dataclass(frozen=True)
+class Stabbed:
+    """A thing is on the tines, and has left what it lay on.
+
+    Attributes:
+        thing: its name.
+        above_m: height of its middle in the base frame that it must have, m.
+    """
+
+    thing: str
+    above_m: float
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it is."""
+        return self.thing in state.stabbed and state.poses[self.thing].position[2] >= self.above_m
+
+
+@final
+@dataclass(frozen=True)
+class Holding:
+    """A thing is between the fingers, and has left what it stood on.
+
+    Attributes:
+        thing: its name.
+        above_m: height of its frame in the base frame of the arm that it must have, m.
+    """
+
+    thing: str
+    above_m: float
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it is."""
+        return self.thing in state.gripped and state.poses[self.thing].position[2] >= self.above_m
+
+
+@final
+@dataclass(frozen=True)
+class Poured:
+    """A share of the grains is in a container.
+
+    Attributes:
+        grains: their name.
+        container: its name.
+        interior: the room in it.
+        share: of the grains, in (0, 1].
+    """
+
+    grains: str
+    container: str
+    interior: Interior
+    share: float
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it is."""
+        inside = state.inside(self.grains, self.container, self.interior)
+        return bool(inside.mean() >= self.share)
+
+
+@final
+@dataclass(frozen=True)
+class Apart:
+    """Two things that were one have been cut apart.
+
+    Attributes:
+        first: name of one.
+        second: name of the other.
+    """
+
+    first: str
+    second: str
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether they have."""
+        return (self.first, self.second) not in state.bonds
+
+
+@final
+@dataclass(frozen=True)
+class Within:
+    """A thing's middle is inside a container.
+
+    Attributes:
+        thing: its name.
+        container: its name.
+        interior: the room in it.
+        free: whether the thing must have been let go.
+    """
+
+    thing: str
+    container: str
+    interior: Interior
+    free: bool = False
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it is."""
+        if self.free and self.thing in state.gripped | state.stabbed:
+            return False
+        pose = state.poses[self.container]
+        x, y, z = (state.poses[self.thing].position - pose.position) @ pose.rotation
+        inside = np.hypot(x, y) <= self.interior.radius_m
+        return bool(inside and self.interior.bottom_m <= z <= self.interior.top_m)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A thing rests in a region, and nobody holds it.
+
+    Attributes:
+        thing: its name.
+        centre: (3,), where its frame is to be, in the base frame of the arm, m.
+        within_m: (3,), how far from there it may be along each axis, m.
+        still_m_s: slower than this it rests, m/s.
+    """
+
+    thing: str
+    centre: FloatArray
+    within_m: FloatArray
+    still_m_s: float = 0.02
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it does."""
+        away = np.abs(state.poses[self.thing].position - self.centre)
+        free = self.thing not in state.gripped and self.thing not in state.stabbed
+        return bool(free and (away <= self.within_m).all() and state.speed_m_s[self.thing] <= self.still_m_s)
+
+
+@final
+@dataclass(eq=False)
+class Stirred:
+    """The tool has gone round in a container.
+
+    It remembers: made anew for every run.
+
+    Attributes:
+        container: its name.
+        interior: the room in it; the tool must be below its rim.
+        turns: how often it must go round, in either direction.
+    """
+
+    container: str
+    interior: Interior
+    turns: float
+    _swept_rad: float = field(default=0.0, init=False)
+    _last_rad: float | None = field(default=None, init=False)
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it has, counting what it has seen so far."""
+        pose = state.poses[self.container]
+        x, y, z = (state.tool.position - pose.position) @ pose.rotation
+        if not (np.hypot(x, y) <= self.interior.radius_m and z <= self.interior.top_m):
+            self._last_rad = None
+            return self._enough
+        angle_rad = float(np.arctan2(y, x))
+        if self._last_rad is not None:
+            self._swept_rad += float(np.angle(np.exp(1j * (angle_rad - self._last_rad))))
+        self._last_rad = angle_rad
+        return self._enough
+
+    @property
+    def _enough(self) -> bool:
+        return abs(self._swept_rad) >= 2.0 * np.pi * self.turns
+
+
+@final
+@dataclass(frozen=True)
+class Dropped:
+    """A thing has fallen below a height.
+
+    Attributes:
+        thing: its name.
+        below_m: height in the base frame of the arm, m.
+    """
+
+    thing: str
+    below_m: float
+
+    def __call__(self, state: SceneState) -> str | None:
+        """That it has."""
+        fell = state.poses[self.thing].position[2] < self.below_m
+        return f"dropped the {self.thing}" if fell else None
+
+
+@final
+@dataclass(frozen=True)
+class KnockedOver:
+    """A thing lies on its side, and nobody holds it.
+
+    Attributes:
+        thing: its name.
+        angle_rad: how far it may lean, rad.
+    """
+
+    thing: str
+    angle_rad: float = float(np.deg2rad(60.0))
+
+    def __call__(self, state: SceneState) -> str | None:
+        """That it does."""
+        up = state.poses[self.thing].rotation[2, 2]
+        fallen = up < np.cos(self.angle_rad) and self.thing not in state.gripped
+        return f"knocked over the {self.thing}" if fallen else None
+
+
+@final
+@dataclass(frozen=True)
+class Spilled:
+    """Too many grains are neither in one of some containers nor in the air above them.
+
+    Attributes:
+        grains: their name.
+        below_m: grains below this height in the base frame of the arm, outside of the containers, are spilled.
+        containers: names, and the room in each.
+        share: of the grains that may be spilled.
+    """
+
+    grains: str
+    below_m: float
+    containers: tuple[tuple[str, Interior], ...]
+    share: float
+
+    def __call__(self, state: SceneState) -> str | None:
+        """That they are."""
+        most = self.share * len(state.grains[self.grains])
+        return f"spilled the {self.grains}" if self.count(state) > most else None
+
+    def count(self, state: SceneState) -> int:
+        """How many grains are spilled."""
+        spilled = state.grains[self.grains][:, 2] < self.below_m
+        for name, interior in self.containers:
+            spilled &= ~state.inside(self.grains, name, interior)
+        return int(spilled.sum())
+
+
+@final
+@dataclass(frozen=True)
+class Pressed:
+    """The tool presses harder on something than it may.
+
+    Attributes:
+        thing: its name, or `latentarm.scene.scene.TABLE`.
+        most_n: N.
+    """
+
+    thing: str
+    most_n: float
+
+    def __call__(self, state: SceneState) -> str | None:
+        """That it does."""
+        first, second = sorted((self.thing, TOOL))
+        pressed = state.force_n.get((first, second), 0.0) > self.most_n
+        return f"pressed too hard on the {self.thing}" if pressed else None

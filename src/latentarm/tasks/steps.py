@@ -1,0 +1,166 @@
+"""A task with things as steps that tick off one after the other."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal, final
+
+import numpy as np
+
+from latentarm.kinematics.rotations import angle_between
+from latentarm.scene.scene import SceneState
+from latentarm.types import GripperAsk, Pose
+
+StepKind = Literal[
+    "reached", "holding", "stabbed", "above", "poured", "cut", "scooped", "dipped", "stirred", "placed"
+]
+"""What is done in a step."""
+
+Predicate = Callable[[SceneState], bool]
+"""Whether something holds of the things at one moment. One that remembers is made anew for every run."""
+
+Failure = Callable[[SceneState], str | None]
+"""Why a run has failed for good, in a few words, or None."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Waypoint:
+    """Where a person brings the tool in a step, and what they do there.
+
+    Attributes:
+        pose: where, as things stand now.
+        within_m: how near it counts as reached, m.
+        within_rad: how nearly in that orientation, rad.
+        gripper: what is asked of the gripper there.
+        wait_s: how long they wait there, for what they have begun to happen, s.
+        speed: share of their usual speed on the way there, in (0, 1].
+    """
+
+    pose: Callable[[SceneState], Pose]
+    within_m: float = 0.02
+    within_rad: float = float(np.deg2rad(15.0))
+    gripper: GripperAsk | None = None
+    wait_s: float = 0.0
+    speed: float = 1.0
+
+    def reached(self, state: SceneState) -> bool:
+        """Whether the tool is there."""
+        return self.missed_by(state) <= 1.0
+
+    def missed_by(self, state: SceneState) -> float:
+        """How far the tool is from there; 1 is the farthest that counts as reached."""
+        pose = self.pose(state)
+        distance_m = float(np.linalg.norm(state.tool.position - pose.position))
+        angle_rad = float(angle_between(state.tool.rotation, pose.rotation))
+        return max(distance_m / self.within_m, angle_rad / self.within_rad)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class TaskStep:
+    """Something to be done.
+
+    Attributes:
+        kind: what is done.
+        name: the same in words, with the thing that it is done to.
+        done: whether it has been done.
+        waypoints: how a person does it; tried again from the first if it is not done after the last.
+    """
+
+    kind: StepKind
+    name: str
+    done: Predicate
+    waypoints: tuple[Waypoint, ...]
+
+
+RETRY_S: Final = 1.0
+"""A step that is not done so long after its last waypoint is tried again, s."""
+
+
+@final
+class Progress:
+    """How far a run of a task has come.
+
+    Args:
+        steps: of the task, in order.
+        failures: what ends the run.
+    """
+
+    def __init__(self, steps: Sequence[TaskStep], failures: Sequence[Failure] = ()) -> None:
+        self._steps = tuple(steps)
+        self._failures = tuple(failures)
+        self._done = self._waypoint = self._tries = 0
+        self._arrived_s: float | None = None
+        self._failure: str | None = None
+
+    @property
+    def done(self) -> int:
+        """How many steps have been done."""
+        return self._done
+
+    @property
+    def share(self) -> float:
+        """Share of the steps that have been done."""
+        return self._done / len(self._steps)
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether all steps have been done, and nothing has gone wrong."""
+        return self._done == len(self._steps) and self._failure is None
+
+    @property
+    def failure(self) -> str | None:
+        """What has gone wrong for good, in a few words."""
+        return self._failure
+
+    @property
+    def step(self) -> TaskStep | None:
+        """What is to be done now; None where nothing is left."""
+        return self._steps[self._done] if self._done < len(self._steps) else None
+
+    @property
+    def waypoint(self) -> Waypoint | None:
+        """Where the tool is to go now; None where nothing is left to do."""
+        step = self.step
+        return None if step is None else step.waypoints[self._waypoint]
+
+    @property
+    def tries(self) -> int:
+        """How often a step was tried again."""
+        return self._tries
+
+    @property
+    def asks(self) -> GripperAsk | None:
+        """What the person asks of the gripper now."""
+        waypoint = self.waypoint
+        return None if waypoint is None or self._arrived_s is None else waypoint.gripper
+
+    @property
+    def waits(self) -> bool:
+        """Whether the person waits at a waypoint."""
+        return self._arrived_s is not None
+
+    def update(self, state: SceneState) -> None:
+        """Take how things stand now.
+
+        Args:
+            state: at every tick of the loop.
+        """
+        if self._failure is None:
+            self._failure = next((said for fails in self._failures if (said := fails(state))), None)
+        while (step := self.step) is not None and step.done(state):
+            self._done += 1
+            self._waypoint, self._arrived_s = 0, None
+        if step is None:
+            return
+        waypoint = step.waypoints[self._waypoint]
+        if self._arrived_s is None:
+            if not waypoint.reached(state):
+                return
+            self._arrived_s = state.time_s
+        last = self._waypoint == len(step.waypoints) - 1
+        if state.time_s - self._arrived_s < (max(waypoint.wait_s, RETRY_S) if last else waypoint.wait_s):
+            return
+        self._arrived_s = None
+        self._waypoint = 0 if last else self._waypoint + 1
+        self._tries += last
