@@ -227,6 +227,18 @@ MEASURES: Final[dict[str, Measure]] = {
         "lower",
         "share of the time in which the stick is more than 90° from where it was within the last 0.5 s",
     ),
+    "steps_done": Measure("1", "steps done", "higher", "share of the steps of a task that were done"),
+    "preference_alignment": Measure(
+        "1",
+        "preference alignment",
+        "higher",
+        "mean dot product of the direction in which the tool points and the one needed at that moment",
+    ),
+    "table_force_n": Measure(
+        "N", "force on table", "lower", "largest force of the tool on the table or a dish in a drive"
+    ),
+    "food_force_n": Measure("N", "force on food", None, "largest force of the tool on food in a drive"),
+    "spilled_share": Measure("1", "spilled", "lower", "share of the grains that were spilled"),
     "goal_error_m_s": Measure(
         "m s", "goal error, total", "lower", "integral over time of the tool's distance to the closest goal"
     ),

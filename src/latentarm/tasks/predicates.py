@@ -120,18 +120,14 @@ class Within:
         thing: its name.
         container: its name.
         interior: the room in it.
-        free: whether the thing must have been let go.
     """
 
     thing: str
     container: str
     interior: Interior
-    free: bool = False
 
     def __call__(self, state: SceneState) -> bool:
         """Whether it is."""
-        if self.free and self.thing in state.gripped | state.stabbed:
-            return False
         pose = state.poses[self.container]
         x, y, z = (state.poses[self.thing].position - pose.position) @ pose.rotation
         inside = np.hypot(x, y) <= self.interior.radius_m
@@ -141,25 +137,61 @@ class Within:
 @final
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """A thing rests in a region, and nobody holds it.
+    """A thing rests in a region.
 
     Attributes:
         thing: its name.
         centre: (3,), where its frame is to be, in the base frame of the arm, m.
         within_m: (3,), how far from there it may be along each axis, m.
+        let_go: whether nothing may hold it any more; food may stay on the fork where it lies on a plate.
         still_m_s: slower than this it rests, m/s.
     """
 
     thing: str
     centre: FloatArray
     within_m: FloatArray
+    let_go: bool
     still_m_s: float = 0.02
 
     def __call__(self, state: SceneState) -> bool:
         """Whether it does."""
         away = np.abs(state.poses[self.thing].position - self.centre)
-        free = self.thing not in state.gripped and self.thing not in state.stabbed
-        return bool(free and (away <= self.within_m).all() and state.speed_m_s[self.thing] <= self.still_m_s)
+        held = self.let_go and self.thing in state.gripped | state.stabbed
+        still = state.speed_m_s[self.thing] <= self.still_m_s
+        return bool(still and not held and (away <= self.within_m).all())
+
+
+@final
+@dataclass(eq=False)
+class Swept:
+    """A thing has been drawn through a container, as through icing.
+
+    It remembers: made anew for every run.
+
+    Attributes:
+        thing: its name.
+        container: its name.
+        interior: the room in it.
+        length_m: how far it must have come inside, m.
+    """
+
+    thing: str
+    container: str
+    interior: Interior
+    length_m: float
+    _swept_m: float = field(default=0.0, init=False)
+    _last: FloatArray | None = field(default=None, init=False)
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it has, counting what it has seen so far."""
+        place = state.poses[self.thing].position
+        if Within(self.thing, self.container, self.interior)(state):
+            if self._last is not None:
+                self._swept_m += float(np.linalg.norm((place - self._last)[:2]))
+            self._last = place
+        else:
+            self._last = None
+        return self._swept_m >= self.length_m
 
 
 @final
@@ -245,7 +277,7 @@ class Spilled:
 
     Attributes:
         grains: their name.
-        below_m: grains below this height in the base frame of the arm, outside of the containers, are spilled.
+        below_m: below this height in the base frame of the arm, outside of the containers, they are spilled.
         containers: names, and the room in each.
         share: of the grains that may be spilled.
     """

@@ -1,0 +1,228 @@
+"""One simulated drive at a task with things, in physics: an operator, Algorithm 1, its filters, an arm."""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.arms.catalogue import make_scene_arm
+from latentarm.arms.contract import check_arm
+from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.control.clock import SimulatedClock
+from latentarm.control.controller import Controller
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.step import Step
+from latentarm.metrics.task_drives import TaskDrive, measure_task_drive, preference_alignment
+from latentarm.operators.loop_limits import LoopLimits
+from latentarm.operators.operator import Operator
+from latentarm.operators.person import Person, SimulatedPerson
+from latentarm.scene.scene import TABLE, TOOL, Scene, SceneState
+from latentarm.simulation.drive import BELIEF_PERIOD_S, RATE_HZ
+from latentarm.tasks.predicates import Spilled
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.steps import Progress, Waypoint
+from latentarm.types import Context, FloatArray, Input, Reading, StepRecord
+
+STUCK_S: Final = 20.0
+"""A run in which the tool comes no nearer to its waypoint for so long has failed, s."""
+
+NEARER: Final = 0.1
+"""What counts as nearer, in tolerances of the waypoint."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class TaskSetup:
+    """Everything that stays the same from drive to drive.
+
+    Attributes:
+        task: what is to be done.
+        controller: what the simulated operator steers with.
+        person: the simulated person who drives.
+        arm: what moves, a simulated arm of the catalogue that can have things about it.
+    """
+
+    task: SceneTask
+    controller: Controller
+    person: Person
+    arm: str = "mujoco"
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class TaskTrace:
+    """What is kept of a drive.
+
+    Attributes:
+        figures: what is measured of it.
+        choice: index into the task's choices.
+        ended_in: the step that was not done, in words; "" where all were.
+        why: why the drive ended, in a few words.
+        time_s: (T,), s.
+        position: (T, 3), the tool, m.
+        states: how things stood, ten times per second, for film.
+    """
+
+    figures: TaskDrive
+    choice: int
+    ended_in: str
+    why: str
+    time_s: FloatArray
+    position: FloatArray
+    states: tuple[SceneState, ...]
+
+
+def drive_task(setup: TaskSetup, choice: int, rng: np.random.Generator) -> TaskTrace:
+    """Drive once, until the task is done, has failed, or the time is over.
+
+    Args:
+        setup: who drives what.
+        choice: index into the task's choices.
+        rng: of the things' places and of the simulated operator.
+
+    Raises:
+        UserError: the arm cannot be used.
+    """
+    task, controller = setup.task, setup.controller
+    begun = task.begin(choice, rng)
+    clock = SimulatedClock()
+    step = _step(setup, begun)
+    limits = LoopLimits(step.dead_zone, step.joint_speed)
+    operator = SimulatedPerson(task.robot, setup.person, step.dt_s, limits)
+    watch = _Watch(begun)
+    with make_scene_arm(setup.arm, task.robot, begun.state, clock.now_s, begun.scene) as arm:
+        check_arm(arm.spec, task.robot)
+        reading = arm.read()
+        step.reset(reading.q)
+        step(Input(np.zeros(controller.input_dim)), 0.0, reading, clock.now_s())
+        arm.enable()
+        step.enable()
+        for tick in range(1, int(task.time_limit_s * RATE_HZ) + 1):
+            clock.wait_until(tick * step.dt_s)
+            reading, state = arm.read(), arm.scene_state()
+            watch.sees(state)
+            if watch.ended is not None:
+                break
+            given = _given(operator, reading, state, watch.progress, step, controller, rng)
+            record = step(given, 0.0, reading, clock.now_s())
+            watch.records.append(record)
+            arm.send(record.command)
+    return watch.trace(choice)
+
+
+def _step(setup: TaskSetup, begun: Beginning) -> Step:
+    belief = None
+    if begun.goals:
+        goals = np.stack([goal.configuration for goal in begun.goals])
+        belief = BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S)
+    return Step(
+        setup.task.robot,
+        setup.controller,
+        SafetyConfig(obstacles=setup.task.obstacles),
+        goals=begun.goals,
+        belief=belief,
+        dt_s=1.0 / RATE_HZ,
+    )
+
+
+def _given(
+    operator: Operator,
+    reading: Reading,
+    state: SceneState,
+    progress: Progress,
+    step: Step,
+    controller: Controller,
+    rng: np.random.Generator,
+) -> Input:
+    """What the person does: push the stick towards the waypoint, or let go there and wait."""
+    waypoint = progress.waypoint
+    if waypoint is None or progress.waits:
+        return Input(np.zeros(controller.input_dim), gripper=progress.asks)
+    context = Context(state=reading.q, belief=step.belief)
+    return operator.act(context, controller, step.mode, waypoint.pose(state), rng)
+
+
+@final
+class _Watch:
+    """Follows a drive, and says when it is over."""
+
+    def __init__(self, begun: Beginning) -> None:
+        self.progress = Progress(begun.steps, begun.failures)
+        self.records: list[StepRecord] = []
+        self.ended: str | None = None
+        self._begun = begun
+        self._position: list[FloatArray] = []
+        self._points: list[FloatArray] = []
+        self._needed: list[FloatArray] = []
+        self._states: list[SceneState] = []
+        self._force_n: dict[str, float] = {}
+        self._waypoint: Waypoint | None = None
+        self._nearest = np.inf
+        self._nearer_s = 0.0
+
+    def sees(self, state: SceneState) -> None:
+        """Take how things stand before the next input."""
+        self.progress.update(state)
+        self._feel(state)
+        if len(self._position) % 10 == 0:
+            self._states.append(state)
+        self._position.append(state.tool.position)
+        waypoint = self.progress.waypoint
+        if self.progress.failure is not None:
+            self.ended = self.progress.failure
+        elif waypoint is None:
+            self.ended = "done"
+        else:
+            self._points.append(state.tool.rotation[:, 2])
+            self._needed.append(waypoint.pose(state).rotation[:, 2])
+            if self._stuck(waypoint, state):
+                self.ended = f"no nearer for {STUCK_S:g} s"
+
+    def trace(self, choice: int) -> TaskTrace:
+        """What is kept."""
+        state = self._states[-1]
+        step = self.progress.step
+        spilled = [fails for fails in self._begun.failures if isinstance(fails, Spilled)]
+        position = np.stack(self._position[: len(self.records)])
+        figures = measure_task_drive(
+            self.records,
+            position,
+            preference_alignment(np.array(self._points), np.array(self._needed)),
+            self._force_n,
+            steps_done=self.progress.share,
+            success=self.progress.succeeded,
+            spilled=sum(one.count(state) for one in spilled),
+            grains=sum(len(one) for one in state.grains.values()),
+        )
+        return TaskTrace(
+            figures=figures,
+            choice=choice,
+            ended_in="" if step is None else step.name,
+            why=self.ended or "out of time",
+            time_s=np.array([record.time_s for record in self.records]),
+            position=position,
+            states=tuple(self._states),
+        )
+
+    def _feel(self, state: SceneState) -> None:
+        for (first, second), force_n in state.force_n.items():
+            if TOOL in (first, second):
+                other = second if first == TOOL else first
+                kind = _kind(self._begun.scene, other)
+                self._force_n[kind] = max(self._force_n.get(kind, 0.0), force_n)
+
+    def _stuck(self, waypoint: Waypoint, state: SceneState) -> bool:
+        missed = waypoint.missed_by(state)
+        if waypoint is not self._waypoint or missed < self._nearest - NEARER or self.progress.waits:
+            self._waypoint, self._nearest, self._nearer_s = waypoint, missed, state.time_s
+        return state.time_s - self._nearer_s > STUCK_S
+
+
+def _kind(scene: Scene, name: str) -> str:
+    """``food``, or ``table`` for the table and everything that stands on it for good, or ``thing``."""
+    if name == TABLE:
+        return "table"
+    thing = scene.thing(name)
+    if thing.food is not None:
+        return "food"
+    return "table" if thing.fixed else "thing"

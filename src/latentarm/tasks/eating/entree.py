@@ -1,0 +1,183 @@
+"""A slice of tofu that is cut off, stabbed and brought to one's own plate: the paper's *Entree*, in physics."""
+
+from functools import cached_property, partial
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.scene.scene import Scene, SceneState
+from latentarm.scene.thing import Bond, Food, Part, Thing
+from latentarm.tasks.eating.marshmallows import START_SPREAD_RAD
+from latentarm.tasks.eating.stabbing import HOVER_M, above, stab
+from latentarm.tasks.eating.table import PLATE_RADIUS_M, STAND_M, at, fork, plate
+from latentarm.tasks.inverse_kinematics import solve
+from latentarm.tasks.predicates import Apart, Dropped, Placed
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.steps import TaskStep, Waypoint
+from latentarm.types import Goal, Pose
+
+DISH_M: Final = (0.50, 0.14)
+"""x and y of the middle of the dish with the tofu."""
+
+OWN_M: Final = (0.50, -0.14)
+"""The same of the person's own plate."""
+
+SPREAD_M: Final = 0.02
+"""How far from the dish's middle the tofu lies along each axis, at most."""
+
+TURN_RAD: Final = 0.3
+"""How far it is turned to either side, at most."""
+
+TOFU: Final = Food(pierce_n=0.6, depth_m=0.008, grip_n=2.5)
+"""Chosen: firm tofu, softer than a marshmallow's skin."""
+
+HALF_M: Final = (0.018, 0.016, 0.012)
+"""Half lengths of the block."""
+
+SLICE_HALF_M: Final = 0.008
+"""Half the thickness of the slice, along the block's y axis."""
+
+EDGE_RAD: Final = float(np.deg2rad(25.0))
+"""How far the fork's edge may be turned out of the plane of the cut."""
+
+_COLOUR: Final = (0.96, 0.93, 0.82, 1.0)
+
+
+@final
+class Entree(SceneTask):
+    """Cut a slice of tofu with the edge of the fork, stab it, and bring it to the person's own plate."""
+
+    @property
+    def name(self) -> str:
+        """``entree``."""
+        return "entree"
+
+    @property
+    def robot(self) -> Robot:
+        """A Panda with a fork."""
+        return self._robot
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """One slice."""
+        return ("slice",)
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table."""
+        return (Scene().table,)
+
+    @property
+    def time_limit_s(self) -> float:
+        """Two minutes."""
+        return 120.0
+
+    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
+        """Tofu anywhere in the middle of its dish, turned a little."""
+        turn = float(rng.uniform(-TURN_RAD, TURN_RAD))
+        x, y = np.array(DISH_M) + rng.uniform(-SPREAD_M, SPREAD_M, 2)
+        scene = Scene(
+            things=(plate("dish", *DISH_M), plate("own plate", *OWN_M), *tofu(float(x), float(y), turn)),
+            bonds=(cut_between(),),
+        )
+        state = self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
+        return Beginning(
+            state=state,
+            scene=scene,
+            steps=self._steps(turn),
+            failures=tuple(Dropped(name, STAND_M - 0.02) for name in ("tofu", "slice")),
+            goals=tuple(self._goal(scene, name) for name in ("slice", "own plate")),
+            objects=("tofu", "slice", "own plate"),
+            text="cut a slice of tofu and bring it to the plate",
+        )
+
+    def _steps(self, turn: float) -> tuple[TaskStep, ...]:
+        along = turn + np.pi / 2
+        ready = Waypoint(partial(_at_cut, height_m=0.04, turn_rad=along), within_m=0.008, within_rad=0.2)
+        through = Waypoint(
+            partial(_at_cut, height_m=-2.0 * HALF_M[2] + 0.003, turn_rad=along),
+            within_m=0.006,
+            within_rad=0.2,
+            wait_s=0.1,
+            speed=0.5,
+        )
+        out = Waypoint(partial(_at_cut, height_m=0.05, turn_rad=along), within_rad=0.3)
+        over = Waypoint(partial(_over_own, height_m=0.10, turn_rad=along))
+        down = Waypoint(partial(_over_own, height_m=HALF_M[2] + 0.006, turn_rad=along), wait_s=0.5, speed=0.5)
+        centre = np.array([*OWN_M, STAND_M + HALF_M[2]])
+        laid = Placed("slice", centre, np.array([*(2 * [0.7 * PLATE_RADIUS_M]), 0.015]), let_go=False)
+        return (
+            above("slice", along),
+            TaskStep("cut", "a slice cut off", Apart("tofu", "slice"), (ready, through, out)),
+            stab("slice", along, HALF_M[2]),
+            TaskStep("above", "above the plate", _Carried("slice"), (over,)),
+            TaskStep("placed", "the slice on the plate", laid, (over, down)),
+        )
+
+    def _goal(self, scene: Scene, name: str) -> Goal:
+        place = scene.thing(name).pose.position
+        configuration = solve(self.robot, fork(place, HOVER_M, np.pi / 2), self.robot.home)
+        return Goal(name, configuration, self.robot.chain.forward(configuration))
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("panda_fork")
+
+
+def tofu(x: float, y: float, turn_rad: float) -> tuple[Thing, Thing]:
+    """The block, and the slice that is still part of it."""
+    z = STAND_M + HALF_M[2]
+    pose = at(x, y, z, turn_rad)
+    beyond = pose.rotation @ np.array([0.0, HALF_M[1] + SLICE_HALF_M, 0.0])
+    block = Part("box", HALF_M, colour=_COLOUR)
+    piece = Part("box", (HALF_M[0], SLICE_HALF_M, HALF_M[2]), colour=_COLOUR)
+    return (
+        Thing("tofu", (block,), mass_kg=0.03, pose=pose, friction=0.9, food=TOFU),
+        Thing(
+            "slice",
+            (piece,),
+            mass_kg=0.012,
+            pose=Pose(pose.position + beyond, pose.rotation),
+            friction=0.9,
+            food=TOFU,
+        ),
+    )
+
+
+def cut_between() -> Bond:
+    """What holds the slice to the block."""
+    return Bond(
+        "tofu",
+        "slice",
+        point=(0.0, HALF_M[1], HALF_M[2]),
+        normal=(0.0, 1.0, 0.0),
+        depth_m=1.6 * HALF_M[2],
+        angle_rad=EDGE_RAD,
+    )
+
+
+def _at_cut(state: SceneState, height_m: float, turn_rad: float) -> Pose:
+    """The fork's edge over the plane of the cut, at a height over the top of the tofu."""
+    pose = state.poses["tofu"]
+    place = pose.position + pose.rotation @ np.array([0.0, HALF_M[1], HALF_M[2]])
+    return fork(place, height_m, turn_rad)
+
+
+def _over_own(state: SceneState, height_m: float, turn_rad: float) -> Pose:
+    """The fork over the person's own plate."""
+    return fork(state.poses["own plate"].position, height_m, turn_rad)
+
+
+@final
+class _Carried:
+    """Food on the fork is over the person's own plate."""
+
+    def __init__(self, thing: str) -> None:
+        self._thing = thing
+
+    def __call__(self, state: SceneState) -> bool:
+        away = state.poses[self._thing].position - state.poses["own plate"].position
+        return self._thing in state.stabbed and bool(np.hypot(away[0], away[1]) < 0.03)

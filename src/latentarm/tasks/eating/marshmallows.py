@@ -1,0 +1,97 @@
+"""Three marshmallows on a plate, one of which is to be stabbed: the paper's first user study, in physics."""
+
+from functools import cached_property
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.scene.scene import Scene
+from latentarm.tasks.eating.stabbing import HOVER_M, above, stab
+from latentarm.tasks.eating.table import STAND_M, fork, marshmallow, plate
+from latentarm.tasks.inverse_kinematics import solve
+from latentarm.tasks.predicates import Dropped
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.types import FloatArray, Goal
+
+PLATE_AT_M: Final = (0.5, 0.0)
+"""x and y of the plate's middle."""
+
+NAMES: Final = ("left marshmallow", "middle marshmallow", "right marshmallow")
+
+BEARINGS_RAD: Final = (np.pi / 2, 0.0, -np.pi / 2)
+"""From the plate's middle to that of each marshmallow's sector."""
+
+SECTOR_RAD: Final = 0.6
+"""How far to either side of that bearing it lies, at most."""
+
+OUT_M: Final = (0.045, 0.075)
+"""How far from the plate's middle."""
+
+START_SPREAD_RAD: Final = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
+"""How far each joint may start from the robot's home, at most: mostly turned about the base."""
+
+
+@final
+class Marshmallows(SceneTask):
+    """Bring the fork over the chosen marshmallow, stab it and lift it."""
+
+    @property
+    def name(self) -> str:
+        """``marshmallows``."""
+        return "marshmallows"
+
+    @property
+    def robot(self) -> Robot:
+        """A Panda with a fork."""
+        return self._robot
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """Which marshmallow."""
+        return NAMES
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table; the food and its plate may be touched."""
+        return (Scene().table,)
+
+    @property
+    def time_limit_s(self) -> float:
+        """A minute."""
+        return 60.0
+
+    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
+        """Marshmallows anywhere in their sectors, the arm about its home."""
+        places = [self._place(index, rng) for index in range(len(NAMES))]
+        food = [
+            marshmallow(name, x, y, rng.uniform(-np.pi, np.pi))
+            for name, (x, y) in zip(NAMES, places, strict=True)
+        ]
+        scene = Scene((plate("plate", *PLATE_AT_M), *food))
+        state = self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
+        wanted = NAMES[choice]
+        return Beginning(
+            state=state,
+            scene=scene,
+            steps=(above(wanted), stab(wanted)),
+            failures=tuple(Dropped(name, STAND_M - 0.02) for name in NAMES),
+            goals=tuple(self._goal(thing.name, thing.pose.position) for thing in food),
+            objects=NAMES,
+            text=f"stab the {wanted}",
+        )
+
+    def _place(self, index: int, rng: np.random.Generator) -> tuple[float, float]:
+        bearing = BEARINGS_RAD[index] + rng.uniform(-SECTOR_RAD, SECTOR_RAD)
+        out = rng.uniform(*OUT_M)
+        return PLATE_AT_M[0] + out * np.cos(bearing), PLATE_AT_M[1] + out * np.sin(bearing)
+
+    def _goal(self, name: str, place: FloatArray) -> Goal:
+        configuration = solve(self.robot, fork(place, HOVER_M), self.robot.home)
+        return Goal(name, configuration, self.robot.chain.forward(configuration))
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("panda_fork")
