@@ -8,7 +8,7 @@ import numpy as np
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.scene.containers import bowl, packed
+from latentarm.scene.containers import bowl, interior_of, packed
 from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Grains, Interior, Thing
 from latentarm.tasks.eating.marshmallows import START_SPREAD_RAD
@@ -102,7 +102,7 @@ class Dessert(SceneTask):
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """The marshmallow anywhere in the middle of its plate."""
         x, y = np.array(MIDDLE_M) + rng.uniform(-SPREAD_M, SPREAD_M, 2)
-        dish = bowl("rice bowl", at(*RICE_M, STAND_M), BOWL_RADIUS_M, BOWL_HEIGHT_M, fixed=True)
+        dish = bowl("rice bowl", at(*RICE_M, STAND_M), BOWL_RADIUS_M, BOWL_HEIGHT_M)
         rice = Grains(
             "rice",
             RICE_RADIUS_M,
@@ -119,14 +119,14 @@ class Dessert(SceneTask):
         )
         scene = Scene(things, (rice,))
         state = self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
-        assert dish.interior is not None
+        room = interior_of(dish)
         return Beginning(
             state=state,
             scene=scene,
-            steps=_steps(dish.interior),
+            steps=_steps(room),
             failures=(
                 Dropped(MARSHMALLOW, STAND_M - 0.02),
-                Spilled("rice", STAND_M - 0.02, (("rice bowl", dish.interior),), 0.5),
+                Spilled("rice", STAND_M - 0.02, (("rice bowl", room),), 0.5),
             ),
             goals=tuple(self._goal(scene, name) for name in (MARSHMALLOW, "icing", "rice bowl", "own plate")),
             objects=(MARSHMALLOW, "icing", "rice bowl", "own plate"),
