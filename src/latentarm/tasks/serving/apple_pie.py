@@ -1,7 +1,6 @@
 """Eggs, flour and an apple for a pie: the paper's second user study, in physics."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import cached_property, partial
 from typing import Final, final
 
@@ -10,13 +9,14 @@ import numpy as np
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.scene.containers import bowl, interior_of, packed, walls
+from latentarm.scene.containers import bowl, cup
 from latentarm.scene.scene import Scene, SceneState
-from latentarm.scene.thing import Grains, Interior, Part, Thing
+from latentarm.scene.thing import Interior, Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.tasks.predicates import CarriedOver, Dropped, KnockedOver, Placed, Spilled, Stirred, Within
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.serving.counter import (
+    FLOUR,
     GRAIN_KG,
     GRAIN_RADIUS_M,
     GRIP_M,
@@ -24,6 +24,7 @@ from latentarm.tasks.serving.counter import (
     counter,
     counter_bowl,
     counter_cup,
+    filled,
 )
 from latentarm.tasks.serving.cup_steps import LIFT_M, at_place, over, pour, take
 from latentarm.tasks.serving.reach_and_pour import anywhere, start
@@ -32,7 +33,7 @@ from latentarm.types import FloatArray, Pose
 
 Region = tuple[tuple[float, float], tuple[float, float]]
 
-SHELF_AT_M: Final[Region] = ((0.58, 0.63), (-0.28, -0.24))
+SHELF_AT_M: Final[Region] = ((0.57, 0.61), (-0.27, -0.23))
 """Where the middle of the shelf is, x and y."""
 
 BOWL_AT_M: Final[Region] = ((0.55, 0.60), (0.06, 0.12))
@@ -41,13 +42,13 @@ BOWL_AT_M: Final[Region] = ((0.55, 0.60), (0.06, 0.12))
 BIN_AT_M: Final[Region] = ((0.52, 0.56), (0.30, 0.35))
 """Where the recycling bin stands."""
 
-SPOON_AT_M: Final = (0.66, -0.04)
+SPOON_AT_M: Final = (0.68, 0.0)
 """Where the spoon stands in its holder."""
 
 SHELF_M: Final = 0.02
 """Height of the shelf over the counter."""
 
-APART_M: Final = 0.12
+APART_M: Final = 0.16
 """From one thing on the shelf to the next."""
 
 CHOICES: Final = ("eggs", "flour", "apple")
@@ -55,7 +56,7 @@ CHOICES: Final = ("eggs", "flour", "apple")
 EGGS: Final = 6
 EGG_RADIUS_M: Final = 0.008
 EGG_KG: Final = 0.004
-FLOUR: Final = 30
+GRAINS: Final = 30
 
 POURED: Final = 0.8
 """Share of the eggs or the flour that must end in the bowl."""
@@ -108,10 +109,10 @@ class ApplePie(SceneTask):
         shelf = np.append(anywhere(SHELF_AT_M, rng), TOP_M + SHELF_M)
         things = _things(shelf, anywhere(BOWL_AT_M, rng), anywhere(BIN_AT_M, rng))
         grains = (
-            Grains("eggs", EGG_RADIUS_M, EGG_KG, packed(things["egg cup"], EGGS, EGG_RADIUS_M), _YOLK),
-            Grains("flour", GRAIN_RADIUS_M, GRAIN_KG, packed(things["flour cup"], FLOUR, GRAIN_RADIUS_M)),
+            filled("eggs", things["egg cup"], EGGS, EGG_RADIUS_M, EGG_KG, _YOLK),
+            filled("flour", things["flour cup"], GRAINS, GRAIN_RADIUS_M, GRAIN_KG, FLOUR),
         )
-        rooms = {name: interior_of(things[name]) for name in ("bowl", "bin", "egg cup", "flour cup")}
+        rooms = {name: things[name].room for name in ("bowl", "bin", "egg cup", "flour cup")}
         what = CHOICES[choice]
         return Beginning(
             state=start(self.robot, rng),
@@ -141,7 +142,6 @@ _TAKEN: Final[Mapping[str, str]] = {"eggs": "egg cup", "flour": "flour cup", "ap
 def _things(shelf: FloatArray, bowl_at: FloatArray, bin_at: FloatArray) -> dict[str, Thing]:
     half = (0.05, APART_M + 0.05, SHELF_M / 2)
     board = Part("box", half, (0.0, 0.0, -SHELF_M / 2), colour=(0.8, 0.7, 0.55, 1.0))
-    lift = np.array([0.0, 0.0, SHELF_M])
     cups = {
         "egg cup": (APART_M, (0.85, 0.85, 0.88, 1.0)),
         "flour cup": (0.0, (0.45, 0.35, 0.6, 1.0)),
@@ -150,18 +150,21 @@ def _things(shelf: FloatArray, bowl_at: FloatArray, bin_at: FloatArray) -> dict[
         counter(),
         Thing("shelf", (board,), 2.0, at(*shelf), fixed=True),
         counter_bowl("bowl", *bowl_at),
-        bowl("bin", at(*bin_at, TOP_M), 0.07, 0.10, colour=(0.25, 0.45, 0.3, 1.0)),
+        _bin(*bin_at),
         *_spoon(*SPOON_AT_M),
         _apple(shelf + np.array([0.0, -APART_M, 0.0])),
     ]
-    for name, (aside, colour) in cups.items():
-        cup = counter_cup(name, shelf[0], shelf[1] + aside, colour)
-        things.append(_moved(cup, lift))
+    things += [
+        counter_cup(name, shelf[0], shelf[1] + aside, colour, SHELF_M)
+        for name, (aside, colour) in cups.items()
+    ]
     return {thing.name: thing for thing in things}
 
 
-def _moved(thing: Thing, by: FloatArray) -> Thing:
-    return replace(thing, pose=Pose(thing.pose.position + by, thing.pose.rotation))
+def _bin(x: float, y: float) -> Thing:
+    """The recycling bin, which stays where it stands."""
+    made = bowl(0.06, 0.09, (0.25, 0.45, 0.3, 1.0))
+    return Thing("bin", made.parts, 0.5, at(x, y, TOP_M), fixed=True, interior=made.interior)
 
 
 def _apple(place: FloatArray) -> Thing:
@@ -173,8 +176,8 @@ def _apple(place: FloatArray) -> Thing:
 
 def _spoon(x: float, y: float) -> tuple[Thing, Thing]:
     """A spoon that stands in a holder; its frame is in the middle of its lower end."""
-    parts, _ = walls(0.016, 0.06, 0.003, (0.5, 0.5, 0.52, 1.0))
-    holder = Thing("holder", parts, 0.3, at(x, y, TOP_M), fixed=True)
+    made = cup(0.016, 0.06, (0.5, 0.5, 0.52, 1.0))
+    holder = Thing("holder", made.parts, 0.3, at(x, y, TOP_M), fixed=True)
     steel = (0.7, 0.7, 0.72, 1.0)
     handle = Part("capsule", (0.008, SPOON_M / 2 - 0.016), (0.0, 0.0, SPOON_M / 2 + 0.008), colour=steel)
     end = Part("sphere", (0.012,), (0.0, 0.0, 0.012), colour=steel)

@@ -15,11 +15,11 @@ from latentarm.types import FloatArray, Pose
 BEFORE_M: Final = 0.08
 """How far before a cup the hand stops first."""
 
-LIFT_M: Final = 0.10
+LIFT_M: Final = 0.14
 """How far a cup is lifted."""
 
-LIFTED_M: Final = 0.05
-"""So far over the counter it counts as held."""
+LIFTED_M: Final = 0.10
+"""So far over the counter it counts as held: over whatever stands next to it."""
 
 POURING_M: Final = 0.14
 """How far over a bowl's rim the fingers are while they pour."""
@@ -68,7 +68,7 @@ def pour(
         TaskStep(
             "poured",
             f"{grains} in the {bowl}",
-            Poured(grains, bowl, interior, share),
+            enough,
             (upright, half, tilted),
         ),
     )
