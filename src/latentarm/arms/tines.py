@@ -181,7 +181,10 @@ class _Served:
 
     def contains(self, points: FloatArray) -> BoolArray:
         """Whether points (..., 3) in its frame are in it."""
-        return np.array([_within(part, points) for part in self.thing.parts]).any(axis=0)
+        inside = np.zeros(points.shape[:-1], dtype=np.bool_)
+        for part in self.thing.parts:
+            inside |= _within(part, points)
+        return inside
 
 
 @final
@@ -221,7 +224,7 @@ def _within(part: Part, points: FloatArray) -> BoolArray:
     """Whether points (..., 3) of a thing's frame are in a part of it."""
     local = (points - part.position) @ rotation_of(np.array(part.quaternion))
     if part.shape == "box":
-        return (np.abs(local) <= part.size).all(axis=-1)
+        return np.abs(local / part.size).max(axis=-1) <= 1.0
     if part.shape == "sphere":
         return np.linalg.norm(local, axis=-1) <= part.size[0]
     radius, half = part.size
