@@ -4,7 +4,7 @@ import inspect
 from collections.abc import Callable
 from typing import Final, Protocol, cast
 
-from latentarm.arms.contract import Arm
+from latentarm.arms.contract import Arm, SceneArm
 from latentarm.errors import UserError
 from latentarm.plugins import Catalogue
 from latentarm.robots.robot import Robot
@@ -79,31 +79,40 @@ def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], flo
     return _checked(name, ARMS.find(name, "--arm")(robot, state, now_s))
 
 
-def make_simulated_arm(
-    name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float], scene: Scene | None = None
-) -> Arm:
+def make_simulated_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
     """An arm for simulated time; see `make_arm`.
 
+    Raises:
+        UserError: as `make_arm`, and where the arm is real: it would not wait for simulated time.
+    """
+    return _simulated(name, make_arm(name, robot, state, now_s))
+
+
+def make_scene_arm(
+    name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float], scene: Scene
+) -> SceneArm:
+    """A simulated arm with things about it; see `make_arm`.
+
     Args:
-        name: a name in `ARMS`.
+        name: a name in `ARMS`; only an arm whose factory takes a ``scene`` can have one.
         robot: whose joints these are.
         state: (n,), where the arm starts, rad.
         now_s: the clock that readings are timed by, s; never goes back.
-        scene: what stands about the arm, or None. Only an arm whose factory takes a ``scene`` can have one.
+        scene: what stands about the arm.
 
     Raises:
-        UserError: as `make_arm`, where the arm is real: it would not wait for simulated time, and where it
-            cannot have a scene.
+        UserError: as `make_arm`, and where the arm can have no things about it.
     """
-    if scene is None:
-        arm = make_arm(name, robot, state, now_s)
-    else:
-        factory = ARMS.find(name, "--arm")
-        if "scene" not in inspect.signature(factory).parameters:
-            raise UserError(
-                f"--arm {name} has no things about it to touch or hold: use --arm {PHYSICAL_ARM}."
-            )
-        arm = _checked(name, cast(SceneArmFactory, factory)(robot, state, now_s, scene=scene))
+    factory = ARMS.find(name, "--arm")
+    if "scene" not in inspect.signature(factory).parameters:
+        raise UserError(f"--arm {name} has no things about it to touch or hold: use --arm {PHYSICAL_ARM}.")
+    arm = _simulated(name, _checked(name, cast(SceneArmFactory, factory)(robot, state, now_s, scene=scene)))
+    if not isinstance(arm, SceneArm):
+        raise UserError(f"--arm {name} made {type(arm).__name__}, not a latentarm.arms.contract.SceneArm.")
+    return arm
+
+
+def _simulated(name: str, arm: Arm) -> Arm:
     if not arm.spec.simulated:
         raise UserError(
             f"--arm {name} is a real arm, and time is simulated here: choose a simulated one, such as"

@@ -8,6 +8,7 @@ from typing import Final, final
 import mujoco
 import numpy as np
 
+from latentarm.arms.contract import SceneArm
 from latentarm.arms.finger_servo import FingerServo, add_finger_servos
 from latentarm.arms.scene_model import add_scene
 from latentarm.arms.scene_watch import SceneWatch
@@ -64,7 +65,7 @@ class Imperfections:
 
 
 @final
-class MujocoArm(SimulatedArm):
+class MujocoArm(SimulatedArm, SceneArm):
     """A robot in MuJoCo, driven by torques, alone or with a scene about it.
 
     Each joint has a velocity servo at 1 kHz: a torque in proportion to the error of the velocity and to that

@@ -1,0 +1,90 @@
+"""The counter that cups and bowls stand on, and how a hand is held over it."""
+
+from typing import Final
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from latentarm.scene.containers import bowl, cup
+from latentarm.scene.thing import Part, Thing
+from latentarm.tasks.eating.table import at
+from latentarm.types import FloatArray, Pose
+
+TOP_M: Final = 0.28
+"""Height of the counter's top in the base frame of the arm: high enough for a Panda to tilt what it holds."""
+
+COUNTER_M: Final = ((0.44, 0.80), (-0.45, 0.45))
+"""Where the counter is, along x and along y."""
+
+PITCH_RAD: Final = -0.9
+"""Of the hand's pointing direction above the horizontal: from this side it can pour to either side."""
+
+CUP_RADIUS_M: Final = 0.025
+CUP_HEIGHT_M: Final = 0.08
+GRIP_M: Final = 0.064
+"""Height over a cup's underside at which the fingers take it: the palm stays clear of its rim."""
+
+BOWL_RADIUS_M: Final = 0.07
+BOWL_HEIGHT_M: Final = 0.05
+
+GRAIN_RADIUS_M: Final = 0.005
+GRAIN_KG: Final = 4e-4
+
+POSTURE_RAD: Final = (0.0, -0.5, 0.0, -2.3, 0.0, 2.2, np.pi / 4)
+"""From where configurations are looked for, rad: the hand before the chest, pointing out and down."""
+
+_WOOD: Final = (0.55, 0.42, 0.30, 1.0)
+
+
+def counter() -> Thing:
+    """The counter, its frame in the middle of its top."""
+    (x0, x1), (y0, y1) = COUNTER_M
+    half = ((x1 - x0) / 2, (y1 - y0) / 2, TOP_M / 2)
+    block = Part("box", half, (0.0, 0.0, -TOP_M / 2), colour=_WOOD)
+    return Thing("counter", (block,), 20.0, at((x0 + x1) / 2, (y0 + y1) / 2, TOP_M), fixed=True)
+
+
+def counter_cup(name: str, x: float, y: float, colour: tuple[float, float, float, float]) -> Thing:
+    """A cup on the counter."""
+    return cup(name, at(x, y, TOP_M), CUP_RADIUS_M, CUP_HEIGHT_M, mass_kg=0.06, colour=colour)
+
+
+def counter_bowl(name: str, x: float, y: float) -> Thing:
+    """A bowl on the counter."""
+    return bowl(name, at(x, y, TOP_M), BOWL_RADIUS_M, BOWL_HEIGHT_M)
+
+
+def bearing_of(place: FloatArray) -> float:
+    """Direction of a place from the base of the arm, rad."""
+    return float(np.arctan2(place[1], place[0]))
+
+
+def hand(place: FloatArray, bearing_rad: float, tilt_rad: float = 0.0) -> Pose:
+    """A pose of the hand, its fingers closing sideways.
+
+    Args:
+        place: (3,), of the point between the fingertips, m.
+        bearing_rad: in which it points, as seen from above.
+        tilt_rad: how far what it holds leans to the left, about that bearing, rad.
+    """
+    out = np.array([np.cos(bearing_rad), np.sin(bearing_rad), 0.0])
+    points = np.cos(PITCH_RAD) * out + np.sin(PITCH_RAD) * np.array([0.0, 0.0, 1.0])
+    right = np.array([out[1], -out[0], 0.0])
+    upright = np.stack([np.cross(right, points), right, points], axis=-1)
+    return Pose(np.array(place), Rotation.from_rotvec(-tilt_rad * out).as_matrix() @ upright)
+
+
+def pouring(bowl_at: FloatArray, tilt_rad: float, over_m: float) -> Pose:
+    """A hand that tilts a cup so that what it holds falls into the middle of a bowl.
+
+    Args:
+        bowl_at: (3,), middle of the bowl's underside, m.
+        tilt_rad: of the cup, to the left as seen from the base if positive, rad.
+        over_m: height of the fingertips over the bowl's rim, m.
+    """
+    bearing = bearing_of(bowl_at)
+    left = np.array([-np.sin(bearing), np.cos(bearing), 0.0])
+    # The cup's rim, over the fingers, goes to the side.
+    beyond = CUP_HEIGHT_M - GRIP_M + CUP_RADIUS_M
+    aside = -np.sign(tilt_rad) * beyond * np.sin(min(abs(tilt_rad), np.pi / 2)) * left
+    return hand(bowl_at + aside + np.array([0.0, 0.0, BOWL_HEIGHT_M + over_m]), bearing, tilt_rad)

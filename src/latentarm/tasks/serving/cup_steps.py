@@ -1,0 +1,96 @@
+"""The steps that tasks with cups have in common: to take one, to pour it out, to put it down."""
+
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from latentarm.scene.scene import SceneState
+from latentarm.scene.thing import Interior
+from latentarm.tasks.predicates import CarriedOver, Holding, Poured
+from latentarm.tasks.serving.counter import GRIP_M, TOP_M, bearing_of, hand, pouring
+from latentarm.tasks.steps import TaskStep, Waypoint
+from latentarm.types import FloatArray, Pose
+
+BEFORE_M: Final = 0.08
+"""How far before a cup the hand stops first."""
+
+LIFT_M: Final = 0.10
+"""How far a cup is lifted."""
+
+LIFTED_M: Final = 0.05
+"""So far over the counter it counts as held."""
+
+POURING_M: Final = 0.14
+"""How far over a bowl's rim the fingers are while they pour."""
+
+POUR_RAD: Final = 1.8
+"""How far a cup is tilted to be emptied."""
+
+
+def take(cup: str, grip_m: float = GRIP_M) -> tuple[TaskStep, ...]:
+    """Reach for a cup on the counter, close the fingers about it, lift it.
+
+    Args:
+        cup: its name.
+        grip_m: height over its underside at which it is taken, m.
+    """
+    before = Waypoint(partial(_at, cup=cup, back_m=BEFORE_M, up_m=grip_m), gripper="open")
+    about = Waypoint(
+        partial(_at, cup=cup, back_m=0.0, up_m=grip_m), within_m=0.007, gripper="close", wait_s=1.2, speed=0.6
+    )
+    lifted = Waypoint(partial(_lifted, cup=cup, height_m=TOP_M + grip_m + LIFT_M))
+    return (
+        TaskStep("reached", f"at the {cup}", before.reached, (before,)),
+        TaskStep("holding", f"holding the {cup}", Holding(cup, TOP_M + LIFTED_M), (before, about, lifted)),
+    )
+
+
+def pour(
+    cup: str, grains: str, bowl: str, interior: Interior, share: float, side: float
+) -> tuple[TaskStep, ...]:
+    """Carry a cup over a bowl, and pour it out.
+
+    Args:
+        cup: its name.
+        grains: what is in it.
+        bowl: where that goes.
+        interior: the room in the bowl.
+        share: of the grains that must be in the bowl, in (0, 1].
+        side: 1 to pour to the left, -1 to the right.
+    """
+    over = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.05 * side))
+    half = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.6 * POUR_RAD * side), speed=0.7)
+    tilted = Waypoint(partial(_over, bowl=bowl, tilt_rad=POUR_RAD * side), wait_s=1.0, speed=0.5)
+    return (
+        TaskStep("above", f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (over,)),
+        TaskStep(
+            "poured", f"{grains} in the {bowl}", Poured(grains, bowl, interior, share), (over, half, tilted)
+        ),
+    )
+
+
+def _at(state: SceneState, cup: str, back_m: float, up_m: float) -> Pose:
+    """The hand at a cup, or a little before it."""
+    place = state.poses[cup].position
+    bearing = bearing_of(place)
+    out = np.array([np.cos(bearing), np.sin(bearing), 0.0])
+    return hand(place - back_m * out + np.array([0.0, 0.0, up_m + 0.5 * back_m]), bearing)
+
+
+def _lifted(state: SceneState, cup: str, height_m: float) -> Pose:
+    """The hand at a height over the base, wherever the cup is."""
+    place = state.poses[cup].position.copy()
+    place[2] = height_m
+    return hand(place, bearing_of(place))
+
+
+def _over(state: SceneState, bowl: str, tilt_rad: float) -> Pose:
+    return pouring(state.poses[bowl].position, tilt_rad, POURING_M)
+
+
+def at_place(state: SceneState, place: FloatArray, back_m: float = 0.0) -> Pose:
+    """The hand over a place of the counter, or a little before it."""
+    bearing = bearing_of(place)
+    out = np.array([np.cos(bearing), np.sin(bearing), 0.0])
+    return hand(place - back_m * out + np.array([0.0, 0.0, 0.5 * back_m]), bearing)

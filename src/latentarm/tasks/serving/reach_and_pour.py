@@ -1,0 +1,113 @@
+"""A cup that is reached for, carried to a bowl and poured out: *Reach & Pour* of the paper's fourth study."""
+
+from functools import cached_property
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.scene.containers import interior_of, packed
+from latentarm.scene.scene import Scene
+from latentarm.scene.thing import Grains
+from latentarm.tasks.inverse_kinematics import solve
+from latentarm.tasks.predicates import Dropped, Spilled
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.serving.counter import (
+    GRAIN_KG,
+    GRAIN_RADIUS_M,
+    POSTURE_RAD,
+    TOP_M,
+    bearing_of,
+    counter,
+    counter_bowl,
+    counter_cup,
+    hand,
+)
+from latentarm.tasks.serving.cup_steps import pour, take
+from latentarm.types import FloatArray
+
+CUP_AT_M: Final = ((0.53, 0.62), (-0.28, -0.10))
+"""Where the cup stands, x and y."""
+
+BOWL_AT_M: Final = ((0.54, 0.60), (0.12, 0.24))
+"""Where the bowl stands."""
+
+START_M: Final = (0.45, 0.0, 0.50)
+"""About where the hand starts."""
+
+START_SPREAD_M: Final = 0.03
+
+GRAINS: Final = 24
+
+POURED: Final = 0.8
+"""Share of the grains that must end in the bowl."""
+
+SPILLED: Final = 0.25
+"""Share that may be spilled."""
+
+
+@final
+class ReachAndPour(SceneTask):
+    """Take a cup, carry it over a bowl, and pour it out."""
+
+    @property
+    def name(self) -> str:
+        """``reach_and_pour``."""
+        return "reach_and_pour"
+
+    @property
+    def robot(self) -> Robot:
+        """A Panda with its hand."""
+        return self._robot
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """One cup."""
+        return ("cup",)
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table; the counter and what stands on it may be touched."""
+        return (Scene().table,)
+
+    @property
+    def time_limit_s(self) -> float:
+        """Two minutes."""
+        return 120.0
+
+    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
+        """Cup and bowl anywhere in their regions of the counter."""
+        cup = counter_cup("cup", *anywhere(CUP_AT_M, rng), colour=(0.36, 0.55, 0.75, 1.0))
+        bowl = counter_bowl("bowl", *anywhere(BOWL_AT_M, rng))
+        room = interior_of(bowl)
+        flour = Grains("grains", GRAIN_RADIUS_M, GRAIN_KG, packed(cup, GRAINS, GRAIN_RADIUS_M))
+        return Beginning(
+            state=start(self.robot, rng),
+            scene=Scene((counter(), cup, bowl), (flour,)),
+            steps=(*take("cup"), *pour("cup", "grains", "bowl", room, POURED, side=1.0)),
+            failures=(
+                Dropped("cup", TOP_M - 0.05),
+                Spilled("grains", TOP_M - 0.02, (("bowl", room),), SPILLED),
+            ),
+            goals=(),
+            objects=("cup", "bowl"),
+            text="pour the cup into the bowl",
+        )
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("panda")
+
+
+def anywhere(region: tuple[tuple[float, float], tuple[float, float]], rng: np.random.Generator) -> FloatArray:
+    """A place in a region of the counter, (2,), m."""
+    lower, upper = np.array(region).T
+    return rng.uniform(lower, upper)
+
+
+def start(robot: Robot, rng: np.random.Generator) -> FloatArray:
+    """Where the arm starts over the counter, (n,), rad."""
+    place = np.array(START_M) + rng.uniform(-START_SPREAD_M, START_SPREAD_M, 3)
+    return solve(robot, hand(place, bearing_of(place)), np.array(POSTURE_RAD))
