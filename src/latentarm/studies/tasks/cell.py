@@ -213,8 +213,8 @@ def training_set(task: str, shown: Sequence[Shown]) -> Demonstrations:
     found = dataset_of(make_scene_task(task), [each for one in shown for each in one.demonstrations])
     if len(found.episodes) < 2:
         raise UserError(
-            f"{len(found.episodes)} demonstrations of the task {task} succeeded, and a model needs two or more: take"
-            " a preset with more demonstrations."
+            f"{len(found.episodes)} demonstrations of the task {task} succeeded, and a model needs two or"
+            " more: take a preset with more demonstrations."
         )
     return found
 
