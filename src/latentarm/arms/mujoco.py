@@ -14,6 +14,7 @@ from latentarm.arms.scene_model import add_scene
 from latentarm.arms.scene_watch import SceneWatch
 from latentarm.arms.servo import Servo, add_servos, drop_actuators, hold_still_joints, torque_limits
 from latentarm.arms.simulated import SETTLED_S, SimulatedArm, check_start
+from latentarm.arms.tines import TinesInFood
 from latentarm.errors import UserError
 from latentarm.kinematics.reader import ModelChain, read, reference_positions
 from latentarm.robots.robot import Robot
@@ -118,9 +119,12 @@ class MujocoArm(SimulatedArm, SceneArm):
             gripper=self._fingers,
             settles_s=SETTLED_S if scene is None else SCENE_SETTLED_S,
         )
-        self._watch = None
+        self._watch = self._tines = None
+        self._bonds = frozenset((one.first, one.second) for one in (() if scene is None else scene.bonds))
         if scene is not None:
             self._watch = SceneWatch(self._model, self._data, robot, found.body_link, scene)
+            if robot.attachment is not None and robot.attachment.tines is not None:
+                self._tines = TinesInFood(self._model, self._data, robot.attachment.tines, scene)
         self._steps = 0
         self._behind_s = 0.0
         self._rng = np.random.default_rng(self._imperfections.seed)
@@ -154,7 +158,10 @@ class MujocoArm(SimulatedArm, SceneArm):
         if self._watch is None:
             raise RuntimeError("an arm without a scene has no state of it")
         self._elapse()
-        return self._watch.state(self._data.qpos[self._positions].copy(), frozenset(), frozenset())
+        q = self._data.qpos[self._positions].copy()
+        if self._tines is None:
+            return self._watch.state(q, frozenset(), self._bonds)
+        return self._watch.state(q, self._tines.stabbed, self._tines.bonds)
 
     def _pass(self, span_s: float, commanded: FloatArray) -> None:
         self._behind_s += span_s
@@ -180,6 +187,8 @@ class MujocoArm(SimulatedArm, SceneArm):
             steps -= taken
             if watch is not None and self._steps % LOOK_STEPS == 0:
                 watch.look()
+                if self._tines is not None:
+                    self._tines.look()
 
     def _note(self) -> None:
         """Keep what is measured now for as long as readings are delayed."""
@@ -227,7 +236,7 @@ def _world(
     if payload_kg > 0.0:
         _hang(spec, robot, payload_kg)
     if scene is not None:
-        add_scene(spec, scene, None)
+        add_scene(spec, scene, robot.attachment)
     spec.option.timestep = STEP_S
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     return spec.compile(), found

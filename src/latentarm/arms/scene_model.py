@@ -6,8 +6,10 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from latentarm.robots.attachment import TINES_BODY, Attachment
+from latentarm.robots.parts import add_parts
 from latentarm.scene.scene import TABLE, Scene
-from latentarm.scene.thing import Bond, Grains, Part, Thing
+from latentarm.scene.thing import Bond, Grains, Thing
 from latentarm.types import FloatArray
 
 SOLID: Final = 1
@@ -15,13 +17,6 @@ SOLID: Final = 1
 
 TINE: Final = 2
 """Bit of tines: a thing that lacks it lets them in."""
-
-_SHAPES: Final = {
-    "box": mujoco.mjtGeom.mjGEOM_BOX,
-    "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
-    "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE,
-    "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
-}
 
 _GRAIN_DRAG_S: Final = 0.1
 """A grain that nothing touches loses its speed within this time, s."""
@@ -55,14 +50,18 @@ def stab_name(name: str) -> str:
     return f"stab {name}"
 
 
-def add_scene(spec: mujoco.MjSpec, scene: Scene, tines_body: str | None) -> None:
+def add_scene(spec: mujoco.MjSpec, scene: Scene, attachment: Attachment | None) -> None:
     """Add a scene to a robot's model.
 
     Args:
         spec: the robot's.
         scene: what stands about it.
-        tines_body: the body that food can be stabbed with, or None where the robot has no tines.
+        attachment: what the robot carries, or None.
     """
+    tined = attachment is not None and attachment.tines is not None
+    if tined:
+        for geom in spec.body(TINES_BODY).geoms:
+            geom.contype, geom.conaffinity = TINE, 0
     spec.worldbody.add_geom(
         name=TABLE,
         type=mujoco.mjtGeom.mjGEOM_PLANE,
@@ -75,8 +74,8 @@ def add_scene(spec: mujoco.MjSpec, scene: Scene, tines_body: str | None) -> None
     )
     for thing in scene.things:
         _add_thing(spec, thing)
-        if thing.food is not None and tines_body is not None:
-            _add_weld(spec, stab_name(thing.name), tines_body, thing_body(thing.name), active=False)
+        if thing.food is not None and tined and not thing.fixed:
+            _add_weld(spec, stab_name(thing.name), TINES_BODY, thing_body(thing.name), active=False)
     for bond in scene.bonds:
         _add_weld(spec, bond_name(bond), thing_body(bond.first), thing_body(bond.second), active=True)
         spec.add_exclude(bodyname1=thing_body(bond.first), bodyname2=thing_body(bond.second))
@@ -96,20 +95,10 @@ def _add_thing(spec: mujoco.MjSpec, thing: Thing) -> None:
     )
     if not thing.fixed:
         body.add_freejoint(name=thing_body(thing.name))
-    volumes = [_volume(part) for part in thing.parts]
-    for part, volume in zip(thing.parts, volumes, strict=True):
-        body.add_geom(
-            type=_SHAPES[part.shape],
-            size=[*part.size, *([0.0] * (3 - len(part.size)))],
-            pos=list(part.position),
-            quat=list(part.quaternion),
-            rgba=list(part.colour),
-            mass=thing.mass_kg * volume / sum(volumes),
-            friction=[thing.friction, *_ROLLING],
-            condim=4,
-            contype=SOLID,
-            conaffinity=SOLID | TINE,
-        )
+    for geom in add_parts(body, thing.parts, thing.mass_kg):
+        geom.friction = [thing.friction, *_ROLLING]
+        geom.condim = 4
+        geom.contype, geom.conaffinity = SOLID, SOLID | TINE
 
 
 def _add_grains(spec: mujoco.MjSpec, grains: Grains) -> None:
@@ -142,17 +131,6 @@ def _add_weld(spec: mujoco.MjSpec, name: str, first: str, second: str, *, active
         active=active,
     )
     weld.solref = [0.004, 1.0]
-
-
-def _volume(part: Part) -> float:
-    """Of a part, m³."""
-    size = part.size
-    if part.shape == "box":
-        return 8.0 * size[0] * size[1] * size[2]
-    if part.shape == "cylinder":
-        return 2.0 * np.pi * size[0] ** 2 * size[1]
-    ball = 4.0 / 3.0 * np.pi * size[0] ** 3
-    return ball if part.shape == "sphere" else ball + 2.0 * np.pi * size[0] ** 2 * size[1]
 
 
 def rotation_of(quaternion: FloatArray) -> FloatArray:

@@ -30,7 +30,9 @@ Balls = tuple[FloatArray, FloatArray]
 """Centres (K, 3), m, and radii (K,), m, of balls whose convex hull covers a shape."""
 
 
-def read_capsules(model: mujoco.MjModel, reading: ModelChain, sliding: Sequence[str] = ()) -> Capsules:
+def read_capsules(
+    model: mujoco.MjModel, reading: ModelChain, sliding: Sequence[str] = (), apart: Sequence[str] = ()
+) -> Capsules:
     """Capsules that cover a robot: its moving links and the fixed bodies that carry them.
 
     Spheres and capsules stay as they are; a cylinder becomes the capsule around its axis; boxes,
@@ -43,6 +45,8 @@ def read_capsules(model: mujoco.MjModel, reading: ModelChain, sliding: Sequence[
         reading: what `latentarm.kinematics.reader.read` found in it.
         sliding: names of sliding joints that move by themselves, such as those of a gripper's fingers: what
             they move is covered wherever it slides.
+        apart: names of bodies whose capsules are merged with no other body's, such as those of a fork: it
+            must come close to things.
 
     Returns:
         The capsules, each in its link's frame.
@@ -61,7 +65,9 @@ def read_capsules(model: mujoco.MjModel, reading: ModelChain, sliding: Sequence[
     links: list[int] = []
     shapes: list[tuple[FloatArray, FloatArray, float]] = []
     for link, pieces in sorted(by_link.items()):
-        for name, balls in _merged(pieces, PER_LINK):
+        alone = [piece for piece in pieces if piece[0] in apart]
+        others = [piece for piece in pieces if piece[0] not in apart]
+        for name, balls in [*_merged(others, PER_LINK), *alone]:
             names.append(name)
             links.append(link)
             shapes.append(bounding_capsule(*balls))

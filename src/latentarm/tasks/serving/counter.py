@@ -5,8 +5,8 @@ from typing import Final
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from latentarm.scene.containers import bowl, cup
-from latentarm.scene.thing import Part, Thing
+from latentarm.scene.containers import Colour, bowl, cup, packed
+from latentarm.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.types import FloatArray, Pose
 
@@ -24,7 +24,7 @@ CUP_HEIGHT_M: Final = 0.08
 GRIP_M: Final = 0.064
 """Height over a cup's underside at which the fingers take it: the palm stays clear of its rim."""
 
-BOWL_RADIUS_M: Final = 0.07
+BOWL_RADIUS_M: Final = 0.055
 BOWL_HEIGHT_M: Final = 0.05
 
 GRAIN_RADIUS_M: Final = 0.005
@@ -33,6 +33,7 @@ GRAIN_KG: Final = 4e-4
 POSTURE_RAD: Final = (0.0, -0.5, 0.0, -2.3, 0.0, 2.2, np.pi / 4)
 """From where configurations are looked for, rad: the hand before the chest, pointing out and down."""
 
+FLOUR: Final = (0.9, 0.85, 0.7, 1.0)
 _WOOD: Final = (0.55, 0.42, 0.30, 1.0)
 
 
@@ -44,14 +45,24 @@ def counter() -> Thing:
     return Thing("counter", (block,), 20.0, at((x0 + x1) / 2, (y0 + y1) / 2, TOP_M), fixed=True)
 
 
-def counter_cup(name: str, x: float, y: float, colour: tuple[float, float, float, float]) -> Thing:
-    """A cup on the counter."""
-    return cup(name, at(x, y, TOP_M), CUP_RADIUS_M, CUP_HEIGHT_M, mass_kg=0.06, colour=colour)
+def counter_cup(name: str, x: float, y: float, colour: Colour, up_m: float = 0.0) -> Thing:
+    """A cup on the counter, or on something that stands on it."""
+    made = cup(CUP_RADIUS_M, CUP_HEIGHT_M, colour)
+    return Thing(name, made.parts, 0.06, at(x, y, TOP_M + up_m), friction=1.0, interior=made.interior)
 
 
 def counter_bowl(name: str, x: float, y: float) -> Thing:
-    """A bowl on the counter."""
-    return bowl(name, at(x, y, TOP_M), BOWL_RADIUS_M, BOWL_HEIGHT_M)
+    """A bowl that stays where it stands on the counter."""
+    made = bowl(BOWL_RADIUS_M, BOWL_HEIGHT_M)
+    return Thing(name, made.parts, 0.5, at(x, y, TOP_M), fixed=True, interior=made.interior)
+
+
+def filled(
+    name: str, container: Thing, count: int, radius_m: float, grain_kg: float, colour: Colour
+) -> Grains:
+    """Grains that begin in a container."""
+    places = packed(container.room, container.pose, count, radius_m)
+    return Grains(name, radius_m, grain_kg, places, colour)
 
 
 def bearing_of(place: FloatArray) -> float:

@@ -15,11 +15,11 @@ from latentarm.types import FloatArray, Pose
 BEFORE_M: Final = 0.08
 """How far before a cup the hand stops first."""
 
-LIFT_M: Final = 0.10
+LIFT_M: Final = 0.14
 """How far a cup is lifted."""
 
-LIFTED_M: Final = 0.05
-"""So far over the counter it counts as held."""
+LIFTED_M: Final = 0.10
+"""So far over the counter it counts as held: over whatever stands next to it."""
 
 POURING_M: Final = 0.14
 """How far over a bowl's rim the fingers are while they pour."""
@@ -59,13 +59,17 @@ def pour(
         share: of the grains that must be in the bowl, in (0, 1].
         side: 1 to pour to the left, -1 to the right.
     """
-    over = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.05 * side))
+    upright = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.05 * side))
     half = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.6 * POUR_RAD * side), speed=0.7)
     tilted = Waypoint(partial(_over, bowl=bowl, tilt_rad=POUR_RAD * side), wait_s=1.0, speed=0.5)
+    enough = Poured(grains, bowl, interior, share)
     return (
-        TaskStep("above", f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (over,)),
+        TaskStep("above", f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (upright,)),
         TaskStep(
-            "poured", f"{grains} in the {bowl}", Poured(grains, bowl, interior, share), (over, half, tilted)
+            "poured",
+            f"{grains} in the {bowl}",
+            enough,
+            (upright, half, tilted),
         ),
     )
 
@@ -87,6 +91,12 @@ def _lifted(state: SceneState, cup: str, height_m: float) -> Pose:
 
 def _over(state: SceneState, bowl: str, tilt_rad: float) -> Pose:
     return pouring(state.poses[bowl].position, tilt_rad, POURING_M)
+
+
+def over(state: SceneState, thing: str, height_m: float) -> Pose:
+    """The hand upright over a thing that stands on the counter."""
+    place = state.poses[thing].position + np.array([0.0, 0.0, height_m])
+    return hand(place, bearing_of(place))
 
 
 def at_place(state: SceneState, place: FloatArray, back_m: float = 0.0) -> Pose:

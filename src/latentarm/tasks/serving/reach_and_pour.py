@@ -8,13 +8,12 @@ import numpy as np
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.scene.containers import interior_of, packed
 from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Grains
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.predicates import Dropped, Spilled
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.serving.counter import (
+    FLOUR,
     GRAIN_KG,
     GRAIN_RADIUS_M,
     POSTURE_RAD,
@@ -23,6 +22,7 @@ from latentarm.tasks.serving.counter import (
     counter,
     counter_bowl,
     counter_cup,
+    filled,
     hand,
 )
 from latentarm.tasks.serving.cup_steps import pour, take
@@ -81,11 +81,11 @@ class ReachAndPour(SceneTask):
         """Cup and bowl anywhere in their regions of the counter."""
         cup = counter_cup("cup", *anywhere(CUP_AT_M, rng), colour=(0.36, 0.55, 0.75, 1.0))
         bowl = counter_bowl("bowl", *anywhere(BOWL_AT_M, rng))
-        room = interior_of(bowl)
-        flour = Grains("grains", GRAIN_RADIUS_M, GRAIN_KG, packed(cup, GRAINS, GRAIN_RADIUS_M))
+        room = bowl.room
+        grains = filled("grains", cup, GRAINS, GRAIN_RADIUS_M, GRAIN_KG, FLOUR)
         return Beginning(
             state=start(self.robot, rng),
-            scene=Scene((counter(), cup, bowl), (flour,)),
+            scene=Scene((counter(), cup, bowl), (grains,)),
             steps=(*take("cup"), *pour("cup", "grains", "bowl", room, POURED, side=1.0)),
             failures=(
                 Dropped("cup", TOP_M - 0.05),
