@@ -13,6 +13,9 @@ SCENE_TASKS: Final[Mapping[str, str]] = {
     "marshmallows": "latentarm.tasks.eating.marshmallows:Marshmallows",
     "entree": "latentarm.tasks.eating.entree:Entree",
     "dessert": "latentarm.tasks.eating.dessert:Dessert",
+    "avoid": "latentarm.tasks.serving.avoid:Avoid",
+    "reach_and_pour": "latentarm.tasks.serving.reach_and_pour:ReachAndPour",
+    "apple_pie": "latentarm.tasks.serving.apple_pie:ApplePie",
 }
 """The class of each, made without arguments."""
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import final
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.errors import UserError
@@ -67,10 +66,8 @@ def show(cell: ShownCell) -> Shown:
     with threadpool_limits(limits=1):
         for number in cell.numbers:
             choice = choice_of(task, number)
-            begun = task.begin(choice, _generator(cell.seed, cell.task, cell.stream, number))
-            rng = _generator(cell.seed, cell.task, cell.stream, number)
-            shown = demonstrate_once(task, choice, rng)
-            runs.append(shown_run(task, begun, number, shown))
+            shown = demonstrate_once(task, choice, generator(cell.seed, cell.task, cell.stream, number))
+            runs.append(shown_run(task, number, shown))
             demonstrations.append(replace(shown, states=()))
     return Shown(cell, tuple(runs), tuple(demonstrations))
 
@@ -194,9 +191,9 @@ def drive(cell: DriveCell) -> Driven:
         for number in cell.numbers:
             choice = choice_of(task, number)
             setup = TaskSetup(task, cell.driver.controller(task.robot, number), PEOPLE[cell.person])
-            begun = task.begin(choice, _generator(cell.seed, cell.task, Stream.RUNS, number))
-            trace = drive_task(setup, choice, _generator(cell.seed, cell.task, Stream.RUNS, number))
-            runs.append(driven_run(task, begun, number, trace))
+            # As of the demonstrator: the same scene and start for the same number, whoever moves the arm.
+            trace = drive_task(setup, choice, generator(cell.seed, cell.task, Stream.RUNS, number))
+            runs.append(driven_run(task, number, trace))
         return Driven(cell.task, cell.driver.condition, tuple(runs), perf_counter() - began)
 
 
@@ -222,8 +219,3 @@ def training_set(task: str, shown: Sequence[Shown]) -> Demonstrations:
 def blocks(count: int, size: int) -> list[range]:
     """The numbers 0 to ``count``, in blocks for the cells of a grid."""
     return [range(first, min(first + size, count)) for first in range(0, count, size)]
-
-
-def _generator(seed: int, task: str, stream: Stream, number: int) -> np.random.Generator:
-    """The same scene and start for the same number, whoever moves the arm."""
-    return generator(seed, task, stream, number)

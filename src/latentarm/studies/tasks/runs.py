@@ -14,7 +14,8 @@ from latentarm.models.kind import Decoder
 from latentarm.robots.robot import Robot
 from latentarm.simulation.demonstrate import Demonstration
 from latentarm.simulation.task_drive import TaskTrace
-from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.scene_task import SceneTask
+from latentarm.tasks.steps import TaskStep
 
 DEMONSTRATOR: Final = "demonstrator"
 SWITCHING: Final = "end_effector"
@@ -75,6 +76,7 @@ class Run:
         steps: kinds of the task's steps, in order.
         done: how many of them were done.
         success: all of them, and nothing went wrong.
+        ended_in: the step that was not done, in words; "" where all were.
         why: why the run ended, in a few words.
         time_s: how long it took, s.
         figures: what is measured of a drive; None for the demonstrator, who has no stick.
@@ -85,6 +87,7 @@ class Run:
     steps: tuple[str, ...]
     done: int
     success: bool
+    ended_in: str
     why: str
     time_s: float
     figures: TaskDrive | None = None
@@ -104,32 +107,33 @@ def choice_of(task: SceneTask, number: int) -> int:
     return number % len(task.choices)
 
 
-def shown_run(task: SceneTask, begun: Beginning, number: int, shown: Demonstration) -> Run:
+def shown_run(task: SceneTask, number: int, shown: Demonstration) -> Run:
     """A run of the scripted demonstrator."""
     progress = shown.progress
     return Run(
         number=number,
         choice=task.choices[choice_of(task, number)],
-        steps=_kinds(begun),
+        steps=_kinds(progress.steps),
         done=progress.done,
         success=progress.succeeded,
+        ended_in="" if progress.step is None else progress.step.name,
         why=progress.failure or ("done" if progress.succeeded else "out of time"),
         time_s=shown.seconds,
     )
 
 
-def driven_run(task: SceneTask, begun: Beginning, number: int, trace: TaskTrace) -> Run:
+def driven_run(task: SceneTask, number: int, trace: TaskTrace) -> Run:
     """A run in which a simulated person drove."""
-    figures, steps = trace.figures, _kinds(begun)
     return Run(
         number=number,
         choice=task.choices[trace.choice],
-        steps=steps,
-        done=round(figures.steps_done * len(steps)),
-        success=figures.success,
+        steps=_kinds(trace.steps),
+        done=len(trace.done_s),
+        success=trace.figures.success,
+        ended_in=trace.ended_in,
         why=trace.why,
-        time_s=figures.time_s,
-        figures=figures,
+        time_s=trace.figures.time_s,
+        figures=trace.figures,
     )
 
 
@@ -150,5 +154,5 @@ def step_names(runs: Sequence[Run]) -> list[str]:
     ]
 
 
-def _kinds(begun: Beginning) -> tuple[str, ...]:
-    return tuple(step.kind for step in begun.steps)
+def _kinds(steps: Sequence[TaskStep]) -> tuple[str, ...]:
+    return tuple(step.kind for step in steps)
