@@ -1,7 +1,7 @@
-"""Draw ``docs/figures/tasks/<task>.png``: each task with things, done by latent actions, as a strip of 8 pictures.
+"""Draw ``docs/figures/tasks/<task>.png``: each task with things by latent actions, as a strip of 8 pictures.
 
 ``python scripts/film_strips.py dessert`` draws that of one task. Demonstrations and models are those of
-``latentarm reproduce tasks``; the strip shows the first of its runs that succeeds, and its heading says which.
+``latentarm reproduce tasks``; the strip shows the first of its runs that succeeds, and says which that is.
 """
 
 import argparse
@@ -57,8 +57,8 @@ def film(task: str, model: str, preset: Preset, seed: int, jobs: int) -> None:
         if trace.figures.success:
             times, pictures = watched.frames(CAMERAS.get(task, Camera()))
             heading = (
-                f"{look_of(task).label} by latent actions ({look_of(model).label}); run {number} of seed {seed};"
-                " person, arm and things simulated"
+                f"{look_of(task).label} by latent actions ({look_of(model).label}); run {number} of seed"
+                f" {seed}; person, arm and things simulated"
             )
             FIGURES.mkdir(parents=True, exist_ok=True)
             save_figure(strip(heading, times, pictures, trace), FIGURES / f"{task}.png")

@@ -35,8 +35,8 @@ HEAD_MM: Final = 7.0
 CHARACTERS: Final = 32
 """In a line under a picture."""
 
-AMBIENT: Final = 0.45
-DIFFUSE: Final = 0.45
+AMBIENT: Final = 0.5
+DIFFUSE: Final = 0.6
 """Light from all sides and from the camera."""
 
 Image = NDArray[np.uint8]
@@ -57,10 +57,10 @@ class Camera:
         height: pixels.
     """
 
-    look_at: tuple[float, float, float] = (0.45, 0.0, 0.15)
-    distance_m: float = 1.0
-    azimuth_deg: float = 150.0
-    elevation_deg: float = -22.0
+    look_at: tuple[float, float, float] = (0.5, 0.0, 0.15)
+    distance_m: float = 0.64
+    azimuth_deg: float = 155.0
+    elevation_deg: float = -36.0
     width: int = 480
     height: int = 360
 
@@ -123,6 +123,7 @@ def strip(heading: str, time_s: Sequence[float], pictures: Sequence[Image], trac
     down = -(-len(pictures) // ACROSS)
     figure = new_figure(ROW_MM * down + HEAD_MM, TWO_COLUMNS_MM)
     figure.suptitle(heading, fontsize=FONT_SIZE)
+    figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.02, wspace=0.0, hspace=0.0)
     panels = np.ravel(figure.subplots(down, ACROSS, squeeze=False))
     for axes in panels:
         axes.axis("off")
