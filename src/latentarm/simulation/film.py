@@ -32,7 +32,7 @@ ACROSS: Final = 4
 ROW_MM: Final = 41.0
 HEAD_MM: Final = 7.0
 
-CHARACTERS: Final = 32
+CHARACTERS: Final = 28
 """In a line under a picture."""
 
 AMBIENT: Final = 0.5
