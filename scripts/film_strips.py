@@ -26,7 +26,7 @@ from latentarm.tasks.scene_catalogue import SCENE_TASKS, make_scene_task
 
 FIGURES = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tasks"
 
-COUNTER = Camera(look_at=(0.5, 0.0, 0.35), distance_m=1.1, azimuth_deg=165.0, elevation_deg=-30.0)
+COUNTER = Camera(look_at=(0.45, 0.0, 0.33), distance_m=0.95, azimuth_deg=165.0, elevation_deg=-42.0)
 """For what stands on the counter, higher and farther apart than plates."""
 
 CAMERAS = {"avoid": COUNTER, "reach_and_pour": COUNTER, "apple_pie": COUNTER}
