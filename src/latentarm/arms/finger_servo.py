@@ -19,6 +19,12 @@ _STILL_M_S: Final = 0.002
 _STALLED_M: Final = 3e-4
 """Fingers that stand this far before where their servo pulls them press on something, m each."""
 
+_STALLED_S: Final = 0.05
+"""Fingers that have stalled for so long hold something, s."""
+
+_LEAST_N: Final = 0.2
+"""Fingers that may not press this hard hold nothing, N."""
+
 
 @final
 class FingerServo(SimulatedGripper):
@@ -29,8 +35,9 @@ class FingerServo(SimulatedGripper):
     finger with that force, and never with more. What is held this way stays held when commands end, when the
     arm stops, and when it is disabled.
 
-    A stalled gripper holds something: one that stands still before the commanded width while both servos
-    press. This is what it measures, not what is there; fingers that meet have nothing between them.
+    A stalled gripper holds something: one that has stood still before the commanded width for 50 ms, while
+    both servos press. This is what it measures, not what is there. Fingers that meet have nothing between
+    them.
 
     Args:
         gripper: what its manufacturer states.
@@ -58,13 +65,15 @@ class FingerServo(SimulatedGripper):
         self._per_step = 0.0
         data.qpos[self._positions] = self._target
         data.ctrl[self._servos] = self._target
-        self._lead = 0.0
+        self._lead = self._moved_s = 0.0
         self._press(gripper.force_n)
         self._measured: deque[tuple[float, GripperReading]] = deque()
         self.note()
 
     def prepare(self) -> bool:
         """Set the servos for the next time step; whether those after it need to be set anew."""
+        if not self._stalled():
+            self._moved_s = float(self._data.time)
         if self._target == self._goal:
             return False
         way = np.clip(self._goal - self._target, -self._per_step, self._per_step)
@@ -98,11 +107,15 @@ class FingerServo(SimulatedGripper):
         self._model.actuator_forcerange[self._servos] = -force_n, force_n
 
     def _reading(self) -> GripperReading:
-        width: FloatArray = self._data.qpos[self._positions]
-        speed = self._data.qvel[self._speeds]
-        pulled = width - self._target
-        stalled = pulled.min() > min(_STALLED_M, 0.5 * self._lead) and abs(speed.sum()) < _STILL_M_S
-        return GripperReading(float(width.sum()), bool(stalled))
+        holding = self._stalled() and float(self._data.time) - self._moved_s >= _STALLED_S
+        return GripperReading(float(self._data.qpos[self._positions].sum()), holding)
+
+    def _stalled(self) -> bool:
+        """Whether the fingers stand still although their servos press."""
+        pulled = float((self._data.qpos[self._positions] - self._target).min())
+        speed = abs(float(self._data.qvel[self._speeds].sum()))
+        enough = max(min(_STALLED_M, 0.5 * self._lead), 0.5 * _LEAST_N / self._stiffness)
+        return pulled > enough and speed < _STILL_M_S
 
 
 def add_finger_servos(spec: mujoco.MjSpec, gripper: Gripper, moved_kg: FloatArray) -> None:

@@ -236,7 +236,7 @@ def _world(
     if payload_kg > 0.0:
         _hang(spec, robot, payload_kg)
     if scene is not None:
-        add_scene(spec, scene, robot.attachment)
+        add_scene(spec, scene, robot.attachment, grips=robot.gripper is not None)
     spec.option.timestep = STEP_S
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     return spec.compile(), found

@@ -50,13 +50,14 @@ def stab_name(name: str) -> str:
     return f"stab {name}"
 
 
-def add_scene(spec: mujoco.MjSpec, scene: Scene, attachment: Attachment | None) -> None:
+def add_scene(spec: mujoco.MjSpec, scene: Scene, attachment: Attachment | None, *, grips: bool) -> None:
     """Add a scene to a robot's model.
 
     Args:
         spec: the robot's.
         scene: what stands about it.
         attachment: what the robot carries, or None.
+        grips: whether it has a gripper.
     """
     tined = attachment is not None and attachment.tines is not None
     if tined:
@@ -81,6 +82,10 @@ def add_scene(spec: mujoco.MjSpec, scene: Scene, attachment: Attachment | None) 
         spec.add_exclude(bodyname1=thing_body(bond.first), bodyname2=thing_body(bond.second))
     for grains in scene.grains:
         _add_grains(spec, grains)
+    if scene.grains and not grips:
+        # Grains in motion with nothing pinched among them: 135 instead of 220 us per step. What fingers hold
+        # makes conjugate gradients slower than Newton's method.
+        spec.option.solver = mujoco.mjtSolver.mjSOL_CG
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = 10.0
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE

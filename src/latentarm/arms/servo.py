@@ -138,7 +138,7 @@ def hold_still_joints(
             type=mujoco.mjtEq.mjEQ_JOINT,
             name1=joint.name,
             objtype=mujoco.mjtObj.mjOBJ_JOINT,
-            data=[held[at] - model.qpos0[at], *([0.0] * 11)],
+            data=[held[at] - model.qpos0[at], *([0.0] * (mujoco.mjNEQDATA - 1))],
         )
 
 

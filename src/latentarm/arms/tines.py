@@ -17,6 +17,9 @@ CUT_WITHIN_M: Final = 0.01
 _SPACING_M: Final = 0.001
 """Tines are looked at by points this far apart, m."""
 
+_CLEAR_M: Final = 0.003
+"""Food collides with tines again once they are this far out of it, m: more than they are thick."""
+
 _EQUALITY: Final = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 
 _Way = Literal["whole", "entered", "held", "loose", "parting"]
@@ -108,8 +111,8 @@ class TinesInFood:
         points = (self._points @ turn.T + place - self._data.xpos[food.body]) @ self._data.xmat[
             food.body
         ].reshape(3, 3)
-        within = food.contains(points)
-        if not within.any():
+        within = food.contains(points, 0.0)
+        if not within.any() and not food.contains(points, _CLEAR_M).any():
             if food.way != "parting" or not self._aligned(food, place, turn):
                 self._model.geom_conaffinity[food.geoms] = SOLID | TINE
                 food.way = "whole"
@@ -179,9 +182,12 @@ class _Served:
         self.weld = model.equality(stab_name(thing.name)).id
         self.way: _Way = "whole"
 
-    def contains(self, points: FloatArray) -> BoolArray:
-        """Whether points (..., 3) in its frame are in it."""
-        return np.array([_within(part, points) for part in self.thing.parts]).any(axis=0)
+    def contains(self, points: FloatArray, margin_m: float) -> BoolArray:
+        """Whether points (..., 3) in its frame are in it or this near."""
+        inside = np.zeros(points.shape[:-1], dtype=np.bool_)
+        for part in self.thing.parts:
+            inside |= _within(part, points, margin_m)
+        return inside
 
 
 @final
@@ -217,17 +223,18 @@ class _Joined:
         return self._top - float(lowest)
 
 
-def _within(part: Part, points: FloatArray) -> BoolArray:
-    """Whether points (..., 3) of a thing's frame are in a part of it."""
+def _within(part: Part, points: FloatArray, margin_m: float) -> BoolArray:
+    """Whether points (..., 3) of a thing's frame are in a part of it, or this near."""
     local = (points - part.position) @ rotation_of(np.array(part.quaternion))
     if part.shape == "box":
-        return (np.abs(local) <= part.size).all(axis=-1)
+        return (np.abs(local) - part.size).max(axis=-1) <= margin_m
     if part.shape == "sphere":
-        return np.linalg.norm(local, axis=-1) <= part.size[0]
+        return np.linalg.norm(local, axis=-1) <= part.size[0] + margin_m
     radius, half = part.size
+    radius += margin_m
     out, height = np.hypot(local[..., 0], local[..., 1]), np.abs(local[..., 2])
     if part.shape == "cylinder":
-        return (out <= radius) & (height <= half)
+        return (out <= radius) & (height <= half + margin_m)
     return np.hypot(out, np.maximum(height - half, 0.0)) <= radius
 
 

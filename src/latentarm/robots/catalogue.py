@@ -19,11 +19,11 @@ from latentarm.types import Demonstrations, StatedLimits, StrPath
 
 ROBOTS: dict[str, Callable[[], Robot]] = {
     "panda": panda,
+    "planar": planar,
+    "planar2": lambda: planar(arms=2),
     "panda_fork": cache(lambda: attach(panda(), "fork")),
     "panda_spoon": cache(lambda: attach(panda(), "spoon")),
     "panda_cup": cache(lambda: attach(panda(), "cup")),
-    "planar": planar,
-    "planar2": lambda: planar(arms=2),
 }
 """The built-in robots."""
 

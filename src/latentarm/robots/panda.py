@@ -231,7 +231,7 @@ def _add_fingers(spec: mujoco.MjSpec, hand: mujoco.MjsBody) -> None:
         name1=GRIPPER.joints[1],
         name2=GRIPPER.joints[0],
         objtype=mujoco.mjtObj.mjOBJ_JOINT,
-        data=[0.0, 1.0, *([0.0] * 10)],
+        data=[0.0, 1.0, *([0.0] * (mujoco.mjNEQDATA - 2))],
     )
     coupling.solref = [0.002, 1.0]
 

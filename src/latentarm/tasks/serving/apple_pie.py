@@ -16,6 +16,7 @@ from latentarm.tasks.eating.table import at
 from latentarm.tasks.predicates import CarriedOver, Dropped, KnockedOver, Placed, Spilled, Stirred, Within
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.serving.counter import (
+    BOWL_HEIGHT_M,
     FLOUR,
     GRAIN_KG,
     GRAIN_RADIUS_M,
@@ -36,13 +37,16 @@ Region = tuple[tuple[float, float], tuple[float, float]]
 SHELF_AT_M: Final[Region] = ((0.57, 0.61), (-0.27, -0.23))
 """Where the middle of the shelf is, x and y."""
 
-BOWL_AT_M: Final[Region] = ((0.55, 0.60), (0.06, 0.12))
+BOWL_AT_M: Final[Region] = ((0.55, 0.60), (0.05, 0.09))
 """Where the bowl stands."""
 
-BIN_AT_M: Final[Region] = ((0.52, 0.56), (0.30, 0.35))
+MIXING_RADIUS_M: Final = 0.075
+"""Of the bowl's floor: an apple and a spoon fit side by side."""
+
+BIN_AT_M: Final[Region] = ((0.50, 0.54), (0.34, 0.38))
 """Where the recycling bin stands."""
 
-SPOON_AT_M: Final = (0.68, 0.0)
+SPOON_AT_M: Final = (0.72, -0.08)
 """Where the spoon stands in its holder."""
 
 SHELF_M: Final = 0.02
@@ -66,11 +70,14 @@ SPILLED: Final = 0.25
 
 APPLE_RADIUS_M: Final = 0.028
 
+STAND_M: Final = 0.05
+"""How high the apple stands over the shelf: the hand that takes it stays over the cups."""
+
 SPOON_M: Final = 0.17
 """Length of the spoon."""
 
 STIR_TURNS: Final = 2.0
-STIR_RADIUS_M: Final = 0.03
+STIR_RADIUS_M: Final = 0.05
 STIR_POINTS: Final = 8
 """Places on the circle that the spoon is led round."""
 
@@ -142,17 +149,18 @@ _TAKEN: Final[Mapping[str, str]] = {"eggs": "egg cup", "flour": "flour cup", "ap
 def _things(shelf: FloatArray, bowl_at: FloatArray, bin_at: FloatArray) -> dict[str, Thing]:
     half = (0.05, APART_M + 0.05, SHELF_M / 2)
     board = Part("box", half, (0.0, 0.0, -SHELF_M / 2), colour=(0.8, 0.7, 0.55, 1.0))
+    stand = Part("cylinder", (0.02, STAND_M / 2), (0.0, -APART_M, STAND_M / 2), colour=(0.8, 0.7, 0.55, 1.0))
     cups = {
         "egg cup": (APART_M, (0.85, 0.85, 0.88, 1.0)),
         "flour cup": (0.0, (0.45, 0.35, 0.6, 1.0)),
     }
     things = [
         counter(),
-        Thing("shelf", (board,), 2.0, at(*shelf), fixed=True),
-        counter_bowl("bowl", *bowl_at),
+        Thing("shelf", (board, stand), 2.0, at(*shelf), fixed=True),
+        counter_bowl("bowl", *bowl_at, radius_m=MIXING_RADIUS_M),
         _bin(*bin_at),
         *_spoon(*SPOON_AT_M),
-        _apple(shelf + np.array([0.0, -APART_M, 0.0])),
+        _apple(shelf + np.array([0.0, -APART_M, STAND_M])),
     ]
     things += [
         counter_cup(name, shelf[0], shelf[1] + aside, colour, SHELF_M)
@@ -179,14 +187,16 @@ def _spoon(x: float, y: float) -> tuple[Thing, Thing]:
     made = cup(0.016, 0.06, (0.5, 0.5, 0.52, 1.0))
     holder = Thing("holder", made.parts, 0.3, at(x, y, TOP_M), fixed=True)
     steel = (0.7, 0.7, 0.72, 1.0)
-    handle = Part("capsule", (0.008, SPOON_M / 2 - 0.016), (0.0, 0.0, SPOON_M / 2 + 0.008), colour=steel)
+    handle = Part("box", (0.008, 0.008, SPOON_M / 2 - 0.008), (0.0, 0.0, SPOON_M / 2 + 0.008), colour=steel)
     end = Part("sphere", (0.012,), (0.0, 0.0, 0.012), colour=steel)
-    return holder, Thing("spoon", (handle, end), 0.05, at(x, y, TOP_M + 0.003), friction=1.0)
+    # Its handle is flat to the fingers of a hand that comes from the base.
+    pose = at(x, y, TOP_M + 0.003, float(np.arctan2(y, x)))
+    return holder, Thing("spoon", (handle, end), 0.05, pose, friction=1.0)
 
 
 def _eggs(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> tuple[TaskStep, ...]:
     return (
-        *take("egg cup"),
+        *take("egg cup", TOP_M + SHELF_M),
         *pour("egg cup", "eggs", "bowl", rooms["bowl"], POURED, side=1.0),
         _away("egg cup", rooms["bin"]),
     )
@@ -195,28 +205,29 @@ def _eggs(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> tuple[T
 def _flour(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> tuple[TaskStep, ...]:
     back = things["flour cup"].pose.position
     return (
-        *take("flour cup"),
+        *take("flour cup", TOP_M + SHELF_M),
         *pour("flour cup", "flour", "bowl", rooms["bowl"], POURED, side=1.0),
         _back("flour cup", back),
     )
 
 
 def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> tuple[TaskStep, ...]:
-    height = APPLE_RADIUS_M
+    carry = Waypoint(partial(over, thing="bowl", height_m=0.22))
     drop = Waypoint(partial(over, thing="bowl", height_m=0.10), gripper="open", wait_s=0.8)
     spoon_up = 0.115
-    circle = [
-        Waypoint(partial(_stirring, angle_rad=2 * np.pi * index / STIR_POINTS, up_m=spoon_up + 0.012))
-        for index in range(STIR_POINTS)
-    ]
+    circle = _Circle(spoon_up + 0.012)
+    round_it = [Waypoint(partial(circle.pose, index=index)) for index in range(STIR_POINTS)]
     above = Waypoint(partial(over, thing="bowl", height_m=spoon_up + 0.10))
+    stirred = Stirred("spoon", "bowl", rooms["bowl"], STIR_TURNS)
     return (
-        *take("apple", height),
-        TaskStep("above", "the apple over the bowl", CarriedOver("apple", "bowl", 0.04), (drop,)),
-        TaskStep("placed", "the apple in the bowl", Within("apple", "bowl", rooms["bowl"]), (drop,)),
-        *take("spoon", spoon_up),
+        *take("apple", TOP_M + SHELF_M + STAND_M, APPLE_RADIUS_M),
+        TaskStep("above", "the apple over the bowl", CarriedOver("apple", "bowl", 0.04), (carry,)),
+        TaskStep("placed", "the apple in the bowl", Within("apple", "bowl", rooms["bowl"]), (carry, drop)),
+        *take("spoon", TOP_M, spoon_up),
         TaskStep("above", "the spoon over the bowl", CarriedOver("spoon", "bowl", 0.04), (above,)),
-        TaskStep("stirred", "stirred", Stirred("spoon", "bowl", rooms["bowl"], STIR_TURNS), tuple(circle)),
+        TaskStep(
+            "stirred", "stirred", stirred, (above, *round_it)
+        ),
     )
 
 
@@ -240,10 +251,27 @@ def _back(cup: str, place: FloatArray) -> TaskStep:
     return TaskStep("placed", f"the {cup} back on the shelf", done, (upright, above, down, clear))
 
 
-def _stirring(state: SceneState, angle_rad: float, up_m: float) -> Pose:
-    pose = state.poses["bowl"]
-    circle = STIR_RADIUS_M * np.array([np.cos(angle_rad), np.sin(angle_rad), 0.0])
-    return at_place(state, pose.position + circle + np.array([0.0, 0.0, up_m]))
+@final
+class _Circle:
+    """Where the hand leads the spoon, from opposite the apple once round the bowl.
+
+    Args:
+        up_m: height of the hand over the bowl's underside, m.
+    """
+
+    def __init__(self, up_m: float) -> None:
+        self._up_m = up_m
+        self._entered_rad = 0.0
+
+    def pose(self, state: SceneState, index: int) -> Pose:
+        """A place on the circle; where it begins is settled while the spoon is still over the bowl."""
+        middle = state.poses["bowl"].position
+        if state.poses["spoon"].position[2] > middle[2] + BOWL_HEIGHT_M:
+            apple = state.poses["apple"].position - middle
+            self._entered_rad = float(np.arctan2(apple[1], apple[0])) + np.pi
+        angle = self._entered_rad + 2.0 * np.pi * index / STIR_POINTS
+        circle = STIR_RADIUS_M * np.array([np.cos(angle), np.sin(angle), 0.0])
+        return at_place(state, middle + circle + np.array([0.0, 0.0, self._up_m]))
 
 
 _STEPS: Final = {"eggs": _eggs, "flour": _flour, "apple": _apple_steps}

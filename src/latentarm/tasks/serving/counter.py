@@ -51,9 +51,9 @@ def counter_cup(name: str, x: float, y: float, colour: Colour, up_m: float = 0.0
     return Thing(name, made.parts, 0.06, at(x, y, TOP_M + up_m), friction=1.0, interior=made.interior)
 
 
-def counter_bowl(name: str, x: float, y: float) -> Thing:
-    """A bowl that stays where it stands on the counter."""
-    made = bowl(BOWL_RADIUS_M, BOWL_HEIGHT_M)
+def counter_bowl(name: str, x: float, y: float, radius_m: float = BOWL_RADIUS_M) -> Thing:
+    """A bowl that stays where it stands on the counter; the radius is that of its floor, m."""
+    made = bowl(radius_m, BOWL_HEIGHT_M)
     return Thing(name, made.parts, 0.5, at(x, y, TOP_M), fixed=True, interior=made.interior)
 
 

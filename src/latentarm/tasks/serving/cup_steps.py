@@ -19,7 +19,7 @@ LIFT_M: Final = 0.14
 """How far a cup is lifted."""
 
 LIFTED_M: Final = 0.10
-"""So far over the counter it counts as held: over whatever stands next to it."""
+"""So far over where it stood it counts as held: over whatever stands next to it."""
 
 POURING_M: Final = 0.14
 """How far over a bowl's rim the fingers are while they pour."""
@@ -28,21 +28,22 @@ POUR_RAD: Final = 1.8
 """How far a cup is tilted to be emptied."""
 
 
-def take(cup: str, grip_m: float = GRIP_M) -> tuple[TaskStep, ...]:
-    """Reach for a cup on the counter, close the fingers about it, lift it.
+def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[TaskStep, ...]:
+    """Reach for a cup, close the fingers about it, lift it.
 
     Args:
         cup: its name.
+        stands_m: height of its underside, m.
         grip_m: height over its underside at which it is taken, m.
     """
     before = Waypoint(partial(_at, cup=cup, back_m=BEFORE_M, up_m=grip_m), gripper="open")
     about = Waypoint(
         partial(_at, cup=cup, back_m=0.0, up_m=grip_m), within_m=0.007, gripper="close", wait_s=1.2, speed=0.6
     )
-    lifted = Waypoint(partial(_lifted, cup=cup, height_m=TOP_M + grip_m + LIFT_M))
+    lifted = Waypoint(partial(_lifted, cup=cup, height_m=stands_m + grip_m + LIFT_M))
     return (
         TaskStep("reached", f"at the {cup}", before.reached, (before,)),
-        TaskStep("holding", f"holding the {cup}", Holding(cup, TOP_M + LIFTED_M), (before, about, lifted)),
+        TaskStep("holding", f"holding the {cup}", Holding(cup, stands_m + LIFTED_M), (before, about, lifted)),
     )
 
 
