@@ -24,6 +24,9 @@ _GRAIN_DRAG_S: Final = 0.1
 _ROLLING: Final = (0.005, 0.0001)
 """Friction against turning on the spot and against rolling, m."""
 
+_STIFF: Final = (0.005, 1.0)
+"""What hits something at 1 m/s enters it by 2 mm, less than the wall of a container; by 7 mm with MuJoCo's 0.02."""
+
 _TABLE_FRICTION: Final = (0.8, 0.005, 0.0001)
 _TABLE_COLOUR: Final = (0.72, 0.66, 0.58, 1.0)
 _DRAWN_HALF_M: Final = 2.0
@@ -103,6 +106,7 @@ def _add_thing(spec: mujoco.MjSpec, thing: Thing) -> None:
     for geom in add_parts(body, thing.parts, thing.mass_kg):
         geom.friction = [thing.friction, *_ROLLING]
         geom.condim = 4
+        geom.solref = _STIFF
         geom.contype, geom.conaffinity = SOLID, SOLID | TINE
 
 
@@ -121,6 +125,7 @@ def _add_grains(spec: mujoco.MjSpec, grains: Grains) -> None:
             mass=grains.mass_kg,
             condim=1,
             priority=2,
+            solref=_STIFF,
             contype=SOLID,
             conaffinity=SOLID | TINE,
         )

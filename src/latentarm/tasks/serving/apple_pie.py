@@ -216,6 +216,7 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
     drop = Waypoint(partial(over, thing="bowl", height_m=0.10), gripper="open", wait_s=0.8)
     spoon_up = 0.115
     circle = _Circle(spoon_up + 0.012)
+    enter = Waypoint(partial(circle.pose, index=0, up_m=BOWL_HEIGHT_M + 0.03))
     round_it = [Waypoint(partial(circle.pose, index=index)) for index in range(STIR_POINTS)]
     above = Waypoint(partial(over, thing="bowl", height_m=spoon_up + 0.10))
     stirred = Stirred("spoon", "bowl", rooms["bowl"], STIR_TURNS)
@@ -225,9 +226,7 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
         TaskStep("placed", "the apple in the bowl", Within("apple", "bowl", rooms["bowl"]), (carry, drop)),
         *take("spoon", TOP_M, spoon_up),
         TaskStep("above", "the spoon over the bowl", CarriedOver("spoon", "bowl", 0.04), (above,)),
-        TaskStep(
-            "stirred", "stirred", stirred, (above, *round_it)
-        ),
+        TaskStep("stirred", "stirred", stirred, (enter, *round_it)),
     )
 
 
@@ -263,15 +262,15 @@ class _Circle:
         self._up_m = up_m
         self._entered_rad = 0.0
 
-    def pose(self, state: SceneState, index: int) -> Pose:
-        """A place on the circle; where it begins is settled while the spoon is still over the bowl."""
+    def pose(self, state: SceneState, index: int, up_m: float = 0.0) -> Pose:
+        """A place on or over the circle; where it begins is settled while the spoon is over the bowl."""
         middle = state.poses["bowl"].position
         if state.poses["spoon"].position[2] > middle[2] + BOWL_HEIGHT_M:
             apple = state.poses["apple"].position - middle
             self._entered_rad = float(np.arctan2(apple[1], apple[0])) + np.pi
         angle = self._entered_rad + 2.0 * np.pi * index / STIR_POINTS
         circle = STIR_RADIUS_M * np.array([np.cos(angle), np.sin(angle), 0.0])
-        return at_place(state, middle + circle + np.array([0.0, 0.0, self._up_m]))
+        return at_place(state, middle + circle + np.array([0.0, 0.0, self._up_m + up_m]))
 
 
 _STEPS: Final = {"eggs": _eggs, "flour": _flour, "apple": _apple_steps}
