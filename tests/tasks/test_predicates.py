@@ -117,17 +117,18 @@ def test_only_the_way_through_the_icing_counts():
 @given(st.integers(0, 1000), st.booleans())
 def test_stirring_counts_whole_turns_in_either_direction(seed, clockwise):
     rng = np.random.default_rng(seed)
-    stirred = p.Stirred("cup", BOWL, turns=1.5)
+    stirred = p.Stirred("spoon", "cup", BOWL, turns=1.5)
     steps = rng.uniform(0.05, 1.0, 60)
     turned, start = 0.0, rng.uniform(0, 2 * np.pi)
     for step in (0.0, *steps):
         turned += step
         angle = start + (-turned if clockwise else turned)
         place = at(x=0.03 * np.cos(angle), y=0.03 * np.sin(angle), z=0.02)
-        assert stirred(standing(tool=place)) == (turned >= 3 * np.pi)
+        assert stirred(standing(poses={"spoon": place})) == (turned >= 3 * np.pi)
 
 
 def test_going_round_above_the_bowl_is_not_stirring():
-    stirred = p.Stirred("cup", BOWL, turns=1.0)
+    stirred = p.Stirred("spoon", "cup", BOWL, turns=1.0)
     for angle in np.linspace(0.0, 6 * np.pi, 60):
-        assert not stirred(standing(tool=at(x=0.03 * np.cos(angle), y=0.03 * np.sin(angle), z=0.1)))
+        over = at(x=0.03 * np.cos(angle), y=0.03 * np.sin(angle), z=0.1)
+        assert not stirred(standing(poses={"spoon": over}))
