@@ -48,7 +48,14 @@ def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[Tas
 
 
 def pour(
-    cup: str, grains: str, bowl: str, interior: Interior, share: float, side: float
+    cup: str,
+    grains: str,
+    bowl: str,
+    interior: Interior,
+    share: float,
+    side: float,
+    tip_speed: float = 0.5,
+    leaving: tuple[str, float] | None = None,
 ) -> tuple[TaskStep, ...]:
     """Carry a cup over a bowl, and pour it out.
 
@@ -59,19 +66,19 @@ def pour(
         interior: the room in the bowl.
         share: of the grains that must be in the bowl, in (0, 1].
         side: 1 to pour to the left, -1 to the right.
+        tip_speed: how fast the cup is tipped at last, as a share of the person's usual speed.
+        leaving: bowl and side that were poured to before: first the cup is set upright there.
     """
     upright = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.05 * side))
     half = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.6 * POUR_RAD * side), speed=0.7)
-    tilted = Waypoint(partial(_over, bowl=bowl, tilt_rad=POUR_RAD * side), wait_s=1.0, speed=0.5)
+    tilted = Waypoint(partial(_over, bowl=bowl, tilt_rad=POUR_RAD * side), wait_s=1.0, speed=tip_speed)
+    before = ()
+    if leaving is not None:
+        before = (Waypoint(partial(_over, bowl=leaving[0], tilt_rad=0.05 * leaving[1])),)
     enough = Poured(grains, bowl, interior, share)
     return (
-        TaskStep("above", f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (upright,)),
-        TaskStep(
-            "poured",
-            f"{grains} in the {bowl}",
-            enough,
-            (upright, half, tilted),
-        ),
+        TaskStep("above", f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (*before, upright)),
+        TaskStep("poured", f"{grains} in the {bowl}", enough, (upright, half, tilted)),
     )
 
 
