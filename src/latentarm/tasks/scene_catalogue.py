@@ -14,6 +14,7 @@ SCENE_TASKS: Final[Mapping[str, str]] = {
     "entree": "latentarm.tasks.eating.entree:Entree",
     "dessert": "latentarm.tasks.eating.dessert:Dessert",
     "avoid": "latentarm.tasks.serving.avoid:Avoid",
+    "pour": "latentarm.tasks.serving.pour:Pour",
     "reach_and_pour": "latentarm.tasks.serving.reach_and_pour:ReachAndPour",
     "apple_pie": "latentarm.tasks.serving.apple_pie:ApplePie",
 }
