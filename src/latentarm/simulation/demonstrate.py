@@ -1,6 +1,6 @@
 """Demonstrations of a task with things: a simulated person guides the arm through its steps, in physics."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -124,17 +124,20 @@ def demonstrate(
     all_of_them = run_grid(
         _demonstrate, calls, jobs=jobs, backend="joblib", label=_name_of, bars=bars, unit="demonstrations"
     )
-    kept = tuple(one.episode for one in all_of_them if one.progress.succeeded)
+    return dataset_of(task, all_of_them), all_of_them
+
+
+def dataset_of(task: SceneTask, demonstrations: Sequence[Demonstration]) -> Demonstrations:
+    """Those demonstrations of a task that succeeded, as a dataset."""
     robot = task.robot
-    dataset = Demonstrations(
-        episodes=kept,
+    return Demonstrations(
+        episodes=tuple(one.episode for one in demonstrations if one.progress.succeeded),
         rate_hz=1.0 / (PERIOD_S * SAMPLE_TICKS),
         joint_names=robot.joint_names,
         robot=robot.name,
         end_effector=robot.end_effector,
         limits=robot.stated_limits,
     )
-    return dataset, all_of_them
 
 
 @final

@@ -1,5 +1,6 @@
 """A marshmallow stabbed, drawn through icing and dipped in rice: the paper's *Dessert*, in physics."""
 
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Final, final
 
@@ -108,7 +109,7 @@ class Dessert(SceneTask):
             "rice",
             RICE_RADIUS_M,
             2e-4,
-            packed(made.interior, dish.pose, RICE, RICE_RADIUS_M),
+            packed(replace(made.interior, radius_m=BOWL_RADIUS_M), dish.pose, RICE, RICE_RADIUS_M),
             colour=(0.97, 0.96, 0.92, 1.0),
         )
         things = (
