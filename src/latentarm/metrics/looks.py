@@ -33,6 +33,8 @@ LOOKS: Final[dict[str, Look]] = {
     "marshmallows": Look("Marshmallows", "#CC79A7", "v", "-."),
     "entree": Look("Entree", "#009E73", "D", "--"),
     "dessert": Look("Dessert", "#000000", "o", "-"),
+    "avoid": Look("Avoid", "#D55E00", "X", "--"),
+    "apple_pie": Look("Apple pie", "#882255", "^", "-"),
 }
 """Of conditions and tasks; a model's look is that of its kind."""
 
