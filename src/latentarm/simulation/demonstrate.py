@@ -221,7 +221,7 @@ def _episode(begun: Beginning, samples: list[tuple[Reading, Command]], states: l
         extras["action.gripper"] = np.array(_targets(samples, widths[0]))[:, None]
     return Episode(
         state=np.stack([reading.q for reading, _ in samples]),
-        timestamp=np.arange(len(samples)) * PERIOD_S * SAMPLE_TICKS,
+        timestamp=np.arange(len(samples), dtype=np.float64) * (PERIOD_S * SAMPLE_TICKS),
         task=begun.text,
         extras=extras,
     )

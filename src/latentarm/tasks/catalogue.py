@@ -40,13 +40,27 @@ SCENE_TASKS: Final = Catalogue(
         "marshmallows": "latentarm.tasks.eating.marshmallows:Marshmallows",
         "entree": "latentarm.tasks.eating.entree:Entree",
         "dessert": "latentarm.tasks.eating.dessert:Dessert",
-        "apple_pie": "latentarm.tasks.serving.apple_pie:ApplePie",
         "avoid": "latentarm.tasks.serving.avoid:Avoid",
+        "pour": "latentarm.tasks.serving.pour:Pour",
         "reach_and_pour": "latentarm.tasks.serving.reach_and_pour:ReachAndPour",
+        "apple_pie": "latentarm.tasks.serving.apple_pie:ApplePie",
     },
     _scene_task,
 )
 """Tasks with things, which are done in physics; each is made without arguments."""
+
+
+def make_scene_task(name: str) -> SceneTask:
+    """A task with things.
+
+    Args:
+        name: a name in `SCENE_TASKS`.
+
+    Raises:
+        UserError: there is no such task, or it does not load.
+    """
+    return SCENE_TASKS.find(name, "--task")()
+
 
 HELD_OUT: Final = "held_out"
 """Following the held-out episodes of a run, `Replay`: a task that only a run can make."""

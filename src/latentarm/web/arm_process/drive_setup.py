@@ -19,7 +19,7 @@ from latentarm.errors import UserError
 from latentarm.runs.folder import read_run, weights_fingerprint
 from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.scene.scene import Scene
-from latentarm.tasks.catalogue import SCENE_TASKS
+from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.place import Place, ScenePlace
 from latentarm.types import FloatArray
 from latentarm.web.arm_process.ghosts import Help
@@ -198,7 +198,7 @@ def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None]:
     """Where the arm is driven, where it starts, (n,), rad, and what is about it: the same for equal specs."""
     rng = np.random.default_rng(spec.seed)
     if spec.task is not None and spec.task in SCENE_TASKS:
-        with_things = SCENE_TASKS[spec.task]()
+        with_things = make_scene_task(spec.task)
         begun = with_things.begin(0, rng)
         _check_things(spec.task, begun.scene)
         # Made here too, so that an arm that can touch nothing is refused where the command was typed.
