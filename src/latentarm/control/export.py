@@ -11,7 +11,9 @@ import numpy as np
 from latentarm.control.journal import JournalEpisode, read_journal
 from latentarm.control.recorded_states import first_implausible
 from latentarm.control.recorder import EpisodeHeader
+from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
+from latentarm.kinematics.pose_rows import stored_rows
 from latentarm.robots.limits import JointLimits
 from latentarm.types import Demonstrations, Episode, FloatArray
 
@@ -34,8 +36,8 @@ def demonstrations_of(
 
     The command is the action. Further features: ``input.u``, ``latent.z``, ``action.human``,
     ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief``, ``assist.bound``
-    (rad; -1 where nothing helps) and ``observation.environment_state`` (position and rotation matrix of
-    every goal, row by row).
+    (rad; -1 where nothing helps) and ``observation.environment_state`` (poses of the goals, which are the
+    dataset's objects).
     Time starts at each episode's first sample. Incomplete episodes are skipped unless asked for. An episode
     is cut before its first impossible sample (see `first_implausible`).
 
@@ -70,6 +72,7 @@ def demonstrations_of(
         goals=first.goals,
         end_effector=first.end_effector,
         limits=first.limits,
+        objects=tuple(names),
     )
 
 
@@ -140,8 +143,8 @@ def _episode(recorded: JournalEpisode) -> Episode:
         extras["belief"] = np.stack([record.belief for record in records])
         bound = np.array([[record.bound_rad] for record in records])
         extras["assist.bound"] = np.where(np.isnan(bound), NO_BOUND, bound)
-        poses = [np.concatenate([goal.pose.position, goal.pose.rotation.ravel()]) for goal in goals]
-        extras["observation.environment_state"] = np.tile(np.concatenate(poses), (len(records), 1))
+        poses = [stored_rows(goal.pose) for goal in goals]
+        extras[ENVIRONMENT] = np.tile(np.concatenate(poses), (len(records), 1))
     return Episode(
         state=np.stack([record.state for record in records]),
         timestamp=time_s - time_s[0],

@@ -6,6 +6,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.context import GRIPPER, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
 from latentarm.types import BoolArray, FloatArray
 
 CONSTANT_SPREAD: Final = 1e-6
@@ -47,6 +48,53 @@ def context_normaliser(context: FloatArray) -> Normaliser:
     """
     spread = context.std(axis=0)
     return Normaliser(centre=context.mean(axis=0), scale=np.where(spread > CONSTANT_SPREAD, spread, 1.0))
+
+
+STILL: Final = {GRIPPER: 0.001, OBJECTS: 0.005, OBJECTS_IN_TOOL: 0.005}
+"""A position or an opening that varies less than this, m, in the training data tells nothing; so does an
+entry of a rotation that varies less than ten times as much."""
+
+LEAST_SCALE: Final = {GRIPPER: 0.005, OBJECTS: 0.05, OBJECTS_IN_TOOL: 0.05}
+"""Least scale of a position or an opening, m; that of an entry of a rotation is ten times as large. Without
+it a cup that moved by a centimetre in training and stands 30 cm elsewhere would be seen at 30 times the
+training's spread, where no network has learned anything."""
+
+UNSEEN: Final = 1e9
+"""Scale of a feature that tells nothing. The network's weights for it are as they were drawn, since its
+normalised value in training was zero; with this scale it stays zero, wherever the thing stands."""
+
+_ROTATION: Final = 10.0
+
+
+def feature_normaliser(context: FloatArray, layout: ContextLayout) -> Normaliser:
+    """A normaliser of each feature of a context on its own.
+
+    Joints and belief have zero mean and unit spread, as `context_normaliser` has them. The gripper's opening
+    is centred in its range and divided by half of it. Poses of things have zero mean and are divided by their
+    spread, or by `LEAST_SCALE` where that is larger. An opening or an entry of a pose that did not vary
+    (`STILL`) is not seen at all: the decoder is then what it would be without.
+
+    Args:
+        context: (N, c), with poses for `OBJECTS_IN_TOOL` in the tool's frame.
+        layout: of these contexts.
+    """
+    plain = context_normaliser(context)
+    centre, scale = plain.centre.copy(), plain.scale.copy()
+    for feature in layout.features:
+        if feature not in STILL:
+            continue
+        columns = layout.columns(feature)
+        values = context[:, columns]
+        unit = np.ones(values.shape[1])
+        if feature == GRIPPER:
+            low, high = values.min(axis=0), values.max(axis=0)
+            centre[columns], spread = (low + high) / 2, (high - low) / 2
+        else:
+            spread = values.std(axis=0)
+            unit[np.arange(len(unit)) % OBJECT >= 3] = _ROTATION
+        told = spread > unit * STILL[feature]
+        scale[columns] = np.where(told, np.maximum(spread, unit * LEAST_SCALE[feature]), UNSEEN)
+    return Normaliser(centre, scale)
 
 
 def action_normaliser(action: FloatArray) -> Normaliser:

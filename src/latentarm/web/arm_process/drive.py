@@ -12,7 +12,7 @@ from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.demonstrations.provenance import provenance_now
-from latentarm.types import Context, StepRecord, Stop
+from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.page_inputs import PageInputs
@@ -273,7 +273,7 @@ class Drive:
         """Deferrable work: ghosts, one direction a tick, and the loop's statistics."""
         phase = self._steering.tick % _LOOK_EVERY
         if phase < 4:
-            self._ghosts.look(phase, Context(self._seen, record.belief), record.mode)
+            self._ghosts.look(phase, self._step.context(self._seen), record.mode)
         elif self._steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
             statistics = self._loop.statistics()
             self._late_share = 1.0 - statistics.met_share

@@ -18,6 +18,7 @@ from latentarm.controllers.latent import latent_controller
 from latentarm.errors import UserError
 from latentarm.runs.folder import read_run, weights_fingerprint
 from latentarm.runs.tasks import task_of_run, task_without_run
+from latentarm.tasks.surroundings import surroundings_of
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray
 from latentarm.web.arm_process.ghosts import Help
@@ -137,6 +138,7 @@ class DriveSetup:
             belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
             arbitration=self.help if self.task.goals else None,
             dt_s=PERIOD_S,
+            surroundings=surroundings_of(self.task, self.controller.objects),
         )
 
 
@@ -171,6 +173,7 @@ def load_setup(spec: Spec) -> DriveSetup:
     else:
         task = task_of_run(read_run(spec.run), option=False)
         latent = latent_controller(spec.run, spec.profile, task.robot)
+        surroundings_of(task, latent.objects)  # fails now rather than when the arm is driven
     if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
         raise UserError(
             f"{spec.run} has {task.robot.dof} joints and {len(task.goals)} goals: the page drives"
