@@ -1,12 +1,13 @@
 """Demonstrations of a task with things: a simulated person guides the arm through its steps, in physics."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, final
 
 import numpy as np
 
 from latentarm.arms.catalogue import make_scene_arm
+from latentarm.arms.contract import SceneArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.parallel.grid import run_grid
 from latentarm.scene.scene import SceneState
@@ -60,6 +61,7 @@ def demonstrate_once(
     rng: np.random.Generator,
     hand: GuidingHand | None = None,
     arm: str = "mujoco",
+    watch: Callable[[SceneArm], None] | None = None,
 ) -> Demonstration:
     """Guide an arm through one run of a task.
 
@@ -72,6 +74,7 @@ def demonstrate_once(
         rng: source of all variation.
         hand: how the simulated person moves.
         arm: a simulated arm of the catalogue that can have things about it.
+        watch: sees the arm at every period, such as a camera.
 
     Raises:
         UserError: the arm cannot be used.
@@ -87,6 +90,8 @@ def demonstrate_once(
             clock.wait_until(tick * PERIOD_S)
             state, reading = driven.scene_state(), driven.read()
             person.progress.update(state)
+            if watch is not None:
+                watch(driven)
             command = person.command(state, reading, clock.now_s())
             if tick % SAMPLE_TICKS == 0:
                 samples.append((reading, command))

@@ -1,12 +1,14 @@
 """One simulated drive at a task with things, in physics: an operator, Algorithm 1, its filters, an arm."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, final
 
 import numpy as np
 
 from latentarm.arms.catalogue import make_scene_arm
-from latentarm.arms.contract import check_arm
+from latentarm.arms.contract import SceneArm, check_arm
+from latentarm.assistance.blending import Arbitration
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
@@ -39,12 +41,14 @@ class TaskSetup:
         task: what is to be done.
         controller: what the simulated operator steers with.
         person: the simulated person who drives.
+        arbitration: how much the robot helps towards its belief over the goals; None never helps.
         arm: what moves, a simulated arm of the catalogue that can have things about it.
     """
 
     task: SceneTask
     controller: Controller
     person: Person
+    arbitration: Arbitration | None = None
     arm: str = "mujoco"
 
 
@@ -72,13 +76,19 @@ class TaskTrace:
     states: tuple[SceneState, ...]
 
 
-def drive_task(setup: TaskSetup, choice: int, rng: np.random.Generator) -> TaskTrace:
+def drive_task(
+    setup: TaskSetup,
+    choice: int,
+    rng: np.random.Generator,
+    watch: Callable[[SceneArm], None] | None = None,
+) -> TaskTrace:
     """Drive once, until the task is done, has failed, or the time is over.
 
     Args:
         setup: who drives what.
         choice: index into the task's choices.
         rng: of the things' places and of the simulated operator.
+        watch: sees the arm at every tick, such as a camera.
 
     Raises:
         UserError: the arm cannot be used.
@@ -89,7 +99,7 @@ def drive_task(setup: TaskSetup, choice: int, rng: np.random.Generator) -> TaskT
     step = _step(setup, begun)
     limits = LoopLimits(step.dead_zone, step.joint_speed)
     operator = SimulatedPerson(task.robot, setup.person, step.dt_s, limits)
-    watch = _Watch(begun)
+    follow = _Watch(begun)
     with make_scene_arm(setup.arm, task.robot, begun.state, clock.now_s, begun.scene) as arm:
         check_arm(arm.spec, task.robot)
         reading = arm.read()
@@ -100,14 +110,16 @@ def drive_task(setup: TaskSetup, choice: int, rng: np.random.Generator) -> TaskT
         for tick in range(1, int(task.time_limit_s * RATE_HZ) + 1):
             clock.wait_until(tick * step.dt_s)
             reading, state = arm.read(), arm.scene_state()
-            watch.sees(state)
-            if watch.ended is not None:
+            follow.sees(state)
+            if watch is not None:
+                watch(arm)
+            if follow.ended is not None:
                 break
-            given = _given(operator, reading, state, watch.progress, step, controller, rng)
+            given = _given(operator, reading, state, follow.progress, step, controller, rng)
             record = step(given, 0.0, reading, clock.now_s())
-            watch.records.append(record)
+            follow.records.append(record)
             arm.send(record.command)
-    return watch.trace(choice)
+    return follow.trace(choice)
 
 
 def _step(setup: TaskSetup, begun: Beginning) -> Step:
@@ -121,6 +133,7 @@ def _step(setup: TaskSetup, begun: Beginning) -> Step:
         SafetyConfig(obstacles=setup.task.obstacles),
         goals=begun.goals,
         belief=belief,
+        arbitration=setup.arbitration if begun.goals else None,
         dt_s=1.0 / RATE_HZ,
     )
 

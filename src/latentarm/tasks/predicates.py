@@ -54,6 +54,28 @@ class Stabbed:
 
 @final
 @dataclass(frozen=True)
+class CarriedOver:
+    """A thing that the arm holds is over another one.
+
+    Attributes:
+        thing: its name.
+        over: the other's name.
+        aside_m: how far aside it may be, m.
+    """
+
+    thing: str
+    over: str
+    aside_m: float
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it is."""
+        away = state.poses[self.thing].position - state.poses[self.over].position
+        held = self.thing in state.stabbed | state.gripped
+        return bool(held and np.hypot(away[0], away[1]) <= self.aside_m)
+
+
+@final
+@dataclass(frozen=True)
 class Holding:
     """A thing is between the fingers, and has left what it stood on.
 

@@ -1,4 +1,4 @@
-"""A slice of tofu that is cut off, stabbed and brought to one's own plate: the paper's *Entree*, in physics."""
+"""A slice of tofu that is cut off, stabbed and brought to a plate: the paper's *Entree*, in physics."""
 
 from functools import cached_property, partial
 from typing import Final, final
@@ -14,7 +14,7 @@ from latentarm.tasks.eating.marshmallows import START_SPREAD_RAD
 from latentarm.tasks.eating.stabbing import HOVER_M, above, stab
 from latentarm.tasks.eating.table import PLATE_RADIUS_M, STAND_M, at, fork, plate
 from latentarm.tasks.inverse_kinematics import solve
-from latentarm.tasks.predicates import Apart, Dropped, Placed
+from latentarm.tasks.predicates import Apart, CarriedOver, Dropped, Placed
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.steps import TaskStep, Waypoint
 from latentarm.types import Goal, Pose
@@ -113,7 +113,7 @@ class Entree(SceneTask):
             above("slice", along),
             TaskStep("cut", "a slice cut off", Apart("tofu", "slice"), (ready, through, out)),
             stab("slice", along, HALF_M[2]),
-            TaskStep("above", "above the plate", _Carried("slice"), (over,)),
+            TaskStep("above", "above the plate", CarriedOver("slice", "own plate", 0.03), (over,)),
             TaskStep("placed", "the slice on the plate", laid, (over, down)),
         )
 
@@ -169,15 +169,3 @@ def _at_cut(state: SceneState, height_m: float, turn_rad: float) -> Pose:
 def _over_own(state: SceneState, height_m: float, turn_rad: float) -> Pose:
     """The fork over the person's own plate."""
     return fork(state.poses["own plate"].position, height_m, turn_rad)
-
-
-@final
-class _Carried:
-    """Food on the fork is over the person's own plate."""
-
-    def __init__(self, thing: str) -> None:
-        self._thing = thing
-
-    def __call__(self, state: SceneState) -> bool:
-        away = state.poses[self._thing].position - state.poses["own plate"].position
-        return self._thing in state.stabbed and bool(np.hypot(away[0], away[1]) < 0.03)

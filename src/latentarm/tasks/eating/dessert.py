@@ -1,0 +1,187 @@
+"""A marshmallow stabbed, drawn through icing and dipped in rice: the paper's *Dessert*, in physics."""
+
+from functools import cached_property, partial
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.scene.containers import bowl, interior_of, packed
+from latentarm.scene.scene import Scene, SceneState
+from latentarm.scene.thing import Grains, Interior, Thing
+from latentarm.tasks.eating.marshmallows import START_SPREAD_RAD
+from latentarm.tasks.eating.stabbing import HOVER_M, above, stab
+from latentarm.tasks.eating.table import (
+    MARSHMALLOW_HALF_M,
+    STAND_M,
+    at,
+    fork,
+    marshmallow,
+    plate,
+)
+from latentarm.tasks.inverse_kinematics import solve
+from latentarm.tasks.predicates import CarriedOver, Dropped, Placed, Spilled, Swept, Within
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.steps import TaskStep, Waypoint
+from latentarm.types import FloatArray, Goal, Pose
+
+MIDDLE_M: Final = (0.50, 0.0)
+"""x and y of the plate with the marshmallow."""
+
+ICING_M: Final = (0.47, -0.21)
+"""Of the dish with icing, on the right."""
+
+RICE_M: Final = (0.47, 0.21)
+"""Of the bowl with rice, on the left."""
+
+OWN_M: Final = (0.62, 0.0)
+"""Of the person's own plate."""
+
+SMALL_M: Final = 0.06
+"""Radius of the two plates."""
+
+SPREAD_M: Final = 0.02
+"""How far from its plate's middle the marshmallow stands along each axis, at most."""
+
+ICING_DEEP_M: Final = 0.035
+"""How high the icing stands over its dish; it gives way to everything."""
+
+ICING_RADIUS_M: Final = 0.06
+
+SWEEP_M: Final = 0.04
+"""How far the marshmallow must be drawn through the icing."""
+
+SCOOP_RAD: Final = 0.5
+"""Tilt of the fork while it scoops."""
+
+RICE: Final = 40
+"""Grains of rice."""
+
+RICE_RADIUS_M: Final = 0.005
+
+BOWL_RADIUS_M: Final = 0.05
+BOWL_HEIGHT_M: Final = 0.035
+
+WET: Final = Interior(ICING_RADIUS_M, 0.0, ICING_DEEP_M)
+"""Where the icing is, in the frame of its dish."""
+
+MARSHMALLOW: Final = "marshmallow"
+
+
+@final
+class Dessert(SceneTask):
+    """Stab a marshmallow, scoop it through icing, dip it in rice, and set it down on the own plate."""
+
+    @property
+    def name(self) -> str:
+        """``dessert``."""
+        return "dessert"
+
+    @property
+    def robot(self) -> Robot:
+        """A Panda with a fork."""
+        return self._robot
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """One marshmallow."""
+        return (MARSHMALLOW,)
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table."""
+        return (Scene().table,)
+
+    @property
+    def time_limit_s(self) -> float:
+        """Three minutes."""
+        return 180.0
+
+    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
+        """The marshmallow anywhere in the middle of its plate."""
+        x, y = np.array(MIDDLE_M) + rng.uniform(-SPREAD_M, SPREAD_M, 2)
+        dish = bowl("rice bowl", at(*RICE_M, STAND_M), BOWL_RADIUS_M, BOWL_HEIGHT_M)
+        rice = Grains(
+            "rice",
+            RICE_RADIUS_M,
+            2e-4,
+            packed(dish, RICE, RICE_RADIUS_M),
+            colour=(0.97, 0.96, 0.92, 1.0),
+        )
+        things = (
+            plate("plate", *MIDDLE_M, SMALL_M),
+            plate("own plate", *OWN_M, SMALL_M),
+            icing("icing", *ICING_M),
+            dish,
+            marshmallow(MARSHMALLOW, float(x), float(y), rng.uniform(-np.pi, np.pi)),
+        )
+        scene = Scene(things, (rice,))
+        state = self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
+        room = interior_of(dish)
+        return Beginning(
+            state=state,
+            scene=scene,
+            steps=_steps(room),
+            failures=(
+                Dropped(MARSHMALLOW, STAND_M - 0.02),
+                Spilled("rice", STAND_M - 0.02, (("rice bowl", room),), 0.5),
+            ),
+            goals=tuple(self._goal(scene, name) for name in (MARSHMALLOW, "icing", "rice bowl", "own plate")),
+            objects=(MARSHMALLOW, "icing", "rice bowl", "own plate"),
+            text="dip the marshmallow in icing and rice",
+        )
+
+    def _goal(self, scene: Scene, name: str) -> Goal:
+        place = scene.thing(name).pose.position
+        configuration = solve(self.robot, fork(place, HOVER_M), self.robot.home)
+        return Goal(name, configuration, self.robot.chain.forward(configuration))
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("panda_fork")
+
+
+def icing(name: str, x: float, y: float) -> Thing:
+    """Icing on a plate, its frame in the middle of the plate's top. Only the plate is solid."""
+    return plate(name, x, y, ICING_RADIUS_M)
+
+
+def _steps(rice: Interior) -> tuple[TaskStep, ...]:
+    enter, leave = -0.035, 0.035
+    low = MARSHMALLOW_HALF_M + 0.006
+    through = (
+        Waypoint(partial(_over, dish="icing", height_m=0.07, tilt_rad=SCOOP_RAD, out_m=enter)),
+        Waypoint(partial(_over, dish="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=enter), speed=0.6),
+        Waypoint(partial(_over, dish="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=leave), speed=0.6),
+        Waypoint(partial(_over, dish="icing", height_m=0.08, tilt_rad=SCOOP_RAD, out_m=leave)),
+    )
+    into = (
+        Waypoint(partial(_over, dish="rice bowl", height_m=0.09)),
+        Waypoint(partial(_over, dish="rice bowl", height_m=0.018), speed=0.4, wait_s=0.3),
+    )
+    over = Waypoint(partial(_over, dish="own plate", height_m=0.09))
+    down = Waypoint(
+        partial(_over, dish="own plate", height_m=MARSHMALLOW_HALF_M + 0.006), wait_s=0.5, speed=0.5
+    )
+    centre = np.array([*OWN_M, STAND_M + MARSHMALLOW_HALF_M])
+    laid = Placed(MARSHMALLOW, centre, np.array([0.8 * SMALL_M, 0.8 * SMALL_M, 0.015]), let_go=False)
+    dipped = Interior(rice.radius_m, rice.bottom_m, rice.bottom_m + 0.025)
+    return (
+        above(MARSHMALLOW),
+        stab(MARSHMALLOW),
+        TaskStep("above", "over the icing", CarriedOver(MARSHMALLOW, "icing", 0.05), through[:1]),
+        TaskStep("scooped", "drawn through the icing", Swept(MARSHMALLOW, "icing", WET, SWEEP_M), through),
+        TaskStep("above", "over the rice", CarriedOver(MARSHMALLOW, "rice bowl", 0.03), into[:1]),
+        TaskStep("dipped", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),
+        TaskStep("above", "over the own plate", CarriedOver(MARSHMALLOW, "own plate", 0.03), (over,)),
+        TaskStep("placed", "set down", laid, (over, down)),
+    )
+
+
+def _over(state: SceneState, dish: str, height_m: float, tilt_rad: float = 0.0, out_m: float = 0.0) -> Pose:
+    """The fork over a dish, a little farther out or in."""
+    place: FloatArray = state.poses[dish].position
+    outwards = np.array([place[0], place[1], 0.0]) / np.hypot(place[0], place[1])
+    return fork(place + out_m * outwards, height_m, float(np.arctan2(place[1], place[0])), tilt_rad)
