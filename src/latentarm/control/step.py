@@ -95,8 +95,8 @@ class Step:
     ) -> None:
         if controller.objects and surroundings is None:
             raise UserError(
-                f"The controller looks at the poses of {', '.join(controller.objects)}, and nothing tells where"
-                " these are: drive it at a task that has them."
+                f"The controller looks at the poses of {', '.join(controller.objects)}, and nothing tells"
+                " where these are: drive it at a task that has them."
             )
         self._surroundings = surroundings
         self._shared = SharedAutonomy(robot.dof, controller, goals, belief, arbitration, dt_s)

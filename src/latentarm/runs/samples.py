@@ -146,12 +146,9 @@ def load_samples(folder: Path) -> Samples | None:
     try:
         if section.plain().get("duration_s") is not None:
             duration_s = float(section.array("duration_s", ()))
-            rest = "belief" if "motions.belief" in tensors else "rest"
-            motions = Motions(
-                *(tensors[f"motions.{name}"] for name in ("start", "end")),
-                duration_s,
-                tensors[f"motions.{rest}"],
-            )
+            start, end = tensors["motions.start"], tensors["motions.end"]
+            rest = tensors["motions.belief" if "motions.belief" in tensors else "motions.rest"]
+            motions = Motions(start, end, duration_s, rest)
         if section.plain().get("step_s") is not None:
             pairs = StartGoalPairs(tensors["probe.start"], tensors["probe.goal"])
             states, context, action = (tensors[f"probe.{name}"] for name in ("states", "context", "action"))
