@@ -163,16 +163,17 @@ def test_each_feature_has_its_own_normaliser():
     shown = demonstrations(4)
     vectors = np.concatenate([episode_contexts(one, EVERYTHING) for one in shown.episodes])
     layout = context_layout(shown, EVERYTHING)
-    normaliser = feature_normaliser(vectors, layout)
+    framed = ToolFrame(ARM.chain, layout).apply(vectors)
+    normaliser = feature_normaliser(vectors, framed, layout)
     gripper = normaliser.apply(vectors)[:, layout.columns("gripper")]
     np.testing.assert_allclose([gripper.min(), gripper.max()], [-1, 1])
-    things = layout.columns("objects")
-    table = slice(things.start + OBJECT, things.stop)
-    # The table never moved, so nothing was learned of its place: wherever it stands, nothing follows from it.
-    elsewhere = vectors.copy()
-    elsewhere[:, table] += 0.7
-    np.testing.assert_allclose(normaliser.apply(elsewhere)[:, table], 0.0, atol=1e-8)
-    assert (normaliser.scale[things.start : things.start + 2] >= 0.05).all()
+    for feature in ("objects", "objects_in_tool"):
+        things = layout.columns(feature)
+        table = slice(things.start + OBJECT, things.stop)
+        # The table never moved, so nothing was learned of its place: wherever it stands, nothing follows.
+        np.testing.assert_allclose(normaliser.apply(framed + 0.7)[:, table], 0.0, atol=1e-8)
+        cup = normaliser.scale[things.start : things.start + 2]
+        assert ((cup >= 0.05) & (cup < 1.0)).all()
 
 
 def test_a_decoder_heeds_a_thing_that_moved_and_no_thing_that_never_did():

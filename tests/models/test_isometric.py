@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from safetensors.numpy import load, save
 
-from latentarm.context import ContextLayout
 from latentarm.errors import UserError
 from latentarm.models.batches import Batch
 from latentarm.models.catalogue import MODELS
@@ -19,12 +18,12 @@ from latentarm.models.isometric.runtime import DAMPING_M2
 from latentarm.models.isometric.training import Isometric, _geometry
 from latentarm.models.networks import group_layers
 from latentarm.models.saving import load_decoder
+from latentarm.models.scaling import context_normaliser
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M, ToolContexts
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.planar import planar
 from latentarm.tasks.planar.catalogue import MOTIONS
 
-JOINTS_ALONE = ContextLayout(("joints",), 4)
 SMALL = {"seeds": 2, "epochs": 3, "hidden": (12, 12), "window": 2}
 SCATTERED = {"epochs": 1, "hidden": (12, 12), "window": 2, "bend_weight": 0.0}
 
@@ -202,7 +201,7 @@ def test_two_arms_count_both_tools(samples):
 def test_an_observation_is_what_its_chain_says(demonstrations):
     arm = planar(4)
     context = demonstrations.episodes[0].state[:7]
-    contexts = ToolContexts.fitted(arm.chain, context, JOINTS_ALONE, DAMPING_M2)
+    contexts = ToolContexts.fitted(arm.chain, context, context_normaliser(context), DAMPING_M2)
     again = ToolContexts.of_tensors(contexts.tensors(), DAMPING_M2)
     np.testing.assert_array_equal(again.apply(context), contexts.apply(context))
     sizes = contexts.sizes
@@ -226,9 +225,8 @@ def test_it_needs_to_know_the_arm(demonstrations):
 
 
 def test_a_model_of_another_metric_is_refused(demonstrations):
-    contexts = ToolContexts.fitted(
-        planar(4).chain, demonstrations.episodes[0].state, JOINTS_ALONE, DAMPING_M2
-    )
+    context = demonstrations.episodes[0].state
+    contexts = ToolContexts.fitted(planar(4).chain, context, context_normaliser(context), DAMPING_M2)
     with pytest.raises(UserError, match="train it again"):
         ToolContexts.of_tensors(
             {**contexts.tensors(), "metric.scale": np.array([0.1, DAMPING_M2])},

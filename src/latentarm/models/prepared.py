@@ -100,7 +100,8 @@ def prepare(
     def framed(recorded: FloatArray) -> FloatArray:
         return recorded if frame is None else frame.apply(recorded)
 
-    contexts, actions = _normalisers(arm, asked.damping_m2, framed(context), action, layout)
+    plain = feature_normaliser(context, framed(context), layout)
+    contexts, actions = _in_metric(arm, asked.damping_m2, plain, framed(context), action)
 
     def observed(recorded: FloatArray) -> FloatArray:
         return contexts.apply(framed(recorded))
@@ -161,15 +162,11 @@ def side_by_side(data_sets: Sequence[TrainingData]) -> TrainingData:
     return TrainingData(**stacked)
 
 
-def _normalisers(
-    arm: Chain | None,
-    damping_m2: float | None,
-    context: FloatArray,
-    action: FloatArray,
-    layout: ContextLayout,
+def _in_metric(
+    arm: Chain | None, damping_m2: float | None, plain: Normaliser, context: FloatArray, action: FloatArray
 ) -> tuple[Normaliser | ToolContexts, Normaliser]:
     """Normalisers of contexts and actions; in the metric of an arm's tools if the model has one."""
     if arm is None or damping_m2 is None:
-        return feature_normaliser(context, layout), action_normaliser(action)
-    contexts = ToolContexts.fitted(arm, context, layout, damping_m2)
+        return plain, action_normaliser(action)
+    contexts = ToolContexts.fitted(arm, context, plain, damping_m2)
     return contexts, contexts.action_normaliser(context, action)

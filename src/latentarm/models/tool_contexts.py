@@ -8,12 +8,11 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.context import ContextLayout
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.pose_rows import pose_rows
 from latentarm.models.saved_chain import chain_of_tensors, chain_tensors
-from latentarm.models.scaling import SPAN_QUANTILE, Normaliser, context_normaliser, feature_normaliser
+from latentarm.models.scaling import SPAN_QUANTILE, Normaliser, context_normaliser
 from latentarm.types import FloatArray
 
 TWIST: Final = 6
@@ -96,11 +95,11 @@ class ToolContexts:
     damping: float
 
     @staticmethod
-    def fitted(chain: Chain, context: FloatArray, layout: ContextLayout, damping: float) -> "ToolContexts":
-        """The map for contexts (N, c) of a layout, in the metric of a damping, m^2/rad^2."""
+    def fitted(chain: Chain, context: FloatArray, contexts: Normaliser, damping: float) -> "ToolContexts":
+        """The map for contexts (N, c) with their normaliser, in the metric of a damping, m^2/rad^2."""
         return ToolContexts(
             chain=chain,
-            contexts=feature_normaliser(context, layout),
+            contexts=contexts,
             places=context_normaliser(_places(chain, context[:, : chain.dof])[0]),
             rotation_weight=ROTATION_WEIGHT_M,
             damping=damping,
