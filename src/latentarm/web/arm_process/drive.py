@@ -12,7 +12,7 @@ from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.demonstrations.provenance import provenance_now
-from latentarm.types import Context, StepRecord, Stop
+from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.page_inputs import PageInputs
@@ -120,7 +120,7 @@ class Drive:
         self._orphaned = orphaned
         self._steering = steering
         self._ghosts = GhostPaths(setup.task, setup.controller, setup.help)
-        self._step = setup.step()
+        self._step = setup.step(arm)
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
@@ -288,7 +288,7 @@ class Drive:
         """Deferrable work: ghosts, one direction a tick, and the loop's statistics."""
         phase = self._steering.tick % _LOOK_EVERY
         if phase < 4:
-            self._ghosts.look(phase, Context(self._seen, record.belief), record.mode)
+            self._ghosts.look(phase, self._step.context(self._seen), record.mode)
         elif self._steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
             statistics = self._loop.statistics()
             self._late_share = 1.0 - statistics.met_share

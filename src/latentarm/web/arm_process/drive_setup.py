@@ -7,6 +7,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.catalogue import ARMS, DEFAULT_ARM, make_scene_arm
+from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.journal_limits import JournalLimits
@@ -21,6 +22,7 @@ from latentarm.runs.tasks import task_of_run, task_without_run
 from latentarm.scene.scene import Scene
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.place import Place, ScenePlace
+from latentarm.tasks.surroundings import surroundings_of, watched
 from latentarm.types import FloatArray
 from latentarm.web.arm_process.ghosts import Help
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
@@ -128,8 +130,20 @@ class DriveSetup:
         """
         return (1 if self.latent_dim else 0) + axes if mode == "end_effector" else 0
 
-    def step(self) -> Step:
-        """Algorithm 1 with its safety filters, disengaged."""
+    def step(self, arm: Arm | None = None) -> Step:
+        """Algorithm 1 with its safety filters, disengaged.
+
+        Args:
+            arm: what is driven; None only to see whether it could be. It says where things are by now.
+        """
+        objects = self.controller.objects
+        if self.scene is None:
+            surroundings = surroundings_of(self.task, objects)
+        elif isinstance(arm, SceneArm):
+            surroundings = watched(lambda: arm.scene_state().poses, objects)
+        else:
+            begun = {thing.name: thing.pose for thing in self.scene.things}
+            surroundings = watched(lambda: begun, objects)
         goals = np.array([goal.configuration for goal in self.task.goals])
         return Step(
             self.task.robot,
@@ -145,6 +159,7 @@ class DriveSetup:
             belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
             arbitration=self.help if self.task.goals else None,
             dt_s=PERIOD_S,
+            surroundings=surroundings,
         )
 
 
@@ -181,7 +196,7 @@ def load_setup(spec: Spec) -> DriveSetup:
             f" {MOST_JOINTS} joints and shows {MOST_GOALS} goals at most."
         )
     end_effector = EndEffectorController(task.robot)
-    return DriveSetup(
+    setup = DriveSetup(
         spec=spec,
         task=task,
         controller=JoinedController([end_effector] if latent is None else [latent, end_effector]),
@@ -192,6 +207,8 @@ def load_setup(spec: Spec) -> DriveSetup:
         run_fingerprint="" if spec.run is None else weights_fingerprint(spec.run),
         scene=scene,
     )
+    setup.step()  # what cannot be driven fails now rather than later
+    return setup
 
 
 def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None]:

@@ -1,5 +1,6 @@
 """What each direction of the stick would do now: the tool's path over the next second."""
 
+from dataclasses import replace
 from typing import Final, final
 
 import numpy as np
@@ -106,7 +107,7 @@ class GhostPaths:
         at, heights = self._chain.tool_pose(transforms).position, self._heights(transforms)
         points: list[Point] = []
         for _ in range(POINTS):
-            wanted = self._wanted(u, Context(q, context.belief), mode)
+            wanted = self._wanted(u, replace(context, state=q), mode)
             reached, transforms = self._moved(q, at, wanted, dt_s)
             heights_there = self._heights(transforms)
             if not ((heights_there < self._clearance) & (heights_there < heights - _SAME_M)).any():
