@@ -76,10 +76,10 @@ _FINGER_KG = 0.015
 _FINGER_INERTIA = 2.375e-6, 2.375e-6, 7.5e-7  # kg m²
 _FINGER_ARMATURE = 0.1  # kg: what the motor and its gear add
 # A finger in its own frame: at zero its pad lies in the plane y = 0. What the capsule covers is the shell of
-# the real finger; the pad is what grips.
+# the real finger; the pad is what grips, and makes the capsule about both fingers no thicker.
 _FINGER_SHELL = ((0.0, 0.011, 0.008), (0.0, 0.011, 0.044), 0.01)
-_PAD_HALF = (0.0095, 0.004, 0.0095)
-_PAD_AT = (0.0, 0.004, 0.0445)
+_PAD_HALF = (0.0085, 0.004, 0.0085)
+_PAD_AT = (0.0, 0.004, 0.0435)
 _PAD_FRICTION = (1.5, 0.02, 0.0001)
 # As stiff as a time step of 1 ms allows: friction has no memory, so what is held creeps, by gravity and by
 # the hand's own turning, in proportion to this time constant. With MuJoCo's 0.02 a cup creeps by 1 mm/s.
