@@ -22,7 +22,7 @@ from latentarm.studies.tasks.cell import ShownCell, Trained, TrainingCell, block
 from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm.studies.tasks.runs import Driver, choice_of
 from latentarm.style import save_figure
-from latentarm.tasks.scene_catalogue import SCENE_TASKS, make_scene_task
+from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 
 FIGURES = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tasks"
 

@@ -21,6 +21,10 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
+_NO_GRIPPER: FloatArray = np.zeros(0)
+_NO_OBJECTS: FloatArray = np.zeros((0, 9))
+_NO_GRIPPER.flags.writeable = _NO_OBJECTS.flags.writeable = False
+
 
 @dataclass(frozen=True)
 class Pose:
@@ -145,6 +149,8 @@ class Demonstrations:
         end_effector: which site, body or link of a model file is the end-effector; None where the robot
             has but one.
         limits: what was stated of the robot's limits, or None.
+        objects: names of the K things whose poses the feature ``observation.environment_state`` (T, 7 K)
+            holds: position, m, and quaternion (w, x, y, z), in the base frame; empty where it holds none.
     """
 
     episodes: tuple[Episode, ...]
@@ -155,6 +161,7 @@ class Demonstrations:
     import_record: Mapping[str, str] = field(default_factory=dict)
     end_effector: str | None = None
     limits: StatedLimits | None = None
+    objects: tuple[str, ...] = ()
 
     @property
     def dof(self) -> int:
@@ -185,15 +192,20 @@ class Pairs:
 
 @dataclass(frozen=True)
 class Context:
-    """What the robot knows when it decodes an input: ``c = (s, b)``.
+    """What the robot knows when it decodes an input; a decoder sees some of it (`latentarm.context`).
 
     Attributes:
         state: (n,), joint positions ``s``, rad.
         belief: (G,), probability over goals ``b``; empty where there are no goals.
+        gripper: (1,), opening of the gripper, m; empty where it is not known.
+        objects: (K, 9), poses in the base frame of the things that matter: position, m, and the first two
+            columns of the rotation matrix (`latentarm.kinematics.pose_rows`); empty where they are not known.
     """
 
     state: FloatArray
     belief: FloatArray
+    gripper: FloatArray = field(default_factory=lambda: _NO_GRIPPER)
+    objects: FloatArray = field(default_factory=lambda: _NO_OBJECTS)
 
 
 GripperAsk = Literal["open", "close", "toggle"]

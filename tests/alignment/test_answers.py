@@ -22,7 +22,7 @@ def test_what_motions_and_answers_say(answered):
     np.testing.assert_allclose(answers.motions.action * 0.5, answers.motions.end - answers.motions.start)
     some = answers[np.array([4, 1, 1])]
     np.testing.assert_array_equal(some.u, answers.u[[4, 1, 1]])
-    np.testing.assert_array_equal(some.motions.belief, answers.motions.belief[[4, 1, 1]])
+    np.testing.assert_array_equal(some.motions.rest, answers.motions.rest[[4, 1, 1]])
     assert answered(4, count=6).motions.context.shape == (6, 4)
 
 
@@ -32,7 +32,7 @@ def test_what_motions_and_answers_say(answered):
         (lambda: Motions(np.zeros(4), np.zeros(4), 0.5), "states of one arm"),
         (lambda: Motions(ZERO, np.zeros((3, 5)), 0.5), "states of one arm"),
         (lambda: Motions(ZERO[:0], ZERO[:0], 0.5), "states of one arm"),
-        (lambda: Motions(ZERO, ZERO, 0.5, np.ones((2, 2))), "as many beliefs"),
+        (lambda: Motions(ZERO, ZERO, 0.5, np.ones((2, 2))), "as many contexts"),
         (lambda: Motions(ZERO, np.full((3, 4), np.nan), 0.5), "NaN"),
         (lambda: Motions(ZERO, ZERO, 0.5, np.full((3, 2), np.inf)), "NaN or an infinity"),
         (lambda: Motions(ZERO, ZERO, 0.0), "positive time"),

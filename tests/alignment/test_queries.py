@@ -103,9 +103,7 @@ def test_the_belief_comes_along(shown):
     motions = demonstrated_motions(shown, 20, np.random.default_rng(0), context="state_belief")
     assert motions.context.shape == (20, 4)
     # The belief of these says what time it was.
-    np.testing.assert_allclose(
-        np.clip(motions.belief[:, 0] - 0.5, 0, 2), motions.start[:, 0] / 0.2, atol=1e-9
-    )
+    np.testing.assert_allclose(np.clip(motions.rest[:, 0] - 0.5, 0, 2), motions.start[:, 0] / 0.2, atol=1e-9)
     without = replace(shown, episodes=tuple(replace(one, extras={}) for one in shown.episodes))
     with pytest.raises(UserError, match="belief"):
         demonstrated_motions(without, 20, np.random.default_rng(0), context="state_belief")

@@ -18,8 +18,8 @@ from latentarm.studies.properties.preset import PRESETS
 from latentarm.studies.shared_autonomy import preset as shared_autonomy
 from latentarm.studies.shared_autonomy.cell import TASKS
 from latentarm.studies.tasks import preset as tasks_preset
+from latentarm.tasks.catalogue import SCENE_TASKS
 from latentarm.tasks.planar.catalogue import MOTIONS
-from latentarm.tasks.scene_catalogue import SCENE_TASKS
 
 COMMANDS = [
     "demo",

@@ -18,6 +18,7 @@ from latentarm.models.isometric.runtime import DAMPING_M2
 from latentarm.models.isometric.training import Isometric, _geometry
 from latentarm.models.networks import group_layers
 from latentarm.models.saving import load_decoder
+from latentarm.models.scaling import context_normaliser
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M, ToolContexts
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.planar import planar
@@ -200,7 +201,7 @@ def test_two_arms_count_both_tools(samples):
 def test_an_observation_is_what_its_chain_says(demonstrations):
     arm = planar(4)
     context = demonstrations.episodes[0].state[:7]
-    contexts = ToolContexts.fitted(arm.chain, context, DAMPING_M2)
+    contexts = ToolContexts.fitted(arm.chain, context, context_normaliser(context), DAMPING_M2)
     again = ToolContexts.of_tensors(contexts.tensors(), DAMPING_M2)
     np.testing.assert_array_equal(again.apply(context), contexts.apply(context))
     sizes = contexts.sizes
@@ -224,7 +225,8 @@ def test_it_needs_to_know_the_arm(demonstrations):
 
 
 def test_a_model_of_another_metric_is_refused(demonstrations):
-    contexts = ToolContexts.fitted(planar(4).chain, demonstrations.episodes[0].state, DAMPING_M2)
+    context = demonstrations.episodes[0].state
+    contexts = ToolContexts.fitted(planar(4).chain, context, context_normaliser(context), DAMPING_M2)
     with pytest.raises(UserError, match="train it again"):
         ToolContexts.of_tensors(
             {**contexts.tensors(), "metric.scale": np.array([0.1, DAMPING_M2])},

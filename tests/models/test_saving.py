@@ -101,8 +101,20 @@ FAULTS = {
         "'seeds' must be a whole number",
     ),
     "absurd size": (
-        lambda folder: change_config(folder, put_in("dimensions", "context", 2**30)),
+        lambda folder: change_config(folder, put_in("dimensions", "hidden", [2**30])),
         "asks for",
+    ),
+    "another context": (
+        lambda folder: change_config(folder, put_in("dimensions", "context", 5)),
+        "its features have 4 entries, and its contexts 5",
+    ),
+    "unknown feature": (
+        lambda folder: change_config(folder, put_in("layout", "features", ["joints", "mood"])),
+        "no feature 'mood'",
+    ),
+    "no tool": (
+        lambda folder: change_config(folder, put_in("layout", "features", ["joints", "objects_in_tool"])),
+        "need an arm with a tool",
     ),
     "hidden is no list": (
         lambda folder: change_config(folder, put_in("dimensions", "hidden", 8)),
@@ -185,6 +197,8 @@ def test_a_model_of_schema_2_loads(folder, fitted, samples):
 
     def age(model):
         model["schema"] = 2
+        del model["layout"]
+        model["parameters"]["context"] = "state"
         model["parameters"]["held_out_fraction"] = model["parameters"].pop("validation_fraction")
         for new in ("validation_episodes", "validation_loss"):
             model["training"][new.replace("validation", "held_out")] = model["training"].pop(new)
@@ -193,7 +207,7 @@ def test_a_model_of_schema_2_loads(folder, fitted, samples):
     context, z = samples
     loaded = load_model(folder)
     np.testing.assert_array_equal(loaded.decode(z, context), fitted.decode(z, context))
-    assert loaded.get_params() == fitted.get_params()
+    assert {**loaded.get_params(), "context": ("joints",)} == fitted.get_params()
     assert loaded.validation_episodes_ == fitted.validation_episodes_
     np.testing.assert_array_equal(loaded.validation_loss_, fitted.validation_loss_)
 

@@ -18,7 +18,8 @@ class Motions:
         start: (N, n), states before, rad.
         end: (N, n), states ``s*`` after, rad.
         duration_s: how long each takes, s.
-        belief: (N, G), beliefs over goals at the start, for decoders that look at them; (N, 0) without.
+        rest: (N, c - n), what decoders see at the start besides the state (beliefs, poses of things, ...);
+            (N, 0) for those that see the state alone.
 
     Raises:
         UserError: sizes do not fit each other, there is no motion, or a number is not finite.
@@ -27,7 +28,7 @@ class Motions:
     start: FloatArray
     end: FloatArray
     duration_s: float
-    belief: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    rest: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
     def __post_init__(self) -> None:
         if self.start.ndim != 2 or len(self.start) == 0 or self.start.shape != self.end.shape:
@@ -35,11 +36,11 @@ class Motions:
                 f"Motions begin and end at states of one arm, N times n numbers, not {self.start.shape} and"
                 f" {self.end.shape}."
             )
-        if self.belief.size == 0:
-            object.__setattr__(self, "belief", np.empty((len(self.start), 0)))
-        if self.belief.ndim != 2 or len(self.belief) != len(self.start):
-            raise UserError(f"{len(self.start)} motions have as many beliefs, not {self.belief.shape}.")
-        if not all(np.isfinite(values).all() for values in (self.start, self.end, self.belief)):
+        if self.rest.size == 0:
+            object.__setattr__(self, "rest", np.empty((len(self.start), 0)))
+        if self.rest.ndim != 2 or len(self.rest) != len(self.start):
+            raise UserError(f"{len(self.start)} motions have as many contexts, not {self.rest.shape}.")
+        if not all(np.isfinite(values).all() for values in (self.start, self.end, self.rest)):
             raise UserError("A motion holds a NaN or an infinity.")
         if not 0 < self.duration_s < np.inf:
             raise UserError(f"A motion takes a positive time, not {self.duration_s:g} s.")
@@ -50,12 +51,12 @@ class Motions:
 
     def __getitem__(self, rows: IntArray) -> Self:
         """The motions (K,) at some rows."""
-        return type(self)(self.start[rows], self.end[rows], self.duration_s, self.belief[rows])
+        return type(self)(self.start[rows], self.end[rows], self.duration_s, self.rest[rows])
 
     @property
     def context(self) -> FloatArray:
-        """(N, c), contexts at the start: the state, and the belief where there is one."""
-        return np.concatenate([self.start, self.belief], axis=1)
+        """(N, c), contexts at the start."""
+        return np.concatenate([self.start, self.rest], axis=1)
 
     @property
     def action(self) -> FloatArray:

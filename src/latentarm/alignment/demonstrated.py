@@ -1,11 +1,13 @@
 """Motions to ask about, taken from the demonstrations."""
 
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
 from latentarm.alignment.answers import Motions
 from latentarm.alignment.error import lengths
+from latentarm.context import JOINTS, Named
+from latentarm.demonstrations.contexts import episode_contexts
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.stillness import moving_range
@@ -26,7 +28,7 @@ def demonstrated_motions(
     count: int,
     rng: np.random.Generator,
     *,
-    context: Literal["state", "state_belief"] = "state",
+    context: Named = (JOINTS,),
     duration_s: float = DURATION_S,
 ) -> Motions:
     """Motions that were demonstrated, drawn at random from all samples while an arm moves.
@@ -37,18 +39,18 @@ def demonstrated_motions(
         demonstrations: whole episodes.
         count: N; all that there are where there are fewer.
         rng: decides which.
-        context: whether a belief belongs to what the decoder sees.
+        context: the features that the decoder sees.
         duration_s: how long a motion takes, s.
 
     Raises:
-        UserError: no motion is that long, or a belief is asked for and missing.
+        UserError: no motion is that long, or a feature is asked for and missing.
     """
     every = [_motions(episode, duration_s, context) for episode in demonstrations.episodes]
-    start, end, belief = (np.concatenate(parts) for parts in zip(*every, strict=True))
+    start, end, rest = (np.concatenate(parts) for parts in zip(*every, strict=True))
     if not len(start):
         raise UserError(f"No demonstration moves for {duration_s:g} s: there is no motion to ask about.")
     rows = rng.permutation(len(start))[:count]
-    return Motions(start[rows], end[rows], duration_s, belief[rows])
+    return Motions(start[rows], end[rows], duration_s, rest[rows])
 
 
 def noticeable(motions: Motions, chain: Chain) -> BoolArray:
@@ -59,7 +61,7 @@ def noticeable(motions: Motions, chain: Chain) -> BoolArray:
 
 def shown(
     demonstrations: Demonstrations,
-    context: Literal["state", "state_belief"],
+    context: Named,
     chain: Chain,
     rng: np.random.Generator,
 ) -> Motions:
@@ -72,16 +74,16 @@ def shown(
         rng: decides which.
 
     Raises:
-        UserError: no demonstration moves for long enough, or a belief is asked for and missing.
+        UserError: no demonstration moves for long enough, or a feature is asked for and missing.
     """
     many = demonstrated_motions(demonstrations, KEPT, rng, context=context)
     return many[np.flatnonzero(noticeable(many, chain))]
 
 
 def _motions(
-    episode: Episode, duration_s: float, context: Literal["state", "state_belief"]
+    episode: Episode, duration_s: float, context: Named
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """All motions of an episode: states before and after, and beliefs before."""
+    """All motions of an episode: states before and after, and the rest of the contexts before."""
     first, stop = moving_range(episode.state, episode.timestamp)
     if stop == first:
         first, stop = 0, 1  # one sample, from which no motion leads
@@ -90,9 +92,5 @@ def _motions(
     starts = np.flatnonzero(time + duration_s <= time[-1] + 1e-6)
     later = time[starts] + duration_s
     ends = [np.interp(later, time, joint) for joint in state.T]
-    belief = np.empty((len(starts), 0))
-    if context == "state_belief":
-        if "belief" not in episode.extras:
-            raise UserError("The model's context holds a belief, and the demonstrations have none.")
-        belief = episode.extras["belief"][first:stop][starts]
-    return state[starts], np.stack(ends, axis=-1), belief
+    rest = episode_contexts(episode, context)[first:stop][starts, state.shape[1] :]
+    return state[starts], np.stack(ends, axis=-1), rest

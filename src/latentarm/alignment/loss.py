@@ -79,7 +79,7 @@ class AlignmentLoss:
         self._contexts, self._joints = decoder.context_dim, decoder.action_dim
         self._priors = priors
         self._start = self._transition.place(tensor([one.motions.context for one in answers]))
-        ends = [np.concatenate([one.motions.end, one.motions.belief], axis=1) for one in answers]
+        ends = [np.concatenate([one.motions.end, one.motions.rest], axis=1) for one in answers]
         self._wanted = self._transition.pose(tensor(ends))
         self._u = tensor([one.u for one in answers])
         self._unlabelled = self._transition.place(tensor([unlabelled]))

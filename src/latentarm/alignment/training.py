@@ -107,12 +107,17 @@ def fit_alignments(
         seeds: S, of the weights and draws of each run; 0..S-1 where None.
 
     Raises:
-        UserError: the model is not fitted or has no such seed, the answers do not fit it, or the training
-            diverged.
+        UserError: the model is not fitted or has no such seed, it looks at poses in the tool's frame, the
+            answers do not fit it, or the training diverged.
     """
     config = config or FitConfig()
     seeds = range(len(answers)) if seeds is None else seeds
     decoder = model.torch_decoder(seed_index)
+    if decoder.layout.sees_tool_frame:
+        raise UserError(
+            "The network f of the paper does not take poses in the tool's frame: align in the space of the"
+            " tool, as `latentarm align` does."
+        )
     trained, held_out = _divided(answers, config.held_out)
     loss = AlignmentLoss(decoder, chain, trained, unlabelled, config.priors)
     kept = _Kept(AlignmentLoss(decoder, chain, held_out, unlabelled, NO_PRIORS)) if held_out else None

@@ -7,6 +7,7 @@ import numpy as np
 
 from latentarm.assistance.belief import Belief, Rule
 from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.context import BELIEF, Named, feature_names
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
 
@@ -63,12 +64,14 @@ def _towards(goals: FloatArray, state: FloatArray, speed: float, horizon_s: floa
     return away * np.minimum(speed / np.maximum(distance, 1e-12), 1 / horizon_s)
 
 
-def prepared(demonstrations: Demonstrations, context: str) -> Demonstrations:
+def prepared(demonstrations: Demonstrations, context: Named) -> Demonstrations:
     """The demonstrations with the belief that the context needs, computed where it is not recorded.
 
     Raises:
         UserError: a belief is needed, none is recorded, and no goals are known to compute it from.
     """
-    if context != "state_belief" or all("belief" in episode.extras for episode in demonstrations.episodes):
+    if BELIEF not in feature_names(context) or all(
+        "belief" in episode.extras for episode in demonstrations.episodes
+    ):
         return demonstrations
     return annotate(demonstrations)

@@ -10,6 +10,7 @@ from latentarm.commands.choices import ModelName, TaskName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Dataset, EndEffector, Json, Seed
 from latentarm.commands.output import say, show
+from latentarm.context import FeatureName
 from latentarm.models.catalogue import DEFAULT_MODEL
 
 
@@ -18,8 +19,13 @@ def train(
     model: Annotated[ModelName, arg(help="The latent action model.")] = DEFAULT_MODEL,
     latent_dim: Annotated[int, arg(help="d, the number of axes of the person's interface.")] = 2,
     context: Annotated[
-        Literal["state", "state_belief"], arg(help="What the decoder sees: c = s, or c = (s, b).")
-    ] = "state",
+        tuple[FeatureName | Literal["state", "state_belief"], ...],
+        arg(
+            metavar="FEATURE ...",
+            help="What the decoder sees, in order, the joints first: joints, belief, gripper, objects,"
+            " objects_in_tool. state and state_belief stand for joints and joints belief.",
+        ),
+    ] = ("joints",),
     seeds: Annotated[int, arg(help="Models trained side by side, from different seeds.")] = 5,
     seed: Seed = 0,
     window: Annotated[int, arg(help="An action leads to a state at most this many samples away.")] = 5,
@@ -46,7 +52,7 @@ def train(
         float,
         arg(
             help="lambda_2 of equation 16: how much it counts that every goal stays open, with the context"
-            " state_belief; 0 leaves it out, 5 lets people change their mind."
+            " joints belief; 0 leaves it out, 5 lets people change their mind."
         ),
     ] = 0.0,
     device: Annotated[Literal["cpu", "cuda", "auto"], arg(help="Where to train.")] = "cpu",

@@ -23,13 +23,18 @@ class Controller(ABC):
     def input_dim(self) -> int:
         """Number of axes d of the person's input."""
 
+    @property
+    def objects(self) -> tuple[str, ...]:
+        """Names of the things whose poses it looks at, in order; none, as here, for most."""
+        return ()
+
     @abstractmethod
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
         """Alignment ``z = f(u, c)`` (Algorithm 1, line 6).
 
         Args:
             u: (..., d), each entry in [-1, 1].
-            context: the state and the belief, for one moment.
+            context: what is known at one moment.
             mode: index into `modes`.
 
         Returns:
@@ -42,7 +47,7 @@ class Controller(ABC):
 
         Args:
             z: (..., d).
-            context: the state and the belief, for one moment.
+            context: what is known at one moment.
             mode: index into `modes`.
 
         Returns:
@@ -53,7 +58,7 @@ class Controller(ABC):
         """sigma_h of equation 14: what no input in [-1, 1]^d exceeds in this context.
 
         Args:
-            context: the state and the belief, for one moment.
+            context: what is known at one moment.
             mode: index into `modes`.
 
         Returns:

@@ -12,7 +12,9 @@ from latentarm.control.journal import JournalEpisode, read_journal
 from latentarm.control.recorded_states import first_implausible
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_HOLDING, GRIPPER_WIDTH, going_to
+from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
+from latentarm.kinematics.pose_rows import stored_rows
 from latentarm.robots.limits import JointLimits
 from latentarm.types import Demonstrations, Episode, FloatArray, StepRecord
 
@@ -35,8 +37,8 @@ def demonstrations_of(
 
     The command is the action. Further features: ``input.u``, ``latent.z``, ``action.human``,
     ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief``, ``assist.bound``
-    (rad; -1 where nothing helps) and ``observation.environment_state`` (position and rotation matrix of
-    every goal, row by row). An arm with a gripper adds ``observation.gripper_width`` (m; a reading below zero
+    (rad; -1 where nothing helps) and ``observation.environment_state`` (poses of the goals, which are the
+    dataset's objects). An arm with a gripper adds ``observation.gripper_width`` (m; a reading below zero
     counts as zero), ``observation.gripper_holding`` (0 or 1) and ``action.gripper`` (m): the width that was
     commanded last, or the one that it has until something is commanded.
     Time starts at each episode's first sample. Incomplete episodes are skipped unless asked for. An episode
@@ -78,6 +80,7 @@ def demonstrations_of(
         goals=first.goals,
         end_effector=first.end_effector,
         limits=first.limits,
+        objects=tuple(names),
     )
 
 
@@ -168,8 +171,8 @@ def _episode(recorded: JournalEpisode) -> Episode:
         extras["belief"] = np.stack([record.belief for record in records])
         bound = np.array([[record.bound_rad] for record in records])
         extras["assist.bound"] = np.where(np.isnan(bound), NO_BOUND, bound)
-        poses = [np.concatenate([goal.pose.position, goal.pose.rotation.ravel()]) for goal in goals]
-        extras["observation.environment_state"] = np.tile(np.concatenate(poses), (len(records), 1))
+        poses = [stored_rows(goal.pose) for goal in goals]
+        extras[ENVIRONMENT] = np.tile(np.concatenate(poses), (len(records), 1))
     extras |= _gripper(records)
     return Episode(
         state=np.stack([record.state for record in records]),

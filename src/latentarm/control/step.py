@@ -1,7 +1,7 @@
 """Algorithm 1, lines 6 to 10, as one step that every loop, simulation and page goes through."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import final
 
 import numpy as np
@@ -74,9 +74,12 @@ class Step:
         belief: how inputs change the belief over goals; None keeps the belief uniform.
         arbitration: how much the robot helps; None never helps.
         dt_s: the loop's period, s.
+        surroundings: gives the poses (K, 9) of the controller's `objects` at this moment, see
+            `Context.objects`; for controllers that look at any.
 
     Raises:
-        UserError: the limits do not suit the robot or the period, or assistance lacks goals.
+        UserError: the limits do not suit the robot or the period, assistance lacks goals, or the controller
+            looks at things and nothing tells where they are.
     """
 
     def __init__(
@@ -88,7 +91,14 @@ class Step:
         belief: Belief | None = None,
         arbitration: Arbitration | None = None,
         dt_s: float = 0.01,
+        surroundings: Callable[[], FloatArray] | None = None,
     ) -> None:
+        if controller.objects and surroundings is None:
+            raise UserError(
+                f"The controller looks at the poses of {', '.join(controller.objects)}, and nothing tells"
+                " where these are: drive it at a task that has them."
+            )
+        self._surroundings = surroundings
         self._shared = SharedAutonomy(robot.dof, controller, goals, belief, arbitration, dt_s)
         self._robot = robot
         self._dof = robot.dof
@@ -155,6 +165,13 @@ class Step:
     def stopped(self) -> Stop | None:
         """Why the arm may not move, or None where it may."""
         return self._engagement.stopped
+
+    def context(self, state: FloatArray) -> Context:
+        """What controllers are told in a state (n,), rad, with the belief that the next step will use."""
+        measured = self._gripper.reading
+        gripper = {} if measured is None else {"gripper": np.array([measured.width_m])}
+        objects = {} if self._surroundings is None else {"objects": self._surroundings()}
+        return Context(state, self._shared.belief, **gripper, **objects)
 
     def reset(self, state: FloatArray) -> None:
         """Begin a new episode from an arm that stands still: disengaged, first mode, first belief.
@@ -301,9 +318,10 @@ class Step:
     def _driven(self, u: FloatArray, input_age_s: float, q: FloatArray, time_s: float) -> StepRecord:
         """Lines 6 to 10 for an input that asks for motion, or at rest if the robot helps there too."""
         shared = self._shared
-        context = Context(state=q, belief=shared.belief)
+        belief = shared.belief
         a_r, alpha, bound_rad = self._no_motion, 0.0, math.nan
         try:
+            context = self.context(q)
             # What overflows here is caught as not finite below.
             with np.errstate(all="ignore"):
                 a_r, alpha = shared.help(u, q)
@@ -327,7 +345,7 @@ class Step:
             action_human=a_h,
             action_assist=a_r,
             alpha=alpha,
-            belief=context.belief,
+            belief=belief,
             mode=self._mode,
             command=command,
             bound_rad=bound_rad,

@@ -21,12 +21,16 @@ class JoinedController(Controller):
         controllers: at least one.
 
     Raises:
-        UserError: there are none.
+        UserError: there are none, or two of them look at different things.
     """
 
     def __init__(self, controllers: Sequence[Controller]) -> None:
         if not controllers:
             raise UserError("Joining controllers needs at least one.")
+        looked_at = {one.objects for one in controllers if one.objects}
+        if len(looked_at) > 1:
+            raise UserError("Controllers that look at different things cannot be joined.")
+        self._objects = next(iter(looked_at), ())
         self._parts = tuple((one, mode) for one in controllers for mode in range(len(one.modes)))
         self._modes = tuple(name for one in controllers for name in one.modes)
         self._input_dim = max(one.input_dim for one in controllers)
@@ -40,6 +44,11 @@ class JoinedController(Controller):
     def input_dim(self) -> int:
         """As many axes as the controller with the most."""
         return self._input_dim
+
+    @property
+    def objects(self) -> tuple[str, ...]:
+        """Those of the controllers that look at any."""
+        return self._objects
 
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
         """What the mode's own controller makes of its axes; zero on axes that it lacks."""

@@ -3,11 +3,11 @@
 from pathlib import Path
 from typing import final
 
-import numpy as np
-
 from latentarm.alignment.contract import Alignment, identity
 from latentarm.alignment.profile import load_profile
+from latentarm.context import BELIEF, GRIPPER, ContextLayout, context_vector
 from latentarm.control.controller import Controller
+from latentarm.demonstrations.gripper import GRIPPER_WIDTH
 from latentarm.errors import UserError
 from latentarm.models.kind import Decoder
 from latentarm.models.saving import load_decoder
@@ -20,12 +20,21 @@ class LatentController(Controller):
     """The person's input is a latent action, decoded in context: ``a_h = phi(f(u, c), c)``.
 
     Args:
-        decoder: a trained decoder; it says whether its context is ``s`` or ``(s, b)``.
+        decoder: a trained decoder; it says which features its context consists of.
         alignment: from inputs to latent actions.
+
+    Raises:
+        UserError: the decoder learned of the gripper only whether it was toggled, which no arm measures.
     """
 
     def __init__(self, decoder: Decoder, alignment: Alignment = identity) -> None:
+        if decoder.layout.gripper not in ("", GRIPPER_WIDTH):
+            raise UserError(
+                f"The model learned the gripper from {decoder.layout.gripper}, and arms measure its opening"
+                f" in m: train it with {GRIPPER_WIDTH}, or leave {GRIPPER} out of the context."
+            )
         self._decoder = decoder
+        self._features = decoder.layout.features
         self._alignment = alignment
 
     @property
@@ -37,6 +46,11 @@ class LatentController(Controller):
     def input_dim(self) -> int:
         """As many axes as the latent space has."""
         return self._decoder.latent_dim
+
+    @property
+    def objects(self) -> tuple[str, ...]:
+        """The things that the decoder was trained with, in its order."""
+        return self._decoder.layout.objects
 
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
         """The alignment of equation 4."""
@@ -63,17 +77,9 @@ class LatentController(Controller):
 
     def _vector(self, context: Context) -> FloatArray:
         """The context as the decoder was trained on it, (..., c)."""
-        if self._decoder.context == "state":
-            vector = context.state
-        else:
-            belief = np.broadcast_to(context.belief, (*context.state.shape[:-1], len(context.belief)))
-            vector = np.concatenate([context.state, belief], axis=-1)
+        vector = context_vector(context, self._features)
         if vector.shape[-1] != self._decoder.context_dim:
-            raise UserError(
-                f"The model's context has {self._decoder.context_dim} entries, but the arm gives "
-                f"{context.state.shape[-1]} joint positions and {len(context.belief)} goals: "
-                "use a model trained for this arm and these goals."
-            )
+            raise UserError(_misfit(self._decoder.layout, context))
         return vector
 
 
@@ -95,3 +101,19 @@ def latent_controller(run: Path, profile: str | None, robot: Robot) -> LatentCon
             f"{run} was trained for {decoder.action_dim} joints and the robot {robot.name} has {robot.dof}."
         )
     return LatentController(decoder, identity if person is None else person.alignment(decoder, robot.chain))
+
+
+def _misfit(layout: ContextLayout, context: Context) -> str:
+    """That a context has other sizes than those that a decoder was trained with."""
+    parts = [f"{layout.joints} joints"]
+    if BELIEF in layout.features:
+        parts.append(f"{layout.goals} goals")
+    if GRIPPER in layout.features:
+        parts.append("a gripper")
+    if layout.objects:
+        parts.append(f"{len(layout.objects)} things ({', '.join(layout.objects)})")
+    return (
+        f"The model was trained with {', '.join(parts)}, and here are {context.state.shape[-1]} joints,"
+        f" {len(context.belief)} goals, {len(context.gripper)} grippers and {len(context.objects)} things:"
+        " use a model trained for this arm, these goals and these things."
+    )

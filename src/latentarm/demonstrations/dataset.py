@@ -169,6 +169,7 @@ def read_dataset(path: StrPath) -> Demonstrations:
         import_record=info.import_record,
         end_effector=info.end_effector,
         limits=info.limits,
+        objects=info.objects,
     )
     validate(demonstrations, str(path))
     return demonstrations

@@ -14,6 +14,7 @@ import numpy as np
 
 from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.provenance import parse_provenance, provenance_json
+from latentarm.demonstrations.things import ENVIRONMENT, entry_names, object_names
 from latentarm.errors import UserError
 from latentarm.robots.limits_file import limits_document, parse_limits
 from latentarm.types import Demonstrations, Goal, Pose, Provenance, StatedLimits
@@ -105,6 +106,11 @@ class Info:
         state = next(feature for feature in self.features if feature.name == STATE)
         return state.names or default_joint_names(state.width)
 
+    @property
+    def objects(self) -> tuple[str, ...]:
+        """Names of the things whose poses the dataset holds; empty where the names do not tell."""
+        return next((object_names(one.names or ()) for one in self.features if one.name == ENVIRONMENT), ())
+
     def provenance_of(self, episode: int) -> Provenance | None:
         """Who recorded an episode; None where that is unknown, as for one that another program appended."""
         return self.provenance[episode] if episode < len(self.provenance) else None
@@ -120,7 +126,10 @@ def features_of(demonstrations: Demonstrations) -> tuple[Feature, ...]:
     names = demonstrations.joint_names
     first = demonstrations.episodes[0]
     action = () if first.action is None else (Feature(ACTION, len(names), names),)
-    extras = tuple(Feature(name, first.extras[name].shape[1]) for name in sorted(first.extras))
+    entries = {ENVIRONMENT: entry_names(demonstrations.objects) or None}
+    extras = tuple(
+        Feature(name, first.extras[name].shape[1], entries.get(name)) for name in sorted(first.extras)
+    )
     return (Feature(STATE, len(names), names), *action, *extras)
 
 

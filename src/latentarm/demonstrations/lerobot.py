@@ -37,6 +37,7 @@ def read_lerobot(source: Path) -> SourceData:
             end_effector=info.end_effector,
             limits=info.limits,
             import_record=info.import_record,
+            objects=info.objects,
         ),
         layout="dataset of this package" if info.native else f"LeRobot {info.version}",
         in_rad=info.native,

@@ -4,6 +4,8 @@ from typing import Literal
 
 import numpy as np
 
+from latentarm.context import Named
+from latentarm.demonstrations.contexts import episode_contexts
 from latentarm.errors import UserError
 from latentarm.kinematics.stillness import moving_range
 from latentarm.types import Demonstrations, Episode, FloatArray, IntArray, Pairs
@@ -13,7 +15,7 @@ def make_pairs(
     demonstrations: Demonstrations,
     window: int,
     state_noise_rad: float,
-    context: Literal["state", "state_belief"],
+    context: Named,
     rng: np.random.Generator,
     actions: Literal["displacement", "recorded"] = "displacement",
 ) -> Pairs:
@@ -35,16 +37,16 @@ def make_pairs(
         demonstrations: whole, validated episodes.
         window: how many samples ahead and back an action may look, at least 1.
         state_noise_rad: standard deviation of the noise on the context's states, rad; 0 for none.
-        context: ``"state"`` for ``c = s``, ``"state_belief"`` for ``c = (s, b)``.
+        context: the features that the decoder sees, see `latentarm.context.feature_names`.
         rng: source of the noise.
         actions: ``"displacement"`` as above, or ``"recorded"`` for the actions in the episodes.
 
     Returns:
-        The pairs, episode by episode. Context (N, n) or (N, n + G), action (N, n) in rad/s.
+        The pairs, episode by episode. Context (N, c), action (N, n) in rad/s.
 
     Raises:
-        UserError: a parameter makes no sense, a belief or a recorded action is asked for and
-            missing, or nothing moves.
+        UserError: a parameter makes no sense, a feature of the context or a recorded action is asked for
+            and missing, or nothing moves.
     """
     if window < 1:
         raise UserError(f"The pair window is {window} samples; it must be at least 1.")
@@ -62,7 +64,7 @@ def make_pairs(
             if actions == "recorded"
             else _displaced(episode, moving, window)
         )
-        contexts.append(_context(episode, index, context)[start])
+        contexts.append(episode_contexts(episode, context, index)[start])
         taken.append(action)
         owner.append(np.full(len(start), index, dtype=np.int64))
     clean = np.concatenate(contexts)
@@ -100,15 +102,3 @@ def _recorded(episode: Episode, moving: slice, index: int) -> tuple[IntArray, Fl
             f"Episode {index} has no recorded actions; take them from the states instead (displacement)."
         )
     return np.arange(moving.start, moving.stop), episode.action[moving]
-
-
-def _context(episode: Episode, index: int, kind: Literal["state", "state_belief"]) -> FloatArray:
-    """Context of every sample, (T, n) or (T, n + G)."""
-    if kind == "state":
-        return episode.state
-    belief = episode.extras.get("belief")
-    if belief is None:
-        raise UserError(
-            f"Episode {index} has no belief over goals; annotate the demonstrations or use context state."
-        )
-    return np.concatenate([episode.state, belief], axis=1)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from latentarm.demonstrations.gripper import check_gripper
+from latentarm.demonstrations.things import check_things
 from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
 from latentarm.types import Demonstrations, Episode, FloatArray, Goal
@@ -62,6 +63,8 @@ def validate(demonstrations: Demonstrations, source: str, limits: JointLimits | 
     for index, goal in enumerate(demonstrations.goals):
         check_goal(goal, index, demonstrations.dof, source)
     first = demonstrations.episodes[0]
+    if demonstrations.objects:
+        check_things(demonstrations.objects, first, source)
     for index, episode in enumerate(demonstrations.episodes):
         validate_episode(episode, index, names, source, limits)
         check_same_features(first, episode, index, source)

@@ -43,10 +43,10 @@ def rotation_vector(rotation: FloatArray) -> FloatArray:
     Returns:
         (..., 3), axis times angle, rad, with the angle in [0, pi].
     """
-    quaternion = _quaternion(rotation)
-    vector = quaternion[..., 1:]
+    turn = quaternion(rotation)
+    vector = turn[..., 1:]
     sine = np.sqrt(np.vecdot(vector, vector))
-    angle = 2.0 * np.arctan2(sine, quaternion[..., 0])
+    angle = 2.0 * np.arctan2(sine, turn[..., 0])
     # angle / sine -> 2 as both go to zero.
     factor = np.divide(angle, sine, out=np.full_like(sine, 2.0), where=sine > 1e-12)
     return vector * factor[..., None]
@@ -80,8 +80,8 @@ def pose_error(x_from: Pose, x_to: Pose) -> FloatArray:
     return np.concatenate([x_to.position - x_from.position, turn], axis=-1)
 
 
-def _quaternion(rotation: FloatArray) -> FloatArray:
-    """(..., 4), unit quaternion (w, x, y, z) with w >= 0."""
+def quaternion(rotation: FloatArray) -> FloatArray:
+    """Unit quaternions (..., 4), (w, x, y, z) with w >= 0, of rotation matrices (..., 3, 3)."""
     # Row i of the outer product 4 q qᵀ is q times its own i-th component: take the largest.
     outer = (rotation.reshape(-1, 9) @ _OUTER + np.eye(4).ravel()).reshape(-1, 4, 4)
     largest = outer[:, _DIAGONAL, _DIAGONAL].argmax(axis=-1)

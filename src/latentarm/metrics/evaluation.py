@@ -6,6 +6,7 @@ from typing import Final, Literal, Protocol, final
 
 import numpy as np
 
+from latentarm.context import Named
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
@@ -18,7 +19,6 @@ from latentarm.metrics.drift import drift
 from latentarm.metrics.effects import axis_effects, axis_grid
 from latentarm.metrics.reversal import reversal
 from latentarm.metrics.samples import (
-    ContextKind,
     StartGoalPairs,
     evenly_spread,
     moving_episodes,
@@ -48,8 +48,8 @@ class TrainedModel(EncodesActions, Protocol):
         ...
 
     @property
-    def context(self) -> ContextKind:
-        """Kind of context: "state" or "state_belief"."""
+    def context(self) -> Named:
+        """The features that it sees, see `latentarm.context.feature_names`."""
         ...
 
     @property
@@ -135,7 +135,7 @@ def measure(
         config: how the measures are taken.
 
     Raises:
-        UserError: no episode is held out, none is left for PCA, or the contexts lack a belief.
+        UserError: no episode is held out, none is left for PCA, or the contexts lack a feature.
     """
     config = config or EvaluationConfig()
     episodes = moving_episodes(demonstrations, held_out)
@@ -174,7 +174,7 @@ def take_probe(model: TrainedModel, demonstrations: Demonstrations, held_out: Se
         held_out: indices of the episodes that the model has not seen.
 
     Raises:
-        UserError: no episode is held out, nothing moves in them, or the contexts lack a belief.
+        UserError: no episode is held out, nothing moves in them, or the contexts lack a feature.
     """
     config = EvaluationConfig()
     episodes = moving_episodes(demonstrations, held_out)
@@ -226,15 +226,17 @@ def measure_behaviour(
 
 
 def _probe(
-    kind: ContextKind,
+    names: Named,
     episodes: Sequence[Episode],
     rate_hz: float,
     config: EvaluationConfig,
     context: FloatArray,
     action: FloatArray,
 ) -> Probe:
-    pairs = start_goal_pairs(episodes, kind, separation_s=config.reach.separation_s, count=config.reach.pairs)
-    states = spread_contexts(episodes, kind, config.states)
+    pairs = start_goal_pairs(
+        episodes, names, separation_s=config.reach.separation_s, count=config.reach.pairs
+    )
+    states = spread_contexts(episodes, names, config.states)
     return Probe(pairs, states, context, action, config.step_s or 1.0 / rate_hz)
 
 

@@ -6,16 +6,15 @@ states and no seed is needed.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
+from latentarm.context import Named
+from latentarm.demonstrations.contexts import episode_contexts
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.kinematics.stillness import moving_range
 from latentarm.types import Demonstrations, Episode, FloatArray, IntArray
-
-ContextKind = Literal["state", "state_belief"]
 
 
 @dataclass(frozen=True)
@@ -63,38 +62,14 @@ def moving_episodes(demonstrations: Demonstrations, held_out: Sequence[int]) -> 
     return tuple(moving)
 
 
-def episode_contexts(episode: Episode, kind: ContextKind) -> FloatArray:
-    """What the decoder sees at every sample of an episode.
-
-    Args:
-        episode: with T samples.
-        kind: "state" for ``c = s`` or "state_belief" for ``c = (s, b)``.
-
-    Returns:
-        (T, c).
-
-    Raises:
-        UserError: a belief is asked for and the episode holds none.
-    """
-    if kind == "state":
-        return episode.state
-    belief = episode.extras.get("belief")
-    if belief is None:
-        raise UserError(
-            "The model's context holds a belief, but the held-out episodes have no 'belief' column: "
-            "annotate the demonstrations first."
-        )
-    return np.concatenate([episode.state, belief], axis=-1)
-
-
-def spread_contexts(episodes: Sequence[Episode], kind: ContextKind, count: int) -> FloatArray:
+def spread_contexts(episodes: Sequence[Episode], context: Named, count: int) -> FloatArray:
     """``count`` contexts (N, c) spread evenly over all samples of the episodes."""
-    contexts = np.concatenate([episode_contexts(episode, kind) for episode in episodes])
+    contexts = np.concatenate([episode_contexts(episode, context) for episode in episodes])
     return contexts[evenly_spread(count, len(contexts))]
 
 
 def start_goal_pairs(
-    episodes: Sequence[Episode], kind: ContextKind, *, separation_s: float, count: int
+    episodes: Sequence[Episode], context: Named, *, separation_s: float, count: int
 ) -> StartGoalPairs:
     """Pairs of states of one episode, the goal ``separation_s`` after the start.
 
@@ -103,14 +78,14 @@ def start_goal_pairs(
 
     Args:
         episodes: held-out episodes.
-        kind: kind of context, see `episode_contexts`.
+        context: the features that the decoder sees, see `latentarm.context.feature_names`.
         separation_s: time between start and goal in the demonstration, s.
         count: number of pairs wanted.
     """
     starts: list[FloatArray] = []
     goals: list[FloatArray] = []
     for episode in episodes:
-        contexts = episode_contexts(episode, kind)
+        contexts = episode_contexts(episode, context)
         time = episode.timestamp
         # Timestamps such as 0.1 k are rounded: a goal that is slightly early still counts.
         goal_index = np.searchsorted(time, time + separation_s - 1e-6)

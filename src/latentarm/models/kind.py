@@ -4,12 +4,15 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal, cast, final
+from typing import Literal, final
 
+from latentarm.context import ContextLayout
 from latentarm.errors import UserError
 from latentarm.models.enclosure import Enclosure
+from latentarm.models.saved_chain import chain_of_tensors, chain_shapes
 from latentarm.models.scaling import Normaliser
 from latentarm.models.tool_contexts import ToolContexts, tool_shapes
+from latentarm.models.tool_frame import ToolFrame
 from latentarm.style import Look
 from latentarm.types import BoolArray, FloatArray, IntArray
 
@@ -27,7 +30,7 @@ class Dimensions:
         context: c.
         action: m.
         hidden: units of each hidden layer, the same in encoder and decoder.
-        tools: k, end-effectors of the arm; 0 where the model does not look at them.
+        tools: k, end-effectors of the arm; 0 where neither the model nor its context looks at them.
     """
 
     seeds: int
@@ -126,7 +129,8 @@ class ModelKind:
         """Shape of every tensor of a saved model: the learned ones, the normalisers and the latent scale."""
         return {
             **self.weight_shapes(dimensions),
-            **(tool_shapes(dimensions.action, dimensions.tools) if self.sees_tools else {}),
+            **(chain_shapes(dimensions.action, dimensions.tools) if dimensions.tools else {}),
+            **(tool_shapes(dimensions.tools) if self.sees_tools else {}),
             "context.centre": (dimensions.context,),
             "context.scale": (dimensions.context,),
             "action.scale": (1,),
@@ -166,6 +170,7 @@ class TrainedModel:
         kind: which kind of model.
         parameters: what the model was constructed with, as JSON values.
         dimensions: its sizes.
+        layout: the features that its contexts consist of.
         tensors: float64 arrays by name, as `ModelKind.tensor_shapes` lists them.
         summary: how the training went.
     """
@@ -173,12 +178,18 @@ class TrainedModel:
     kind: ModelKind
     parameters: Mapping[str, object]
     dimensions: Dimensions
+    layout: ContextLayout
     tensors: Mapping[str, FloatArray]
     summary: TrainingSummary
 
     @property
+    def frame(self) -> ToolFrame | None:
+        """What turns poses in contexts into the frame of the arm's tool; None where that is not asked for."""
+        return ToolFrame(chain_of_tensors(self.tensors), self.layout) if self.layout.sees_tool_frame else None
+
+    @property
     def contexts(self) -> Normaliser | ToolContexts:
-        """The map from contexts (..., c) to what the networks see."""
+        """The map from contexts (..., c), after `frame` if there is one, to what the networks see."""
         if self.kind.sees_tools:
             return self.tool_contexts
         return Normaliser(self.tensors["context.centre"], self.tensors["context.scale"])
@@ -228,13 +239,13 @@ class Decoder:
 
     Attributes:
         kind: kind of model.
-        context: kind of context, ``state`` or ``state_belief``.
+        layout: the features that its contexts consist of.
         latent_dim: d.
         context_dim: c.
         action_dim: m.
     """
 
-    __slots__ = ("_runtime", "action_dim", "context", "context_dim", "kind", "latent_dim")
+    __slots__ = ("_frame", "_runtime", "action_dim", "context_dim", "kind", "latent_dim", "layout")
 
     def __init__(self, trained: TrainedModel, seed: int = 0) -> None:
         """Take one seed's decoder out of a trained model.
@@ -248,7 +259,8 @@ class Decoder:
         """
         trained.check_seed_index(seed)
         self.kind = trained.kind.name
-        self.context = cast(str, trained.parameters["context"])
+        self.layout = trained.layout
+        self._frame = trained.frame
         self.latent_dim = trained.dimensions.latent
         self.context_dim = trained.dimensions.context
         self.action_dim = trained.dimensions.action
@@ -264,7 +276,7 @@ class Decoder:
         Returns:
             (..., m), rad/s.
         """
-        return self._runtime(z, context)
+        return self._runtime(z, context if self._frame is None else self._frame.apply(context))
 
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure | None:
         """A proven enclosure of `decode` over all latent actions in [-1, 1]^d; None where none is known.
@@ -273,4 +285,4 @@ class Decoder:
             context: (..., c).
             fineness: 1 for a control loop; more is tighter and takes longer.
         """
-        return self._runtime.enclose(context, fineness)
+        return self._runtime.enclose(context if self._frame is None else self._frame.apply(context), fineness)

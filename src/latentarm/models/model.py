@@ -13,6 +13,8 @@ from sklearn.base import BaseEstimator
 from sklearn.exceptions import NotFittedError
 from torch import Tensor
 
+from latentarm.context import JOINTS, feature_names
+from latentarm.demonstrations.contexts import context_layout
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.split import split_episodes
 from latentarm.errors import UserError
@@ -24,6 +26,7 @@ from latentarm.models.parameters import (
     MOST_SEEDS,
     RANGE,
     Choice,
+    Features,
     Real,
     Whole,
     Widths,
@@ -32,6 +35,7 @@ from latentarm.models.parameters import (
     check_validation,
 )
 from latentarm.models.prepared import Preparation, Prepared, prepare
+from latentarm.models.saved_chain import chain_tensors
 from latentarm.models.saving import write_model
 from latentarm.models.scaling import (
     EFFECT_SAMPLES,
@@ -73,7 +77,7 @@ class LatentActionModel(BaseEstimator, ABC):
 
     Attributes:
         latent_dim: d, size of z.
-        context: what the decoder may see: ``state`` is c = s, ``state_belief`` is c = (s, b).
+        context: the features that the decoder may see, in order, the joints first (`latentarm.context`).
         actions: where actions come from: ``displacement`` between states, or ``recorded``.
         window: samples that a displacement may reach ahead and back.
         state_noise_rad: standard deviation of the noise on training states, rad.
@@ -99,9 +103,7 @@ class LatentActionModel(BaseEstimator, ABC):
     """Whether the loss looks at the context that an action leads to within `AHEAD_S`."""
 
     latent_dim: int = field(default=2, metadata={RANGE: Whole()})
-    context: Literal["state", "state_belief"] = field(
-        default="state", metadata={RANGE: Choice(("state", "state_belief"))}
-    )
+    context: str | tuple[str, ...] = field(default=(JOINTS,), metadata={RANGE: Features()})
     actions: Literal["displacement", "recorded"] = field(
         default="displacement", metadata={RANGE: Choice(("displacement", "recorded"))}
     )
@@ -204,7 +206,7 @@ class LatentActionModel(BaseEstimator, ABC):
         trained = self._fitted()
         check_rows("context", context, trained.dimensions.context)
         check_rows("action", action, trained.dimensions.action)
-        contexts, actions = trained.contexts.apply(context), trained.actions.apply(action)
+        contexts, actions = _observed(trained, context), trained.actions.apply(action)
         return trained.latents.apply(self._encode_rows(trained.tensors, contexts, actions))
 
     def decode(self, z: FloatArray, context: FloatArray) -> FloatArray:
@@ -224,7 +226,7 @@ class LatentActionModel(BaseEstimator, ABC):
         check_rows("context", context, trained.dimensions.context)
         check_rows("z", z, trained.dimensions.latent, seeds=trained.dimensions.seeds, rows=len(context))
         stacked = np.broadcast_to(z, (trained.dimensions.seeds, *z.shape[-2:]))
-        latents, contexts = trained.latents.invert(stacked), trained.contexts.apply(context)
+        latents, contexts = trained.latents.invert(stacked), _observed(trained, context)
         return trained.actions.invert(self._decode_rows(trained.tensors, latents, contexts))
 
     def decoder(self, seed: int = 0) -> Decoder:
@@ -293,7 +295,7 @@ class LatentActionModel(BaseEstimator, ABC):
         return self._fitted().summary.history
 
     def _arm(self, demonstrations: Demonstrations, chain: Chain | None) -> Chain:
-        """Return the given chain, or else that of the robot that the demonstrations name.
+        """The given chain, or else that of the robot that the demonstrations name.
 
         Raises:
             UserError: there is neither, or it has other joints than the demonstrations.
@@ -301,8 +303,9 @@ class LatentActionModel(BaseEstimator, ABC):
         if chain is None:
             if not demonstrations.robot:
                 raise UserError(
-                    f"The {self.kind.name} model looks at the arm's tool, and the demonstrations do not say"
-                    " which arm they are of: name it when they are imported (--robot)."
+                    f"The {self.kind.name} model with the context {' '.join(feature_names(self.context))}"
+                    " looks at the arm's tool, and the demonstrations do not say which arm they are of: name"
+                    " it when they are imported (--robot)."
                 )
             chain = load_recorded_robot(demonstrations).chain
         if chain.dof != demonstrations.dof:
@@ -328,9 +331,11 @@ class LatentActionModel(BaseEstimator, ABC):
         pairs = make_pairs(
             demonstrations, self.window, self.state_noise_rad, self.context, rng, actions=self.actions
         )
-        arm = self._arm(demonstrations, chain) if self.kind.sees_tools else None
+        layout = context_layout(demonstrations, self.context)
+        needs_arm = self.kind.sees_tools or layout.sees_tool_frame
+        arm = self._arm(demonstrations, chain) if needs_arm else None
         asked = Preparation(self.kind.damping_m2, self.looks_ahead, self.data_seed)
-        return prepare(asked, pairs, validation, arm, term)
+        return prepare(asked, pairs, layout, validation, arm, term)
 
     def _dimensions(self, prepared: Prepared) -> Dimensions:
         """The sizes of this model on these data.
@@ -366,8 +371,10 @@ class LatentActionModel(BaseEstimator, ABC):
             kind=self.kind,
             parameters=self.get_params(deep=False),
             dimensions=self._dimensions(prepared),
+            layout=prepared.layout,
             tensors={
                 **weights,
+                **({} if prepared.frame is None else chain_tensors(prepared.frame.chain)),
                 **prepared.contexts.tensors(),
                 "action.scale": prepared.actions.scale,
                 "latent.centre": scale.centre[:, 0],
@@ -395,6 +402,12 @@ class LatentActionModel(BaseEstimator, ABC):
                 f"This {self.kind.name} model is not fitted yet: call fit first, or load a saved one."
             )
         return self.trained_
+
+
+def _observed(trained: TrainedModel, context: FloatArray) -> FloatArray:
+    """What the networks see of contexts (N, c)."""
+    frame = trained.frame
+    return trained.contexts.apply(context if frame is None else frame.apply(context))
 
 
 def _in_rows(compute: Callable[[slice], FloatArray], rows: int) -> FloatArray:

@@ -4,10 +4,11 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Final, final
+from typing import TYPE_CHECKING, Final, cast, final
 
 import numpy as np
 
+from latentarm.context import FEATURES, JOINTS, Named, feature_names
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
 
@@ -94,6 +95,23 @@ class Choice(Range):
 
     def __str__(self) -> str:
         return f"one of {', '.join(self.among)}"
+
+
+@final
+class Features(Range):
+    """Features of a context by name."""
+
+    def __contains__(self, value: object) -> bool:
+        if not isinstance(value, str | tuple):
+            return False
+        try:
+            feature_names(cast(Named, value))
+        except UserError:
+            return False
+        return True
+
+    def __str__(self) -> str:
+        return f"a tuple of distinct names of {', '.join(FEATURES)}, {JOINTS} first"
 
 
 @final

@@ -6,12 +6,14 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.context import ContextLayout
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import TrainingData
-from latentarm.models.scaling import Normaliser, action_normaliser, context_normaliser
+from latentarm.models.scaling import Normaliser, action_normaliser, feature_normaliser
 from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.tool_contexts import ToolContexts
+from latentarm.models.tool_frame import ToolFrame
 from latentarm.types import FloatArray, Pairs
 
 AHEAD_S: Final = 0.1
@@ -41,17 +43,21 @@ class Prepared:
 
     Attributes:
         data: normalised pairs.
-        contexts: from contexts as recorded to those of ``data``.
+        frame: turns poses in contexts into the tool's frame; None where that is not asked for.
+        contexts: from contexts, after ``frame``, to those of ``data``.
+        layout: the features of a context.
         actions: from actions in rad/s to those of ``data``.
         joints: m, joints that an action moves.
-        width: c, features of a context as recorded.
-        tools: k, end-effectors that the model looks at.
+        width: c, entries of a context.
+        tools: k, end-effectors of the arm, where it is needed.
         validation: episodes that decide when training stops.
         term: the further term of the loss, or None.
     """
 
     data: TrainingData
+    frame: ToolFrame | None
     contexts: Normaliser | ToolContexts
+    layout: ContextLayout
     actions: Normaliser
     joints: int
     width: int
@@ -61,15 +67,21 @@ class Prepared:
 
 
 def prepare(
-    asked: Preparation, pairs: Pairs, validation: Sequence[int], arm: Chain | None, term: LossTerm | None
+    asked: Preparation,
+    pairs: Pairs,
+    layout: ContextLayout,
+    validation: Sequence[int],
+    arm: Chain | None,
+    term: LossTerm | None,
 ) -> Prepared:
     """Split pairs by episode and normalise them by the training episodes alone.
 
     Args:
         asked: what the model asks of its data.
         pairs: of all episodes.
+        layout: of their contexts.
         validation: indices of the episodes that decide when training stops.
-        arm: the arm's kinematics, for models that look at the tools.
+        arm: the arm's kinematics, for models or contexts that look at the tools.
         term: is minimised together with the model's own loss.
 
     Raises:
@@ -83,12 +95,22 @@ def prepare(
     context, action = pairs.context[~outside], pairs.action[~outside]
     if not action.any():
         raise UserError("Every recorded action is zero: take actions from the states (displacement).")
-    contexts, actions = _normalisers(arm, asked.damping_m2, context, action)
-    shown, joints = contexts.apply(context), action.shape[1]
+    frame = ToolFrame(arm, layout) if arm is not None and layout.sees_tool_frame else None
+
+    def framed(recorded: FloatArray) -> FloatArray:
+        return recorded if frame is None else frame.apply(recorded)
+
+    plain = feature_normaliser(context, framed(context), layout)
+    contexts, actions = _in_metric(arm, asked.damping_m2, plain, framed(context), action)
+
+    def observed(recorded: FloatArray) -> FloatArray:
+        return contexts.apply(framed(recorded))
+
+    shown, joints = observed(context), action.shape[1]
     elsewhere = shown[:0]
     if term is not None:
         rng = np.random.default_rng([asked.data_seed, 2])
-        elsewhere = contexts.apply(term.contexts(context, joints, rng))
+        elsewhere = observed(term.contexts(context, joints, rng))
 
     def later(before: FloatArray, taken: FloatArray) -> FloatArray:
         """Observations (N, o) where actions (N, m) lead from contexts (N, c); (N, 0) if unused."""
@@ -96,19 +118,21 @@ def prepare(
             return before[:, :0]
         after = before.copy()
         after[:, :joints] += AHEAD_S * taken
-        return contexts.apply(after)
+        return observed(after)
 
     return Prepared(
         data=TrainingData(
             context=shown,
             action=actions.apply(action),
-            validation_context=contexts.apply(pairs.context[outside]),
+            validation_context=observed(pairs.context[outside]),
             validation_action=actions.apply(pairs.action[outside]),
             elsewhere=elsewhere,
             later=later(context, action),
             validation_later=later(pairs.context[outside], pairs.action[outside]),
         ),
+        frame=frame,
         contexts=contexts,
+        layout=layout,
         actions=actions,
         joints=joints,
         width=context.shape[1],
@@ -138,11 +162,11 @@ def side_by_side(data_sets: Sequence[TrainingData]) -> TrainingData:
     return TrainingData(**stacked)
 
 
-def _normalisers(
-    arm: Chain | None, damping_m2: float | None, context: FloatArray, action: FloatArray
+def _in_metric(
+    arm: Chain | None, damping_m2: float | None, plain: Normaliser, context: FloatArray, action: FloatArray
 ) -> tuple[Normaliser | ToolContexts, Normaliser]:
     """Normalisers of contexts and actions; in the metric of an arm's tools if the model has one."""
     if arm is None or damping_m2 is None:
-        return context_normaliser(context), action_normaliser(action)
-    contexts = ToolContexts.fitted(arm, context, damping_m2)
+        return plain, action_normaliser(action)
+    contexts = ToolContexts.fitted(arm, context, plain, damping_m2)
     return contexts, contexts.action_normaliser(context, action)

@@ -84,6 +84,13 @@ class Section:
             raise self._wrong(key, "a list")
         return cast(list[Any], value)
 
+    def texts(self, key: str) -> list[str]:
+        """The list of texts under a key."""
+        entries = self.entries(key)
+        if not all(isinstance(entry, str) for entry in entries):
+            raise self._wrong(key, "a list of texts")
+        return entries
+
     def array(self, key: str, shape: tuple[int | None, ...], *, gaps: bool = False) -> FloatArray:
         """The nested list of numbers under a key; None in ``shape`` allows any length.
 

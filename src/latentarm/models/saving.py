@@ -18,6 +18,8 @@ import numpy as np
 from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
+from latentarm.context import EARLIER_NAMES, ContextLayout, feature_names
+from latentarm.demonstrations.contexts import GRIPPER_SOURCES
 from latentarm.errors import UserError
 from latentarm.files import write_text, written_whole
 from latentarm.models.catalogue import KINDS, MODELS
@@ -33,7 +35,9 @@ if TYPE_CHECKING:
 
 CONFIG_NAME: Final = "config.json"
 WEIGHTS_NAME: Final = "model.safetensors"
-SCHEMA: Final = 3
+SCHEMA: Final = 4
+EARLIER_SCHEMAS: Final = (2, 3)
+"""They have no layout; their contexts are the joints, perhaps with a belief."""
 OLD_NAMES: Final = {
     "held_out_fraction": "validation_fraction",
     "held_out_episodes": "validation_episodes",
@@ -78,6 +82,12 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
             "hidden": list(dimensions.hidden),
             "tools": dimensions.tools,
         },
+        "layout": {
+            "features": list(trained.layout.features),
+            "goals": trained.layout.goals,
+            "objects": list(trained.layout.objects),
+            "gripper": trained.layout.gripper,
+        },
         "seeds": list(summary.seeds),
         "training": {
             "validation_episodes": list(summary.validation_episodes),
@@ -107,10 +117,10 @@ def read_model(folder: Path) -> TrainedModel:
     path = folder / CONFIG_NAME
     section = Section.of_file(path, CONFIG_LIMIT).section("model")
     schema = section.integer("schema", 0)
-    if schema not in (2, SCHEMA):
+    if schema not in (*EARLIER_SCHEMAS, SCHEMA):
         raise UserError(
-            f"{path} has schema {schema} and this version reads schemas 2 and {SCHEMA}: train the model"
-            " again."
+            f"{path} has schema {schema} and this version reads schemas {EARLIER_SCHEMAS[0]} to {SCHEMA}:"
+            " train the model again."
         )
     name, origin = section.text("kind"), section.plain().get("distribution")
     kind = KINDS.find(name, str(path), origin if isinstance(origin, str) else None)
@@ -127,9 +137,12 @@ def read_model(folder: Path) -> TrainedModel:
         raise UserError(
             f"{path}: a model of kind '{name}' has at least one tool, and the state in its context."
         )
-    shapes = kind.tensor_shapes(dimensions)
     parameters = _renamed(section.section("parameters"))
-    parameters.choice("context", ("state", "state_belief"))
+    earlier = schema in EARLIER_SCHEMAS
+    layout = (
+        _earlier_layout(parameters, dimensions) if earlier else _layout(section.section("layout"), dimensions)
+    )
+    shapes = kind.tensor_shapes(dimensions)
     training = _renamed(section.section("training"))
     seeds = dimensions.seeds
     summary = TrainingSummary(
@@ -141,7 +154,43 @@ def read_model(folder: Path) -> TrainedModel:
         collapsed=section.array("collapsed", (seeds, dimensions.latent)).astype(np.bool_),
     )
     tensors = read_tensors(folder / WEIGHTS_NAME, shapes, section.text("sha256"))
-    return TrainedModel(kind, parameters.plain(), dimensions, tensors, summary)
+    return TrainedModel(kind, parameters.plain(), dimensions, layout, tensors, summary)
+
+
+def _earlier_layout(parameters: Section, dimensions: Dimensions) -> ContextLayout:
+    features = EARLIER_NAMES[parameters.choice("context", tuple(EARLIER_NAMES))]
+    goals = max(dimensions.context - dimensions.action, 0)
+    return _checked(ContextLayout(features, dimensions.action, goals), dimensions, parameters.where)
+
+
+def _layout(section: Section, dimensions: Dimensions) -> ContextLayout:
+    """The layout of contexts that a model says it has.
+
+    Raises:
+        UserError: a feature is unknown, or the sizes do not agree.
+    """
+    try:
+        features = feature_names(section.texts("features"))
+    except UserError as error:
+        raise UserError(f"{section.where}: {error}") from error
+    layout = ContextLayout(
+        features=features,
+        joints=dimensions.action,
+        goals=section.integer("goals", 0),
+        objects=tuple(section.texts("objects")),
+        gripper=section.choice("gripper", ("", *GRIPPER_SOURCES)),
+    )
+    return _checked(layout, dimensions, section.where)
+
+
+def _checked(layout: ContextLayout, dimensions: Dimensions, where: str) -> ContextLayout:
+    if layout.width != dimensions.context:
+        raise UserError(
+            f"{where}: its features have {layout.width} entries, and its contexts {dimensions.context}."
+        )
+    if layout.sees_tool_frame and dimensions.tools < 1:
+        raise UserError(f"{where}: poses in the tool's frame need an arm with a tool.")
+    return layout
 
 
 def load_model(folder: StrPath) -> "LatentActionModel":

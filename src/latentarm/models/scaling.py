@@ -6,6 +6,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.context import GRIPPER, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
 from latentarm.types import BoolArray, FloatArray
 
 CONSTANT_SPREAD: Final = 1e-6
@@ -47,6 +48,62 @@ def context_normaliser(context: FloatArray) -> Normaliser:
     """
     spread = context.std(axis=0)
     return Normaliser(centre=context.mean(axis=0), scale=np.where(spread > CONSTANT_SPREAD, spread, 1.0))
+
+
+STILL: Final = {GRIPPER: 0.001, OBJECTS: 0.005, OBJECTS_IN_TOOL: 0.005}
+"""A position or an opening that varies less than this, m, in the training data tells nothing; so does an
+entry of a rotation that varies less than ten times as much."""
+
+LEAST_SCALE: Final = {GRIPPER: 0.005, OBJECTS: 0.05, OBJECTS_IN_TOOL: 0.05}
+"""Least scale of a position or an opening, m; that of an entry of a rotation is ten times as large. Without
+it a cup that moved by a centimetre in training and stands 30 cm elsewhere would be seen at 30 times the
+training's spread, where no network has learned anything."""
+
+UNSEEN: Final = 1e9
+"""Scale of an entry that tells nothing. A network's weights for it stay as they were drawn, since it was zero
+in training; with this scale it is zero wherever the thing stands."""
+
+_UNITS: Final = np.repeat([1.0, 10.0], [3, OBJECT - 3])
+"""Of a pose's entries: positions, and entries of a rotation."""
+
+
+def feature_normaliser(recorded: FloatArray, framed: FloatArray, layout: ContextLayout) -> Normaliser:
+    """A normaliser of each feature of a context on its own.
+
+    Joints and belief have zero mean and unit spread, as `context_normaliser` has them. The gripper's opening
+    is centred in its range and divided by half of it. Poses of things have zero mean and are divided by their
+    spread, or by `LEAST_SCALE` where that is larger.
+
+    What did not vary (`STILL`) is not seen at all: the decoder is then what it would be without. In the
+    tool's frame even a thing that stands still varies with the joints, and tells nothing that these do not;
+    so what varied is decided in the base frame there too, for position and rotation as a whole.
+
+    Args:
+        recorded: (N, c), contexts with all poses in the base frame.
+        framed: (N, c), the same with poses for `OBJECTS_IN_TOOL` in the tool's frame; what is normalised.
+        layout: of these contexts.
+    """
+    plain = context_normaliser(framed)
+    centre, scale = plain.centre.copy(), plain.scale.copy()
+    for feature in layout.features:
+        if feature not in STILL:
+            continue
+        columns = layout.columns(feature)
+        spread, unit = framed[:, columns].std(axis=0), np.ones(1)
+        told = spread > STILL[feature]
+        if feature == GRIPPER:
+            low, high = framed[:, columns].min(axis=0), framed[:, columns].max(axis=0)
+            centre[columns], spread = (low + high) / 2, (high - low) / 2
+        else:
+            unit = np.tile(_UNITS, len(layout.objects))
+            told = recorded[:, columns].std(axis=0) > unit * STILL[feature]
+        if feature == OBJECTS_IN_TOOL:
+            position, rotation = np.split(told.reshape(-1, OBJECT), [3], axis=1)
+            told = np.repeat(
+                np.stack([position.any(axis=1), rotation.any(axis=1)], axis=1), [3, OBJECT - 3], axis=1
+            ).ravel()
+        scale[columns] = np.where(told, np.maximum(spread, unit * LEAST_SCALE[feature]), UNSEEN)
+    return Normaliser(centre, scale)
 
 
 def action_normaliser(action: FloatArray) -> Normaliser:

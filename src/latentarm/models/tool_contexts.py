@@ -9,7 +9,9 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.errors import UserError
-from latentarm.kinematics.chain import Chain, Frame
+from latentarm.kinematics.chain import Chain
+from latentarm.kinematics.pose_rows import pose_rows
+from latentarm.models.saved_chain import chain_of_tensors, chain_tensors
 from latentarm.models.scaling import SPAN_QUANTILE, Normaliser, context_normaliser
 from latentarm.types import FloatArray
 
@@ -24,19 +26,12 @@ ROTATION_WEIGHT_M: Final = 0.05
 where they move the tools; not zero, so that turning a tool in place counts too."""
 
 
-def tool_shapes(joints: int, tools: int) -> dict[str, tuple[int, ...]]:
-    """Shapes of a saved model's arrays for an arm of n joints and k tools, by name (see `ToolContexts`)."""
+def tool_shapes(tools: int) -> dict[str, tuple[int, ...]]:
+    """Shapes of a saved model's arrays for an arm with k tools, by name, without its kinematics."""
     return {
         "place.centre": (PLACE * tools,),
         "place.scale": (PLACE * tools,),
         "metric.scale": (2,),
-        "chain.parent": (joints,),
-        "chain.offset": (joints, 4, 4),
-        "chain.axis": (joints, 3),
-        "chain.anchor": (joints, 3),
-        "chain.slide": (joints,),
-        "chain.tool_link": (tools,),
-        "chain.tool": (tools, 4, 4),
     }
 
 
@@ -100,11 +95,11 @@ class ToolContexts:
     damping: float
 
     @staticmethod
-    def fitted(chain: Chain, context: FloatArray, damping: float) -> "ToolContexts":
-        """The map whose normalisers suit contexts (N, c), in the metric of a damping, m^2/rad^2."""
+    def fitted(chain: Chain, context: FloatArray, contexts: Normaliser, damping: float) -> "ToolContexts":
+        """The map for contexts (N, c) with their normaliser, in the metric of a damping, m^2/rad^2."""
         return ToolContexts(
             chain=chain,
-            contexts=context_normaliser(context),
+            contexts=contexts,
             places=context_normaliser(_places(chain, context[:, : chain.dof])[0]),
             rotation_weight=ROTATION_WEIGHT_M,
             damping=damping,
@@ -117,21 +112,6 @@ class ToolContexts:
         Raises:
             UserError: it measures in another metric than this version.
         """
-        parent = tensors["chain.parent"].astype(np.int64)
-        chain = Chain(
-            joint_names=tuple(f"joint{joint + 1}" for joint in range(len(parent))),
-            parent=parent,
-            offset=tensors["chain.offset"],
-            axis=tensors["chain.axis"],
-            anchor=tensors["chain.anchor"],
-            slide=tensors["chain.slide"] > 0.5,
-            tools=tuple(
-                Frame(f"tool{tool + 1}", int(link), transform)
-                for tool, (link, transform) in enumerate(
-                    zip(tensors["chain.tool_link"], tensors["chain.tool"], strict=True)
-                )
-            ),
-        )
         weight, damped = tensors["metric.scale"]
         if (weight, damped) != (ROTATION_WEIGHT_M, damping):
             raise UserError(
@@ -140,7 +120,7 @@ class ToolContexts:
                 "train it again."
             )
         return ToolContexts(
-            chain=chain,
+            chain=chain_of_tensors(tensors),
             contexts=Normaliser(tensors["context.centre"], tensors["context.scale"]),
             places=Normaliser(tensors["place.centre"], tensors["place.scale"]),
             rotation_weight=ROTATION_WEIGHT_M,
@@ -149,19 +129,12 @@ class ToolContexts:
 
     def tensors(self) -> dict[str, FloatArray]:
         """Everything that the map consists of, as float64 arrays by name."""
-        chain = self.chain
         return {
             **self.contexts.tensors(),
             "place.centre": self.places.centre,
             "place.scale": self.places.scale,
             "metric.scale": np.array([self.rotation_weight, self.damping]),
-            "chain.parent": chain.parent.astype(np.float64),
-            "chain.offset": chain.offset.copy(),
-            "chain.axis": chain.axis.copy(),
-            "chain.anchor": chain.anchor.copy(),
-            "chain.slide": chain.slide.astype(np.float64),
-            "chain.tool_link": np.array([float(tool.link) for tool in chain.tools]),
-            "chain.tool": np.stack([tool.transform for tool in chain.tools]),
+            **chain_tensors(self.chain),
         }
 
     @cached_property
@@ -225,7 +198,6 @@ def _places(chain: Chain, state: FloatArray) -> tuple[FloatArray, FloatArray]:
     jacobians: list[FloatArray] = []
     for tool in range(len(chain.tools)):
         pose = chain.tool_pose(transforms, tool)
-        axes = pose.rotation[..., :2].reshape(*state.shape[:-1], TWIST)
-        places.append(np.concatenate([pose.position, axes], axis=-1))
+        places.append(pose_rows(pose))
         jacobians.append(chain.jacobian_at(transforms, pose, tool))
     return np.concatenate(places, axis=-1), np.concatenate(jacobians, axis=-2)

@@ -1,7 +1,7 @@
 """A trained decoder in torch: frozen, and differentiable with respect to z and c."""
 
 from collections.abc import Callable
-from typing import cast, final
+from typing import final
 
 import torch
 from torch import Tensor
@@ -10,6 +10,7 @@ from latentarm.models.kind import TrainedModel
 from latentarm.models.networks import Networks, group_layers
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.torch_tool_contexts import TorchToolContexts
+from latentarm.models.torch_tool_frame import TorchToolFrame
 from latentarm.types import FloatArray
 
 Action = Callable[[Networks, Tensor, Tensor], Tensor]
@@ -25,7 +26,7 @@ class TorchDecoder:
     context, and decode in what was seen.
 
     Attributes:
-        context: kind of context, ``state`` or ``state_belief``.
+        layout: the features that its contexts consist of.
         latent_dim: d.
         context_dim: c.
         action_dim: m.
@@ -50,7 +51,7 @@ class TorchDecoder:
         def tensor(values: FloatArray) -> Tensor:
             return torch.as_tensor(values, dtype=dtype)
 
-        self.context = cast(str, trained.parameters["context"])
+        self.layout = trained.layout
         self.latent_dim = trained.dimensions.latent
         self.context_dim = trained.dimensions.context
         self.action_dim = trained.dimensions.action
@@ -61,13 +62,15 @@ class TorchDecoder:
         )
         self._action = action
         contexts, latents = trained.contexts, trained.latents
-        self.observe: Callable[[Tensor], Tensor] = (
+        observe: Callable[[Tensor], Tensor] = (
             TorchToolContexts(contexts, dtype)
             if isinstance(contexts, ToolContexts)
             else _Normalise(tensor(contexts.centre), tensor(contexts.scale))
         )
+        frame = None if trained.frame is None else TorchToolFrame(trained.frame, dtype)
+        self.observe = observe if frame is None else _Framed(frame, observe)
         """What the networks see of contexts: (..., c) to (..., o), of which the first c entries are the
-        context, normalised."""
+        context, normalised, with poses in the tool's frame where that is asked for."""
         self.contexts = contexts.contexts if isinstance(contexts, ToolContexts) else contexts
         self._centre, self._scale = tensor(latents.centre[seed, 0]), tensor(latents.scale[seed, 0])
         self._action_scale = tensor(trained.actions.scale)
@@ -86,6 +89,15 @@ class TorchDecoder:
         latent = (self._centre + self._scale * z).reshape(1, -1, self.latent_dim)
         action = self._action(self._networks, latent, observed.reshape(1, -1, observed.shape[-1]))
         return (action * self._action_scale).reshape(*lead, self.action_dim)
+
+
+@final
+class _Framed:
+    def __init__(self, frame: TorchToolFrame, observe: Callable[[Tensor], Tensor]) -> None:
+        self._frame, self._observe = frame, observe
+
+    def __call__(self, context: Tensor) -> Tensor:
+        return self._observe(self._frame(context))
 
 
 @final

@@ -1,6 +1,6 @@
 """A simulated person who plans a few seconds ahead when one step brings the tool no closer."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
@@ -201,7 +201,7 @@ class Planning(Decision):
             u = within_reach(plans[:, :, piece])
             pushed = self._limits.is_push(u[:, :1])[..., None]
             for _ in range(self._planning.steps):
-                here = Context(state=state, belief=context.belief)
+                here = replace(context, state=state)
                 action = controller.action(controller.latent(u, here, mode), here, mode)
                 state = state + step_s * np.where(pushed, self._limits.slowed(action), 0.0)
             ends.append(state)

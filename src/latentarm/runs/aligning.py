@@ -145,7 +145,7 @@ def learn(known: Alignable, answers: Answers, name: str, kind: Kind) -> Learned:
             "duration_s": answers.motions.duration_s,
             "start": answers.motions.start.tolist(),
             "end": answers.motions.end.tolist(),
-            "belief": answers.motions.belief.tolist(),
+            "rest": answers.motions.rest.tolist(),
             "u": answers.u.tolist(),
         },
         **as_document(rows),

@@ -12,6 +12,7 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.context import feature_names
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.info import goals_document, parse_goals
 from latentarm.demonstrations.validation import check_goal
@@ -44,7 +45,7 @@ class Run:
         demonstrations: where the dataset was that the model was trained on.
         held_out: episodes that neither trained nor stopped it.
         model: the model's name.
-        context: what its decoder sees, ``state`` or ``state_belief``.
+        context: the features that its decoder sees, in order.
         robot: name or model file of the robot, or "" where it is unknown.
         end_effector: which site, body or link of a model file is the end-effector.
         fingerprint: of the dataset's states, so that another dataset is not taken for it.
@@ -61,7 +62,7 @@ class Run:
     demonstrations: Path
     held_out: tuple[int, ...]
     model: str
-    context: str
+    context: tuple[str, ...]
     robot: str
     end_effector: str | None
     fingerprint: str
@@ -123,7 +124,7 @@ def run_facts(run: Run) -> dict[str, object]:
         "demonstrations": str(run.demonstrations.resolve()),
         "held_out": list(run.held_out),
         "kind": run.model,
-        "context": run.context,
+        "context": list(run.context),
         "robot": run.robot,
         "end_effector": run.end_effector,
         "limits": None if run.limits is None else limits_document(run.limits),
@@ -161,7 +162,7 @@ def read_run(folder: StrPath) -> Run:
         demonstrations=Path(config.text("demonstrations")),
         held_out=tuple(config.integers("held_out", 0)),
         model=config.text("kind"),
-        context=config.text("context"),
+        context=_context(config),
         robot=config.text("robot"),
         end_effector=None if config.plain().get("end_effector") is None else config.text("end_effector"),
         fingerprint=config.text("fingerprint"),
@@ -171,6 +172,16 @@ def read_run(folder: StrPath) -> Run:
         goals=goals,
         routes=_routes(config, dof) if "routes" in kept else None,
     )
+
+
+def _context(config: Section) -> tuple[str, ...]:
+    """Names of features; earlier versions wrote one name for all."""
+    given = config.plain().get("context")
+    named = config.text("context") if isinstance(given, str) else config.texts("context")
+    try:
+        return feature_names(named)
+    except UserError as error:
+        raise UserError(f"{config.where}: {error}") from error
 
 
 def _routes(config: Section, dof: int) -> tuple[FloatArray, ...]:

@@ -34,7 +34,8 @@ _WIDTHS: Final = {
     "unlabelled": "context",  # runs of earlier versions have it
     "motions.start": "action",
     "motions.end": "action",
-    "motions.belief": "belief",
+    "motions.rest": "rest",
+    "motions.belief": "rest",  # what earlier versions call it
     "probe.start": "context",
     "probe.goal": "action",
     "probe.states": "context",
@@ -99,7 +100,7 @@ def save_samples(folder: Path, samples: Samples) -> Mapping[str, object]:
         tensors |= {
             "motions.start": motions.start,
             "motions.end": motions.end,
-            "motions.belief": motions.belief,
+            "motions.rest": motions.rest,
         }
     if probe is not None:
         tensors |= {
@@ -133,7 +134,7 @@ def load_samples(folder: Path) -> Samples | None:
     named = section.section("shapes")
     sizes = config.section("model").section("dimensions")
     width = {"context": sizes.integer("context", 1), "action": sizes.integer("action", 1)}
-    width["belief"] = width["context"] - width["action"]
+    width["rest"] = width["context"] - width["action"]
     shapes: dict[str, tuple[int, ...]] = {}
     for name in named.values:
         rows, columns = named.integers(name, 0, length=2)
@@ -145,8 +146,9 @@ def load_samples(folder: Path) -> Samples | None:
     try:
         if section.plain().get("duration_s") is not None:
             duration_s = float(section.array("duration_s", ()))
-            start, end, belief = (tensors[f"motions.{name}"] for name in ("start", "end", "belief"))
-            motions = Motions(start, end, duration_s, belief)
+            start, end = tensors["motions.start"], tensors["motions.end"]
+            rest = tensors["motions.belief" if "motions.belief" in tensors else "motions.rest"]
+            motions = Motions(start, end, duration_s, rest)
         if section.plain().get("step_s") is not None:
             pairs = StartGoalPairs(tensors["probe.start"], tensors["probe.goal"])
             states, context, action = (tensors[f"probe.{name}"] for name in ("states", "context", "action"))

@@ -7,6 +7,7 @@ from typing import cast
 
 import numpy as np
 
+from latentarm.context import BELIEF
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
@@ -64,7 +65,7 @@ def task_of_run(
         task: Task = Replay(arm, routes)
     else:
         task = make_task(chosen, robot, end_effector, limits, usual=lambda: robot_of(stated))
-    if run.context == "state_belief":
+    if BELIEF in run.context:
         _check_goals(run, task)
     return task
 

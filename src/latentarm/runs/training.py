@@ -13,6 +13,7 @@ import numpy as np
 
 from latentarm.assistance.annotation import prepared
 from latentarm.assistance.entropy import GoalEntropy
+from latentarm.context import JOINTS, feature_names
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.errors import UserError
@@ -49,7 +50,7 @@ class TrainConfig:
         model: a name in `MODELS`.
         out: the run folder; it must not hold a run yet.
         latent_dim: d.
-        context: what the decoder sees.
+        context: the features that the decoder sees, in order, the joints first.
         seeds: S, models trained side by side.
         seed: of everything random; the first of the S seeds.
         window: samples that an action may lead ahead or back.
@@ -70,7 +71,7 @@ class TrainConfig:
     model: str
     out: Path
     latent_dim: int = 2
-    context: Literal["state", "state_belief"] = "state"
+    context: str | tuple[str, ...] = (JOINTS,)
     seeds: int = 5
     seed: int = 0
     window: int = 5
@@ -143,7 +144,7 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
         demonstrations=config.demonstrations,
         held_out=tuple(int(index) for index in held_out),
         model=config.model,
-        context=config.context,
+        context=feature_names(config.context),
         robot=demonstrations.robot,
         end_effector=demonstrations.end_effector if robot is None else robot.end_effector,
         fingerprint=fingerprint(demonstrations),
@@ -190,7 +191,7 @@ def _model(config: TrainConfig) -> LatentActionModel:
         )
     model = model_class(
         latent_dim=config.latent_dim,
-        context=config.context,
+        context=feature_names(config.context),
         window=config.window,
         state_noise_rad=config.state_noise_rad,
         seeds=config.seeds,

@@ -1,6 +1,6 @@
 """Demonstrations of a task with things: a simulated person guides the arm through its steps, in physics."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -9,6 +9,8 @@ import numpy as np
 from latentarm.arms.catalogue import make_scene_arm
 from latentarm.arms.contract import SceneArm
 from latentarm.control.clock import SimulatedClock
+from latentarm.demonstrations.things import ENVIRONMENT
+from latentarm.kinematics.pose_rows import stored_rows
 from latentarm.parallel.grid import run_grid
 from latentarm.scene.scene import SceneState
 from latentarm.simulation.guide import GuidingHand, Movement, guided
@@ -47,12 +49,14 @@ class Demonstration:
         progress: how far it came.
         seconds: how long it took, s.
         states: how things stood at every kept sample.
+        objects: names of the things whose poses the episode holds.
     """
 
     episode: Episode
     progress: Progress
     seconds: float
     states: tuple[SceneState, ...]
+    objects: tuple[str, ...]
 
 
 def demonstrate_once(
@@ -99,7 +103,8 @@ def demonstrate_once(
             if person.progress.step is None or person.progress.failure is not None:
                 break
             driven.send(command)
-    return Demonstration(_episode(begun, samples, states), person.progress, clock.now_s(), tuple(states))
+    episode = _episode(begun, samples, states)
+    return Demonstration(episode, person.progress, clock.now_s(), tuple(states), begun.objects)
 
 
 def demonstrate(
@@ -137,6 +142,7 @@ def dataset_of(task: SceneTask, demonstrations: Sequence[Demonstration]) -> Demo
         robot=robot.name,
         end_effector=robot.end_effector,
         limits=robot.stated_limits,
+        objects=demonstrations[0].objects,
     )
 
 
@@ -212,8 +218,8 @@ GRASP_N: Final = 20.0
 def _episode(begun: Beginning, samples: list[tuple[Reading, Command]], states: list[SceneState]) -> Episode:
     extras: dict[str, FloatArray] = {}
     if begun.objects:
-        extras["observation.environment_state"] = np.stack(
-            [poses_of(state, begun.objects) for state in states]
+        extras[ENVIRONMENT] = np.stack(
+            [np.concatenate([stored_rows(state.poses[name]) for name in begun.objects]) for state in states]
         )
     widths = [reading.gripper.width_m for reading, _ in samples if reading.gripper is not None]
     if len(widths) == len(samples):
@@ -221,7 +227,7 @@ def _episode(begun: Beginning, samples: list[tuple[Reading, Command]], states: l
         extras["action.gripper"] = np.array(_targets(samples, widths[0]))[:, None]
     return Episode(
         state=np.stack([reading.q for reading, _ in samples]),
-        timestamp=np.arange(len(samples)) * PERIOD_S * SAMPLE_TICKS,
+        timestamp=np.arange(len(samples), dtype=np.float64) * (PERIOD_S * SAMPLE_TICKS),
         task=begun.text,
         extras=extras,
     )
@@ -234,12 +240,3 @@ def _targets(samples: list[tuple[Reading, Command]], first_m: float) -> list[flo
         first_m = first_m if command.gripper is None else command.gripper.width_m
         targets.append(first_m)
     return targets
-
-
-def poses_of(state: SceneState, objects: tuple[str, ...]) -> FloatArray:
-    """Poses of things as one vector, see the feature ``objects`` of a context."""
-    return np.concatenate([_flat(state.poses, name) for name in objects])
-
-
-def _flat(poses: Mapping[str, Pose], name: str) -> FloatArray:
-    return np.concatenate([poses[name].position, poses[name].rotation.ravel()])

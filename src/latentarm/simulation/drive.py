@@ -18,8 +18,9 @@ from latentarm.metrics.drives import Drive, measure_drive
 from latentarm.metrics.ending import Ending, why_it_ended
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.person import Person, SimulatedPerson
+from latentarm.tasks.surroundings import surroundings_of
 from latentarm.tasks.task import Task, check_not_done
-from latentarm.types import Context, FloatArray, Input, Pose, StepRecord
+from latentarm.types import FloatArray, Input, Pose, StepRecord
 
 RATE_HZ = 100.0
 """Rate of the simulated loop, the most that a real arm is sent from Python."""
@@ -128,8 +129,7 @@ def simulate(
                 since_s = (tick - 1) * dt_s
             if not remaining:
                 break
-            context = Context(state=reading.q, belief=step.belief)
-            given = operator.act(context, controller, step.mode, remaining[0], rng)
+            given = operator.act(step.context(reading.q), controller, step.mode, remaining[0], rng)
             records.append(step(given, 0.0, reading, clock.now_s()))
             if watch is not None:
                 watch(records[-1])
@@ -148,6 +148,7 @@ def _step(setup: Setup, dt_s: float) -> Step:
         belief=setup.rule(goals, period_s=BELIEF_PERIOD_S),
         arbitration=setup.arbitration,
         dt_s=dt_s,
+        surroundings=surroundings_of(task, setup.controller.objects),
     )
 
 

@@ -1,6 +1,6 @@
 """One simulated drive at a task with things, in physics: an operator, Algorithm 1, its filters, an arm."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -23,7 +23,8 @@ from latentarm.simulation.drive import BELIEF_PERIOD_S, RATE_HZ
 from latentarm.tasks.predicates import Spilled
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.steps import Progress, TaskStep, Waypoint
-from latentarm.types import Context, FloatArray, Input, Reading, StepRecord
+from latentarm.tasks.surroundings import watched
+from latentarm.types import FloatArray, Input, Pose, Reading, StepRecord
 
 STUCK_S: Final = 20.0
 """A run in which the tool comes no nearer to its waypoint for so long has failed, s."""
@@ -104,10 +105,10 @@ def drive_task(
     task, controller = setup.task, setup.controller
     begun = task.begin(choice, rng)
     clock = SimulatedClock()
-    step = _step(setup, begun)
+    follow = _Watch(begun)
+    step = _step(setup, begun, follow)
     limits = LoopLimits(step.dead_zone, step.joint_speed)
     operator = SimulatedPerson(task.robot, setup.person, step.dt_s, limits)
-    follow = _Watch(begun)
     with make_scene_arm(setup.arm, task.robot, begun.state, clock.now_s, begun.scene) as arm:
         check_arm(arm.spec, task.robot)
         reading = arm.read()
@@ -130,7 +131,7 @@ def drive_task(
     return follow.trace(choice)
 
 
-def _step(setup: TaskSetup, begun: Beginning) -> Step:
+def _step(setup: TaskSetup, begun: Beginning, follow: "_Watch") -> Step:
     belief = None
     if begun.goals:
         goals = np.stack([goal.configuration for goal in begun.goals])
@@ -143,6 +144,7 @@ def _step(setup: TaskSetup, begun: Beginning) -> Step:
         belief=belief,
         arbitration=setup.arbitration if begun.goals else None,
         dt_s=1.0 / RATE_HZ,
+        surroundings=watched(lambda: follow.poses, setup.controller.objects),
     )
 
 
@@ -159,8 +161,7 @@ def _given(
     waypoint = progress.waypoint
     if waypoint is None or progress.waits:
         return Input(np.zeros(controller.input_dim), gripper=progress.asks)
-    context = Context(state=reading.q, belief=step.belief)
-    return operator.act(context, controller, step.mode, waypoint.pose(state), rng)
+    return operator.act(step.context(reading.q), controller, step.mode, waypoint.pose(state), rng)
 
 
 @final
@@ -171,6 +172,7 @@ class _Watch:
         self.progress = Progress(begun.steps, begun.failures)
         self.records: list[StepRecord] = []
         self.ended: str | None = None
+        self.poses: Mapping[str, Pose] = {thing.name: thing.pose for thing in begun.scene.things}
         self._begun = begun
         self._position: list[FloatArray] = []
         self._points: list[FloatArray] = []
@@ -184,6 +186,7 @@ class _Watch:
 
     def sees(self, state: SceneState) -> None:
         """Take how things stand before the next input."""
+        self.poses = state.poses
         self.progress.update(state)
         self._done_s += [state.time_s] * (self.progress.done - len(self._done_s))
         self._feel(state)

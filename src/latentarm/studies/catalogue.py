@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
-from latentarm.tasks.scene_catalogue import SCENE_TASKS
+from latentarm.tasks.catalogue import SCENE_TASKS
 
 if TYPE_CHECKING:
     from latentarm.studies.study import Study

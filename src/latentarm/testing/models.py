@@ -1,10 +1,11 @@
 """Contract tests of latent action models."""
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any, Final, Literal, cast
+from typing import Any, Final, cast
 
 import numpy as np
 import pytest
@@ -24,9 +25,19 @@ from latentarm.models.scaling import CollapseWarning
 from latentarm.robots.planar import planar
 from latentarm.types import Demonstrations, Episode, FloatArray
 
-ContextKind = Literal["state", "state_belief"]
-
 JOINTS: Final = 4
+OBJECTS: Final = ("cup", "table")
+STANDS: Final = np.array([0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+"""Pose of the table, which never moves."""
+
+EVERYTHING: Final = ("joints", "objects_in_tool", "gripper", "belief", "objects")
+CONTEXTS: Final[Mapping[tuple[str, ...], int]] = {
+    ("joints",): JOINTS,
+    ("joints", "belief"): JOINTS + 2,
+    EVERYTHING: JOINTS + 3 + 2 * 9 * len(OBJECTS),
+}
+"""Contexts that every model must take, and how many entries they have."""
+
 SMALL: Final[dict[str, Any]] = {"seeds": 2, "epochs": 2, "hidden": (8, 8), "window": 2}
 """Parameters of a training that takes a second or less."""
 
@@ -43,8 +54,22 @@ def ring(rng: np.random.Generator, samples: int = 80, rate_hz: float = 20.0) -> 
         [radius * np.cos(angle), radius * np.sin(angle), 0.4 * np.sin(2 * angle), np.full(samples, 0.3)],
         axis=-1,
     )
-    belief = np.stack([0.5 + 0.4 * np.sin(angle), 0.5 - 0.4 * np.sin(angle)], axis=-1)
-    return Episode(state=state, timestamp=time, extras={"belief": belief})
+    extras = {
+        "belief": np.stack([0.5 + 0.4 * np.sin(angle), 0.5 - 0.4 * np.sin(angle)], axis=-1),
+        "observation.gripper_width": 0.04 + 0.04 * np.sin(2 * time)[:, None],
+        "observation.environment_state": np.concatenate(
+            [_swung(time), np.tile(STANDS, (samples, 1))], axis=1
+        ),
+    }
+    return Episode(state=state, timestamp=time, extras=extras)
+
+
+def _swung(time: FloatArray) -> FloatArray:
+    """Poses (T, 7) of a thing that is carried about and turned."""
+    half = 0.3 * np.sin(time)
+    turn = np.stack([np.cos(half), 0 * half, 0.6 * np.sin(half), 0.8 * np.sin(half)], axis=-1)
+    place = np.stack([0.4 + 0.2 * np.cos(time), 0.3 * np.sin(time), 0.1 + 0 * time], axis=-1)
+    return np.concatenate([place, turn], axis=-1)
 
 
 @cache
@@ -52,7 +77,7 @@ def demonstrations(episodes: int = 12) -> Demonstrations:
     """So many motions of a planar arm."""
     rng = np.random.default_rng(3)
     names = tuple(f"joint{joint + 1}" for joint in range(JOINTS))
-    return Demonstrations(tuple(ring(rng) for _ in range(episodes)), 20.0, names)
+    return Demonstrations(tuple(ring(rng) for _ in range(episodes)), 20.0, names, objects=OBJECTS)
 
 
 def fit(model: LatentActionModel, episodes: int = 12) -> LatentActionModel:
@@ -63,7 +88,7 @@ def fit(model: LatentActionModel, episodes: int = 12) -> LatentActionModel:
 
 
 @cache
-def fitted(estimator: type[LatentActionModel], context: ContextKind) -> LatentActionModel:
+def fitted(estimator: type[LatentActionModel], context: tuple[str, ...]) -> LatentActionModel:
     """A model that all tests of a session share; none may change it."""
     return fit(estimator(**SMALL, context=context))
 
@@ -89,7 +114,7 @@ class ModelContract:
     @pytest.fixture
     def model(self, estimator: type[LatentActionModel]) -> LatentActionModel:
         """A fitted model of two seeds, which no test may change."""
-        return fitted(estimator, "state")
+        return fitted(estimator, ("joints",))
 
     @pytest.fixture
     def context(self) -> FloatArray:
@@ -203,10 +228,11 @@ class ModelContract:
         np.testing.assert_array_equal(loaded.history_, model.history_)
         assert loaded.validation_episodes_ == model.validation_episodes_
 
-    @pytest.mark.parametrize(("kind", "width"), [("state", JOINTS), ("state_belief", JOINTS + 2)])
+    @pytest.mark.parametrize("kind", CONTEXTS)
     def test_the_runtime_in_numpy_equals_the_model(
-        self, estimator: type[LatentActionModel], z: FloatArray, tmp_path: Path, kind: ContextKind, width: int
+        self, estimator: type[LatentActionModel], z: FloatArray, tmp_path: Path, kind: tuple[str, ...]
     ) -> None:
+        width = CONTEXTS[kind]
         model = fitted(estimator, kind)
         context = np.random.default_rng(6).uniform(-1, 1, (30, width))
         expected = model.decode(z, context)
@@ -214,7 +240,8 @@ class ModelContract:
         for seed in range(2):
             for decoder in (model.decoder(seed), load_decoder(tmp_path, seed)):
                 np.testing.assert_allclose(decoder.decode(z, context), expected[seed], rtol=0, atol=1e-12)
-                assert (decoder.context, decoder.latent_dim) == (kind, 2)
+                assert (decoder.layout, decoder.latent_dim) == (model.trained_.layout, 2)
+                assert decoder.layout.features == kind
                 assert (decoder.context_dim, decoder.action_dim) == (width, JOINTS)
 
     @pytest.mark.parametrize(("latent_dim", "hidden"), [(1, (8,)), (3, (6, 5, 4)), (4, ()), (2, (16, 4))])
@@ -229,16 +256,17 @@ class ModelContract:
         tolerance = 1e-12 * max(np.abs(expected).max(), 1)
         np.testing.assert_allclose(model.decoder(1).decode(z, context), expected[1], rtol=0, atol=tolerance)
 
-    @pytest.mark.parametrize(("kind", "width"), [("state", JOINTS), ("state_belief", JOINTS + 2)])
+    @pytest.mark.parametrize("kind", CONTEXTS)
     def test_the_torch_decoder_equals_the_model_and_its_gradient_is_the_slope(
-        self, estimator: type[LatentActionModel], kind: ContextKind, width: int
+        self, estimator: type[LatentActionModel], kind: tuple[str, ...]
     ) -> None:
+        width = CONTEXTS[kind]
         model = fitted(estimator, kind)
         rng = np.random.default_rng(2)
         z, context = rng.uniform(-1, 1, (2, 3, 2)), rng.uniform(-1, 1, (2, 3, width))
         for seed in range(2):
             decoder = model.torch_decoder(seed, torch.float64)
-            assert (decoder.context, decoder.latent_dim) == (kind, 2)
+            assert (decoder.layout, decoder.latent_dim) == (model.trained_.layout, 2)
             assert (decoder.context_dim, decoder.action_dim) == (width, JOINTS)
 
             def action(z: torch.Tensor, context: torch.Tensor, decoder: Any = decoder) -> torch.Tensor:
@@ -281,7 +309,7 @@ class ModelContract:
         np.testing.assert_allclose(decoder.decode(z[3], context[:5]), grid[3], atol=1e-12)
 
     def test_unit_inputs_span_what_was_demonstrated(self, model: LatentActionModel) -> None:
-        pairs = make_pairs(demonstrations(), SMALL["window"], 0.0, "state", np.random.default_rng(0))
+        pairs = make_pairs(demonstrations(), SMALL["window"], 0.0, ("joints",), np.random.default_rng(0))
         trained_on = ~np.isin(pairs.episode, model.validation_episodes_)
         used = np.abs(model.encode(pairs.context[trained_on], pairs.action[trained_on]))
         if model.kind.encoder != "nearest":
@@ -292,7 +320,7 @@ class ModelContract:
             assert ((longest > 0.6) & (longest < 1.2)).all()
 
     def test_the_search_for_the_nearest_input_is_right_for_it(self, model: LatentActionModel) -> None:
-        pairs = make_pairs(demonstrations(), SMALL["window"], 0.0, "state", np.random.default_rng(0))
+        pairs = make_pairs(demonstrations(), SMALL["window"], 0.0, ("joints",), np.random.default_rng(0))
         rows = np.linspace(0, len(pairs.action) - 1, 30).astype(int)
         seen, action = pairs.context[rows], pairs.action[rows]
         codes = model.encode(seen, action)

@@ -17,8 +17,8 @@ from latentarm.studies.tasks.rows import rows_of, runs_as_json
 from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Run, through
 from latentarm.studies.tasks.study import STUDY
 from latentarm.studies.tasks.tables import failure_table, measure_table
+from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.eating.marshmallows import Marshmallows
-from latentarm.tasks.scene_catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.scene_task import SceneTask
 
 TINY = Preset(

@@ -16,7 +16,7 @@ from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.streams import generator, integer, sequence
 from latentarm.studies.tasks.preset import CONTEXTS, Preset, Stream
 from latentarm.studies.tasks.runs import Condition, Driver, Run, choice_of, driven_run, shown_run
-from latentarm.tasks.scene_catalogue import make_scene_task
+from latentarm.tasks.catalogue import make_scene_task
 from latentarm.types import Demonstrations
 
 

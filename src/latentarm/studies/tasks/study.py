@@ -25,7 +25,7 @@ from latentarm.studies.tasks.rows import STUDY as NAME
 from latentarm.studies.tasks.rows import Measured, rows_of, runs_as_json
 from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Driver, Run
 from latentarm.studies.tasks.tables import failure_table, measure_table, summary_tables
-from latentarm.tasks.scene_catalogue import SCENE_TASKS, make_scene_task
+from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.types import Row
 
 if TYPE_CHECKING:

@@ -131,7 +131,7 @@ class ApplePie(SceneTask):
                 *(Spilled(name, TOP_M - 0.02, (("bowl", rooms["bowl"]),), SPILLED) for name in CHOICES[:2]),
             ),
             goals=(),
-            objects=(_TAKEN[what], "bowl", "bin", "shelf"),
+            objects=("egg cup", "flour cup", "apple", "bowl", "bin", "shelf"),
             text=f"the {what} of the pie",
         )
 
@@ -141,9 +141,6 @@ class ApplePie(SceneTask):
 
 
 _YOLK: Final = (0.95, 0.75, 0.3, 1.0)
-
-_TAKEN: Final[Mapping[str, str]] = {"eggs": "egg cup", "flour": "flour cup", "apple": "apple"}
-"""What is taken from the shelf first."""
 
 
 def _things(shelf: FloatArray, bowl_at: FloatArray, bin_at: FloatArray) -> dict[str, Thing]:

@@ -14,7 +14,6 @@ from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.serving.counter import (
     FLOUR,
     GRAIN_KG,
-    GRAIN_RADIUS_M,
     TOP_M,
     counter,
     counter_bowl,
@@ -33,9 +32,12 @@ LEFT_AT_M: Final = ((0.54, 0.58), (0.20, 0.24))
 RIGHT_AT_M: Final = ((0.54, 0.58), (-0.24, -0.20))
 """Where the right bowl stands."""
 
-GRAINS: Final = 30
+GRAINS: Final = 24
 
-SHARE: Final = 0.3
+LARGE_M: Final = 0.0065
+"""Radius of a grain: they fill the cup, or all of them would leave it at once."""
+
+SHARE: Final = 0.25
 """Share of the grains that must end in each bowl."""
 
 SPILLED: Final = 0.25
@@ -80,7 +82,7 @@ class Pour(SceneTask):
         left = counter_bowl("left bowl", *anywhere(LEFT_AT_M, rng))
         right = counter_bowl("right bowl", *anywhere(RIGHT_AT_M, rng))
         rooms = tuple((bowl.name, bowl.room) for bowl in (left, right))
-        grains = filled("grains", cup, GRAINS, GRAIN_RADIUS_M, GRAIN_KG, FLOUR)
+        grains = filled("grains", cup, GRAINS, LARGE_M, GRAIN_KG, FLOUR)
         return Beginning(
             state=start(self.robot, rng),
             scene=Scene((counter(), cup, left, right), (grains,)),

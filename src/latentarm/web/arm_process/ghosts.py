@@ -1,5 +1,6 @@
 """What each direction of the stick would do now: the tool's path over the next second."""
 
+from dataclasses import replace
 from typing import Final, final
 
 import numpy as np
@@ -8,7 +9,7 @@ from latentarm.assistance.blending import Arbitration, assistive_action, blend
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.kinematics.obstacles import HalfSpace
-from latentarm.tasks.task import Task
+from latentarm.tasks.place import Place
 from latentarm.types import Context, FloatArray
 from latentarm.web.protocol.channel import Ghosts, Point
 
@@ -58,7 +59,7 @@ class GhostPaths:
         help_: whether and how much the robot helps.
     """
 
-    def __init__(self, task: Task, controller: Controller, help_: Help) -> None:
+    def __init__(self, task: Place, controller: Controller, help_: Help) -> None:
         self._controller = controller
         self._help = help_
         robot = task.robot
@@ -106,7 +107,7 @@ class GhostPaths:
         at, heights = self._chain.tool_pose(transforms).position, self._heights(transforms)
         points: list[Point] = []
         for _ in range(POINTS):
-            wanted = self._wanted(u, Context(q, context.belief), mode)
+            wanted = self._wanted(u, replace(context, state=q), mode)
             reached, transforms = self._moved(q, at, wanted, dt_s)
             heights_there = self._heights(transforms)
             if not ((heights_there < self._clearance) & (heights_there < heights - _SAME_M)).any():

@@ -1,0 +1,97 @@
+"""Contexts of demonstrated samples: what a decoder would have seen at each."""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from latentarm.context import (
+    BELIEF,
+    GRIPPER,
+    OBJECT,
+    OBJECTS,
+    OBJECTS_IN_TOOL,
+    ContextLayout,
+    Named,
+    context_vector,
+    feature_names,
+)
+from latentarm.demonstrations.gripper import GRIPPER_TOGGLED, GRIPPER_WIDTH
+from latentarm.demonstrations.things import ENVIRONMENT
+from latentarm.errors import UserError
+from latentarm.kinematics.pose_rows import STORED, seen_rows
+from latentarm.types import Context, Demonstrations, Episode, FloatArray
+
+GRIPPER_SOURCES: Final = (GRIPPER_WIDTH, GRIPPER_TOGGLED)
+"""Features of a dataset that tell how far the gripper is open, the best first."""
+
+
+def episode_contexts(episode: Episode, context: Named, index: int | None = None) -> FloatArray:
+    """What a decoder sees at every sample of an episode, (T, c).
+
+    Args:
+        episode: with T samples.
+        context: the features that it sees, see `feature_names`.
+        index: number of the episode, for messages.
+
+    Raises:
+        UserError: a feature is unknown, or the episode does not hold it.
+    """
+    names = feature_names(context)
+    where = "An episode" if index is None else f"Episode {index}"
+    belief = gripper = np.zeros(0)
+    objects = np.zeros((0, OBJECT))
+    if BELIEF in names:
+        belief = _taken(episode, ("belief",), where, BELIEF, "annotate the demonstrations")
+    if GRIPPER in names:
+        gripper = _taken(episode, GRIPPER_SOURCES, where, GRIPPER, "record the gripper's opening")
+    if OBJECTS in names or OBJECTS_IN_TOOL in names:
+        stored = _taken(episode, (ENVIRONMENT,), where, OBJECTS, "record the poses of things")
+        if stored.shape[1] % STORED:
+            raise UserError(_nameless(where, stored.shape[1]))
+        objects = seen_rows(stored.reshape(len(stored), -1, STORED))
+    return context_vector(Context(episode.state, belief, gripper, objects), names)
+
+
+def context_layout(demonstrations: Demonstrations, context: Named) -> ContextLayout:
+    """Where the features lie in the contexts of demonstrations.
+
+    Raises:
+        UserError: a feature is unknown, or the demonstrations do not hold it or do not say which things'
+            poses they hold.
+    """
+    names, first = feature_names(context), demonstrations.episodes[0]
+    width = episode_contexts(first, names, 0).shape[1]
+    sees_objects = OBJECTS in names or OBJECTS_IN_TOOL in names
+    if sees_objects and not demonstrations.objects:
+        raise UserError(_nameless("The dataset", first.extras[ENVIRONMENT].shape[1]))
+    layout = ContextLayout(
+        features=names,
+        joints=demonstrations.dof,
+        goals=first.extras["belief"].shape[1] if BELIEF in names else 0,
+        objects=demonstrations.objects if sees_objects else (),
+        gripper=next(one for one in GRIPPER_SOURCES if one in first.extras) if GRIPPER in names else "",
+    )
+    if layout.width != width:
+        raise UserError(f"The contexts of these demonstrations have {width} entries, not {layout.width}.")
+    return layout
+
+
+def _taken(episode: Episode, sources: Sequence[str], where: str, feature: str, remedy: str) -> FloatArray:
+    """The first of some features of the dataset that an episode has."""
+    for name in sources:
+        if name in episode.extras:
+            return episode.extras[name]
+    there = ", ".join(sorted(episode.extras)) or "nothing besides the joints"
+    raise UserError(
+        f"{where} has no {' and no '.join(sources)}, which the context {feature} needs; it has {there}:"
+        f" {remedy}, or leave {feature} out of the context."
+    )
+
+
+def _nameless(where: str, width: int) -> str:
+    return (
+        f"{where} has {width} numbers in {ENVIRONMENT} and does not say which things' poses these are, so the"
+        f" context {OBJECTS} cannot be taken from them: name its entries thing.x, thing.y, thing.z, thing.qw,"
+        " thing.qx, thing.qy, thing.qz in meta/info.json, seven for each thing."
+    )

@@ -1,0 +1,48 @@
+"""Poses of things in a dataset: the feature ``observation.environment_state`` and the names of its entries.
+
+Each thing has seven entries in the base frame: position, m, and quaternion (w, x, y, z). The entries' names,
+``cup.x`` to ``cup.qz``, lie in ``meta/info.json`` as the layout has them and tell which things these are.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+from latentarm.errors import UserError
+from latentarm.types import Episode
+
+ENVIRONMENT: Final = "observation.environment_state"
+
+ENTRIES: Final = ("x", "y", "z", "qw", "qx", "qy", "qz")
+
+
+def entry_names(objects: Sequence[str]) -> tuple[str, ...]:
+    """Names (7 K) of the feature's entries for K things."""
+    return tuple(f"{name}.{entry}" for name in objects for entry in ENTRIES)
+
+
+def object_names(entries: Sequence[str]) -> tuple[str, ...]:
+    """The K things that names of entries tell of; empty where the entries are something else."""
+    names = tuple(entry.rpartition(".")[0] for entry in entries[:: len(ENTRIES)])
+    return names if entry_names(names) == tuple(entries) else ()
+
+
+def check_things(objects: Sequence[str], episode: Episode, source: str) -> None:
+    """Check that the poses of named things are there.
+
+    Args:
+        objects: K names, at least one.
+        episode: the first of the dataset; the others have the same features.
+        source: the file or folder it came from, for the message.
+
+    Raises:
+        UserError: a name is empty or comes twice, or the feature has not 7 entries for each.
+    """
+    if not all(objects) or len(set(objects)) != len(objects):
+        raise UserError(f"{source}: the names of its things, {', '.join(objects)}, must be distinct.")
+    poses = episode.extras.get(ENVIRONMENT)
+    if poses is None or poses.shape[1:] != (len(ENTRIES) * len(objects),):
+        width = 0 if poses is None else poses.shape[-1]
+        raise UserError(
+            f"{source}: {ENVIRONMENT} has {width} entries for {len(objects)} things, and must have"
+            f" {len(ENTRIES)} for each: position and quaternion (w, x, y, z)."
+        )

@@ -1,0 +1,53 @@
+"""An arm's kinematics among the tensors of a saved model."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from latentarm.kinematics.chain import Chain, Frame
+from latentarm.types import FloatArray
+
+
+def chain_shapes(joints: int, tools: int) -> dict[str, tuple[int, ...]]:
+    """Shapes of the arrays of an arm of n joints and k tools, by name."""
+    return {
+        "chain.parent": (joints,),
+        "chain.offset": (joints, 4, 4),
+        "chain.axis": (joints, 3),
+        "chain.anchor": (joints, 3),
+        "chain.slide": (joints,),
+        "chain.tool_link": (tools,),
+        "chain.tool": (tools, 4, 4),
+    }
+
+
+def chain_tensors(chain: Chain) -> dict[str, FloatArray]:
+    """Everything that an arm's kinematics consist of, as float64 arrays by name."""
+    return {
+        "chain.parent": chain.parent.astype(np.float64),
+        "chain.offset": chain.offset.copy(),
+        "chain.axis": chain.axis.copy(),
+        "chain.anchor": chain.anchor.copy(),
+        "chain.slide": chain.slide.astype(np.float64),
+        "chain.tool_link": np.array([float(tool.link) for tool in chain.tools]),
+        "chain.tool": np.stack([tool.transform for tool in chain.tools]),
+    }
+
+
+def chain_of_tensors(tensors: Mapping[str, FloatArray]) -> Chain:
+    """The arm that `chain_tensors` gave; its joints and tools are numbered, since names are not kept."""
+    parent = tensors["chain.parent"].astype(np.int64)
+    return Chain(
+        joint_names=tuple(f"joint{joint + 1}" for joint in range(len(parent))),
+        parent=parent,
+        offset=tensors["chain.offset"],
+        axis=tensors["chain.axis"],
+        anchor=tensors["chain.anchor"],
+        slide=tensors["chain.slide"] > 0.5,
+        tools=tuple(
+            Frame(f"tool{tool + 1}", int(link), transform)
+            for tool, (link, transform) in enumerate(
+                zip(tensors["chain.tool_link"], tensors["chain.tool"], strict=True)
+            )
+        ),
+    )
