@@ -29,7 +29,7 @@ FRAMES: Final = 8
 ACROSS: Final = 4
 """Pictures in a row of a strip."""
 
-ROW_MM: Final = 41.0
+ROW_MM: Final = 43.0
 HEAD_MM: Final = 7.0
 
 CHARACTERS: Final = 28
@@ -126,11 +126,12 @@ def strip(heading: str, time_s: Sequence[float], pictures: Sequence[Image], trac
     figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.02, wspace=0.0, hspace=0.0)
     panels = np.ravel(figure.subplots(down, ACROSS, squeeze=False))
     for axes in panels:
-        axes.axis("off")
+        axes.set(xticks=[], yticks=[])
+        axes.spines[:].set_visible(False)
     for axes, at_s, picture in zip(panels, time_s, pictures, strict=False):
         axes.imshow(picture)
         said = fill(f"{at_s:.1f} s: {_under_way(trace, at_s)}", CHARACTERS)
-        axes.text(0.5, -0.03, said, transform=axes.transAxes, fontsize=SMALL_FONT_SIZE, ha="center", va="top")
+        axes.set_xlabel(said, fontsize=SMALL_FONT_SIZE)
     return figure
 
 
