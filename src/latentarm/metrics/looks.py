@@ -35,6 +35,8 @@ LOOKS: Final[dict[str, Look]] = {
     "dessert": Look("Dessert", "#000000", "o", "-"),
     "avoid": Look("Avoid", "#D55E00", "X", "--"),
     "apple_pie": Look("Apple pie", "#882255", "^", "-"),
+    "moved_marshmallows": Look("Marshmallows, moved", "#CC79A7", "v", ":"),
+    "moved_reach_and_pour": Look("Reach & Pour, moved", "#56B4E9", "s", ":"),
 }
 """Of conditions and tasks; a model's look is that of its kind."""
 

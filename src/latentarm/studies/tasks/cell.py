@@ -14,9 +14,9 @@ from latentarm.simulation.demonstrate import Demonstration, dataset_of, demonstr
 from latentarm.simulation.task_drive import TaskSetup, drive_task
 from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.streams import generator, integer, sequence
+from latentarm.studies.tasks.moved import task_of
 from latentarm.studies.tasks.preset import CONTEXTS, Preset, Stream
 from latentarm.studies.tasks.runs import Condition, Driver, Run, choice_of, driven_run, shown_run
-from latentarm.tasks.catalogue import make_scene_task
 from latentarm.types import Demonstrations
 
 
@@ -26,7 +26,7 @@ class ShownCell:
     """Some runs of the scripted demonstrator.
 
     Attributes:
-        task: a name of `SCENE_TASKS`.
+        task: a name of `latentarm.studies.tasks.moved.TASKS`.
         stream: what the runs are for: `Stream.RUNS` or `Stream.DEMONSTRATIONS`.
         numbers: of the runs.
         seed: of the study.
@@ -60,7 +60,7 @@ def show(cell: ShownCell) -> Shown:
     Raises:
         UserError: the arm cannot be used.
     """
-    task = make_scene_task(cell.task)
+    task = task_of(cell.task, cell.stream)
     runs: list[Run] = []
     demonstrations: list[Demonstration] = []
     with threadpool_limits(limits=1):
@@ -78,7 +78,7 @@ class TrainingCell:
     """Models of one kind.
 
     Attributes:
-        task: a name of `SCENE_TASKS`.
+        task: a name of `latentarm.studies.tasks.moved.TASKS`.
         model: a name of `latentarm.models.catalogue.MODELS`.
         context: what its decoder sees, a name of `CONTEXTS`.
         demonstrations: to learn from.
@@ -100,7 +100,7 @@ class Trained:
     """What came of a `TrainingCell`.
 
     Attributes:
-        task: a name of `SCENE_TASKS`.
+        task: a name of `latentarm.studies.tasks.moved.TASKS`.
         condition: which kind of model, and what its decoder sees.
         decoders: one per seed.
         fit_s: how long the fit took, s.
@@ -125,7 +125,7 @@ def train(cell: TrainingCell) -> Trained:
             cell.model,
             cell.demonstrations,
             validation=validation_episodes(cell.demonstrations),
-            fit={"chain": make_scene_task(cell.task).robot.chain},
+            fit={"chain": task_of(cell.task, Stream.DEMONSTRATIONS).robot.chain},
             latent_dim=2,
             context=CONTEXTS[cell.context],
             seeds=preset.seeds,
@@ -146,7 +146,7 @@ class DriveCell:
     """Some runs of a simulated person who drives.
 
     Attributes:
-        task: a name of `SCENE_TASKS`.
+        task: a name of `latentarm.studies.tasks.moved.TASKS`.
         driver: what they steer with.
         person: a name of `PEOPLE`.
         numbers: of the runs.
@@ -166,7 +166,7 @@ class Driven:
     """What came of a `DriveCell`.
 
     Attributes:
-        task: a name of `SCENE_TASKS`.
+        task: a name of `latentarm.studies.tasks.moved.TASKS`.
         condition: what the person steered with.
         runs: in order.
         drive_s: how long the simulation took, s.
@@ -184,7 +184,7 @@ def drive(cell: DriveCell) -> Driven:
     Raises:
         UserError: the arm cannot be used, or the decoder is for another arm.
     """
-    task = make_scene_task(cell.task)
+    task = task_of(cell.task, Stream.RUNS)
     runs: list[Run] = []
     with threadpool_limits(limits=1):
         began = perf_counter()
@@ -201,13 +201,15 @@ def training_set(task: str, shown: Sequence[Shown]) -> Demonstrations:
     """The demonstrations of a task that succeeded, as a dataset.
 
     Args:
-        task: a name of `SCENE_TASKS`.
+        task: a name of `latentarm.studies.tasks.moved.TASKS`.
         shown: of that task.
 
     Raises:
         UserError: fewer than two succeeded, and a model needs one to learn from and one for validation.
     """
-    found = dataset_of(make_scene_task(task), [each for one in shown for each in one.demonstrations])
+    found = dataset_of(
+        task_of(task, Stream.DEMONSTRATIONS), [each for one in shown for each in one.demonstrations]
+    )
     if len(found.episodes) < 2:
         raise UserError(
             f"{len(found.episodes)} demonstrations of the task {task} succeeded, and a model needs two or"

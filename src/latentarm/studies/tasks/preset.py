@@ -7,7 +7,10 @@ from typing import Final, final
 
 from latentarm.operators.catalogue import OperatorName
 
-CONTEXTS: Final[Mapping[str, str]] = {"joints": "state"}
+CONTEXTS: Final[Mapping[str, tuple[str, ...]]] = {
+    "joints": ("joints",),
+    "joints objects": ("joints", "objects"),
+}
 """What a decoder may see, by the name of the condition; the model's parameter ``context`` for each."""
 
 
@@ -36,7 +39,7 @@ class Preset:
     runs: int = 50
     demonstrations: int = 60
     models: tuple[str, ...] = ("cvae", "homogeneous")
-    contexts: tuple[str, ...] = ("joints",)
+    contexts: tuple[str, ...] = ("joints", "joints objects")
     seeds: int = 3
     epochs: int = 60
     batch_size: int = 256

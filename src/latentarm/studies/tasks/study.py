@@ -20,12 +20,12 @@ from latentarm.studies.tasks.cell import (
     training_set,
 )
 from latentarm.studies.tasks.figures import steps_figure
+from latentarm.studies.tasks.moved import MOVED, TASKS, task_of
 from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm.studies.tasks.rows import STUDY as NAME
 from latentarm.studies.tasks.rows import Measured, rows_of, runs_as_json
 from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Driver, Run
 from latentarm.studies.tasks.tables import failure_table, measure_table, summary_tables
-from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.types import Row
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def _page(
     rows: Sequence[Row],
     figures: "Mapping[str, Figure]",
 ) -> str:
-    tasks = {name: make_scene_task(name) for name in by_task}
+    tasks = {name: task_of(name, Stream.RUNS) for name in by_task}
     return render_page(
         "tasks/page.md",
         command=again(STUDY, request),
@@ -120,6 +120,7 @@ def _page(
         hand=GuidingHand(),
         stuck_s=STUCK_S,
         tasks=tasks,
+        moved={name: MOVED[name].about for name in tasks if name in MOVED},
         demonstrated={name: measured.demonstrated(name) for name in tasks},
         measure_tables={name: measure_table(rows, runs, name) for name, runs in by_task.items()},
         failure_tables={name: failure_table(runs) for name, runs in by_task.items()},
@@ -148,7 +149,7 @@ STUDY: Final = Study(
     name=NAME,
     command="reproduce tasks",
     presets=PRESETS,
-    tasks=tuple(SCENE_TASKS),
+    tasks=TASKS,
     simulated=("arms", "people", "things"),
     measure=_measure,
     report=_report,

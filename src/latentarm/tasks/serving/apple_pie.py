@@ -14,6 +14,7 @@ from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Interior, Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.tasks.predicates import CarriedOver, Dropped, KnockedOver, Placed, Spilled, Stirred, Within
+from latentarm.tasks.region import Region, anywhere
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.serving.counter import (
     BOWL_HEIGHT_M,
@@ -28,11 +29,9 @@ from latentarm.tasks.serving.counter import (
     filled,
 )
 from latentarm.tasks.serving.cup_steps import LIFT_M, at_place, over, pour, take
-from latentarm.tasks.serving.reach_and_pour import anywhere, start
+from latentarm.tasks.serving.reach_and_pour import start
 from latentarm.tasks.steps import TaskStep, Waypoint
 from latentarm.types import FloatArray, Pose
-
-Region = tuple[tuple[float, float], tuple[float, float]]
 
 SHELF_AT_M: Final[Region] = ((0.57, 0.61), (-0.27, -0.23))
 """Where the middle of the shelf is, x and y."""

@@ -13,19 +13,19 @@ from latentarm.scene.thing import Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.predicates import KnockedOver, Pressed
+from latentarm.tasks.region import Region, anywhere
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.serving.counter import POSTURE_RAD, TOP_M, bearing_of, counter, hand
-from latentarm.tasks.serving.reach_and_pour import anywhere
 from latentarm.tasks.steps import TaskStep, Waypoint
 from latentarm.types import FloatArray, Goal, Pose
 
-BOTTLE_AT_M: Final = ((0.60, 0.66), (-0.05, 0.05))
+BOTTLE_AT_M: Final[Region] = ((0.60, 0.66), (-0.05, 0.05))
 """Where the bottle stands, x and y."""
 
-GOAL_AT_M: Final = ((0.56, 0.62), (0.24, 0.30))
+GOAL_AT_M: Final[Region] = ((0.56, 0.62), (0.24, 0.30))
 """Where the hand is to go."""
 
-START_AT_M: Final = ((0.56, 0.62), (-0.30, -0.24))
+START_AT_M: Final[Region] = ((0.56, 0.62), (-0.30, -0.24))
 """Where it begins."""
 
 PLANE_M: Final = TOP_M + 0.12

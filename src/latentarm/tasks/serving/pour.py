@@ -10,6 +10,7 @@ from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.scene.scene import Scene
 from latentarm.tasks.predicates import Dropped, Spilled
+from latentarm.tasks.region import Region, anywhere
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.serving.counter import (
     FLOUR,
@@ -21,15 +22,15 @@ from latentarm.tasks.serving.counter import (
     filled,
 )
 from latentarm.tasks.serving.cup_steps import pour, take
-from latentarm.tasks.serving.reach_and_pour import anywhere, start
+from latentarm.tasks.serving.reach_and_pour import start
 
-CUP_AT_M: Final = ((0.54, 0.58), (-0.02, 0.02))
+CUP_AT_M: Final[Region] = ((0.54, 0.58), (-0.02, 0.02))
 """Where the cup stands, x and y."""
 
-LEFT_AT_M: Final = ((0.54, 0.58), (0.20, 0.24))
+LEFT_AT_M: Final[Region] = ((0.54, 0.58), (0.20, 0.24))
 """Where the left bowl stands."""
 
-RIGHT_AT_M: Final = ((0.54, 0.58), (-0.24, -0.20))
+RIGHT_AT_M: Final[Region] = ((0.54, 0.58), (-0.24, -0.20))
 """Where the right bowl stands."""
 
 GRAINS: Final = 24

@@ -1,5 +1,6 @@
 """A cup that is reached for, carried to a bowl and poured out: *Reach & Pour* of the paper's fourth study."""
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, final
 
@@ -11,6 +12,7 @@ from latentarm.robots.robot import Robot
 from latentarm.scene.scene import Scene
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.predicates import Dropped, Spilled
+from latentarm.tasks.region import Region, anywhere
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.serving.counter import (
     FLOUR,
@@ -28,10 +30,10 @@ from latentarm.tasks.serving.counter import (
 from latentarm.tasks.serving.cup_steps import pour, take
 from latentarm.types import FloatArray
 
-CUP_AT_M: Final = ((0.53, 0.62), (-0.28, -0.10))
+CUP_AT_M: Final[Region] = ((0.53, 0.62), (-0.28, -0.10))
 """Where the cup stands, x and y."""
 
-BOWL_AT_M: Final = ((0.54, 0.60), (0.12, 0.24))
+BOWL_AT_M: Final[Region] = ((0.54, 0.60), (0.12, 0.24))
 """Where the bowl stands."""
 
 START_M: Final = (0.45, 0.0, 0.50)
@@ -49,8 +51,17 @@ SPILLED: Final = 0.25
 
 
 @final
+@dataclass(frozen=True, eq=False)
 class ReachAndPour(SceneTask):
-    """Take a cup, carry it over a bowl, and pour it out."""
+    """Take a cup, carry it over a bowl, and pour it out.
+
+    Attributes:
+        cup_at_m: where the cup may stand, x and y, m.
+        bowl_at_m: where the bowl may stand.
+    """
+
+    cup_at_m: Region = CUP_AT_M
+    bowl_at_m: Region = BOWL_AT_M
 
     @property
     def name(self) -> str:
@@ -79,8 +90,8 @@ class ReachAndPour(SceneTask):
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Cup and bowl anywhere in their regions of the counter."""
-        cup = counter_cup("cup", *anywhere(CUP_AT_M, rng), colour=(0.36, 0.55, 0.75, 1.0))
-        bowl = counter_bowl("bowl", *anywhere(BOWL_AT_M, rng))
+        cup = counter_cup("cup", *anywhere(self.cup_at_m, rng), colour=(0.36, 0.55, 0.75, 1.0))
+        bowl = counter_bowl("bowl", *anywhere(self.bowl_at_m, rng))
         room = bowl.room
         grains = filled("grains", cup, GRAINS, GRAIN_RADIUS_M, GRAIN_KG, FLOUR)
         return Beginning(
@@ -99,12 +110,6 @@ class ReachAndPour(SceneTask):
     @cached_property
     def _robot(self) -> Robot:
         return load_robot("panda")
-
-
-def anywhere(region: tuple[tuple[float, float], tuple[float, float]], rng: np.random.Generator) -> FloatArray:
-    """A place in a region of the counter, (2,), m."""
-    lower, upper = np.array(region).T
-    return rng.uniform(lower, upper)
 
 
 def start(robot: Robot, rng: np.random.Generator) -> FloatArray:
