@@ -7,7 +7,10 @@ from typing import Final, final
 
 from latentarm.operators.catalogue import OperatorName
 
-CONTEXTS: Final[Mapping[str, str]] = {"joints": "state"}
+CONTEXTS: Final[Mapping[str, tuple[str, ...]]] = {
+    "joints": ("joints",),
+    "joints objects": ("joints", "objects"),
+}
 """What a decoder may see, by the name of the condition; the model's parameter ``context`` for each."""
 
 
