@@ -29,7 +29,7 @@ FIGURES = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tasks"
 COUNTER = Camera(look_at=(0.45, 0.0, 0.33), distance_m=0.95, azimuth_deg=165.0, elevation_deg=-42.0)
 """For what stands on the counter, higher and farther apart than plates."""
 
-CAMERAS = dict.fromkeys(("avoid", "pour", "reach_and_pour", "apple_pie"), COUNTER)
+CAMERAS: dict[str, Camera] = dict.fromkeys(("avoid", "pour", "reach_and_pour", "apple_pie"), COUNTER)
 """Of tasks that the usual one does not show well."""
 
 

@@ -207,15 +207,14 @@ def training_set(task: str, shown: Sequence[Shown]) -> Demonstrations:
     Raises:
         UserError: fewer than two succeeded, and a model needs one to learn from and one for validation.
     """
-    found = dataset_of(
-        task_of(task, Stream.DEMONSTRATIONS), [each for one in shown for each in one.demonstrations]
-    )
-    if len(found.episodes) < 2:
+    each = [one for part in shown for one in part.demonstrations]
+    succeeded = sum(one.progress.succeeded for one in each)
+    if succeeded < 2:
         raise UserError(
-            f"{len(found.episodes)} demonstrations of the task {task} succeeded, and a model needs two or"
-            " more: take a preset with more demonstrations."
+            f"{succeeded} demonstrations of the task {task} succeeded, and a model needs two or more: take a"
+            " preset with more demonstrations."
         )
-    return found
+    return dataset_of(task_of(task, Stream.DEMONSTRATIONS), each)
 
 
 def blocks(count: int, size: int) -> list[range]:
