@@ -21,9 +21,13 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-_NO_GRIPPER: FloatArray = np.zeros(0)
-_NO_OBJECTS: FloatArray = np.zeros((0, 9))
-_NO_GRIPPER.flags.writeable = _NO_OBJECTS.flags.writeable = False
+NO_GRIPPER: FloatArray = np.zeros(0)
+"""`Context.gripper` where it is not known."""
+
+NO_OBJECTS: FloatArray = np.zeros((0, 9))
+"""`Context.objects` where they are not known."""
+
+NO_GRIPPER.flags.writeable = NO_OBJECTS.flags.writeable = False
 
 
 @dataclass(frozen=True)
@@ -204,8 +208,8 @@ class Context:
 
     state: FloatArray
     belief: FloatArray
-    gripper: FloatArray = field(default_factory=lambda: _NO_GRIPPER)
-    objects: FloatArray = field(default_factory=lambda: _NO_OBJECTS)
+    gripper: FloatArray = field(default_factory=lambda: NO_GRIPPER)
+    objects: FloatArray = field(default_factory=lambda: NO_OBJECTS)
 
 
 GripperAsk = Literal["open", "close", "toggle"]

@@ -71,11 +71,13 @@ def test_any_bytes_are_options_or_refused(tmp_path_factory: pytest.TempPathFacto
 def test_values_are_of_the_types_of_the_options(tmp_path: Path) -> None:
     path = tmp_path / "o.yaml"
     path.write_text(
-        "demonstrations: eat\nhidden: [30, 20]\nstate-noise-rad: 1e-2\nepochs: null\nresume: true\n"
+        "demonstrations: eat\nhidden: [30, 20]\ncontext: state_belief\nstate-noise-rad: 1e-2\n"
+        "epochs: null\nresume: true\n"
     )
     assert read_options(path, train, "train") == {
         "demonstrations": Path("eat"),
         "hidden": (30, 20),
+        "context": ("state_belief",),
         "state_noise_rad": 0.01,
         "epochs": None,
         "resume": True,

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Annotated, Any, Final, get_type_hints
+from typing import Annotated, Any, Final, get_args, get_origin, get_type_hints
 
 from tyro.conf import arg
 
@@ -123,14 +123,22 @@ def read_options(path: Path, command: Command, name: str) -> dict[str, object]:
             )
         if parameter in options:
             raise UserError(f"{path}: the option {key!r} is given twice.")
+        annotation = known[parameter].annotation
+        if isinstance(value, str) and _is_tuple(annotation):
+            value = [value]
         try:
-            options[parameter] = TypeAdapter(known[parameter].annotation).validate_json(
-                json.dumps(value), strict=True
-            )
+            options[parameter] = TypeAdapter(annotation).validate_json(json.dumps(value), strict=True)
         except ValidationError as error:
             said = error.errors()[0]["msg"].replace("array", "list")
             raise UserError(f"{path}: the option {key!r} is {value!r}. {said}.") from error
     return options
+
+
+def _is_tuple(annotation: object) -> bool:
+    """Whether an option takes several values; one name may then stand for a list of one."""
+    if get_origin(annotation) is Annotated:
+        annotation = get_args(annotation)[0]
+    return get_origin(annotation) is tuple
 
 
 def write_options(folder: Path, name: str, **resolved: object) -> None:

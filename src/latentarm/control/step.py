@@ -20,7 +20,18 @@ from latentarm.control.safety.timekeeping import Timekeeping
 from latentarm.control.shared_autonomy import SharedAutonomy
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, Context, FloatArray, Goal, Input, Reading, StepRecord, Stop
+from latentarm.types import (
+    NO_GRIPPER,
+    NO_OBJECTS,
+    Command,
+    Context,
+    FloatArray,
+    Goal,
+    Input,
+    Reading,
+    StepRecord,
+    Stop,
+)
 
 _ABSURD = 2.0
 """Inputs slightly above 1 come from a stick's corners and are clipped; above this the interface is broken."""
@@ -169,9 +180,9 @@ class Step:
     def context(self, state: FloatArray) -> Context:
         """What controllers are told in a state (n,), rad, with the belief that the next step will use."""
         measured = self._gripper.reading
-        gripper = {} if measured is None else {"gripper": np.array([measured.width_m])}
-        objects = {} if self._surroundings is None else {"objects": self._surroundings()}
-        return Context(state, self._shared.belief, **gripper, **objects)
+        gripper = NO_GRIPPER if measured is None else np.array([measured.width_m])
+        objects = NO_OBJECTS if self._surroundings is None else self._surroundings()
+        return Context(state, self._shared.belief, gripper, objects)
 
     def reset(self, state: FloatArray) -> None:
         """Begin a new episode from an arm that stands still: disengaged, first mode, first belief.

@@ -8,7 +8,6 @@ import numpy as np
 from latentarm.context import (
     BELIEF,
     GRIPPER,
-    OBJECT,
     OBJECTS,
     OBJECTS_IN_TOOL,
     ContextLayout,
@@ -20,7 +19,7 @@ from latentarm.demonstrations.gripper import GRIPPER_TOGGLED, GRIPPER_WIDTH
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
 from latentarm.kinematics.pose_rows import STORED, seen_rows
-from latentarm.types import Context, Demonstrations, Episode, FloatArray
+from latentarm.types import NO_GRIPPER, NO_OBJECTS, Context, Demonstrations, Episode, FloatArray
 
 GRIPPER_SOURCES: Final = (GRIPPER_WIDTH, GRIPPER_TOGGLED)
 """Features of a dataset that tell how far the gripper is open, the best first."""
@@ -39,8 +38,7 @@ def episode_contexts(episode: Episode, context: Named, index: int | None = None)
     """
     names = feature_names(context)
     where = "An episode" if index is None else f"Episode {index}"
-    belief = gripper = np.zeros(0)
-    objects = np.zeros((0, OBJECT))
+    belief, gripper, objects = np.zeros(0), NO_GRIPPER, NO_OBJECTS
     if BELIEF in names:
         belief = _taken(episode, ("belief",), where, BELIEF, "annotate the demonstrations")
     if GRIPPER in names:
