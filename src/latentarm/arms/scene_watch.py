@@ -1,5 +1,6 @@
 """What happens in a scene: how things stand, what touches what, and how hard."""
 
+import math
 from typing import Final, final
 
 import mujoco
@@ -102,9 +103,11 @@ class SceneWatch:
         at, speed = self._positions[index], self._speeds[index]
         place = self._data.qpos[at : at + 7]
         rotation = rotation_of(place[3:])
-        turning = rotation @ np.cross(self._data.qvel[speed + 3 : speed + 6], self._middles[index])
-        velocity = self._data.qvel[speed : speed + 3] + turning
-        return Pose(place[:3].copy(), rotation), float(np.linalg.norm(velocity))
+        vx, vy, vz, wx, wy, wz = self._data.qvel[speed : speed + 6].tolist()
+        mx, my, mz = self._middles[index].tolist()
+        turning = rotation @ (wy * mz - wz * my, wz * mx - wx * mz, wx * my - wy * mx)
+        velocity = turning + np.array([vx, vy, vz])
+        return Pose(place[:3].copy(), rotation), math.sqrt(velocity @ velocity)
 
     def _touching(self) -> tuple[IntArray, IntArray] | None:
         """Groups (K, 2) and addresses (K,) of the contacts between two that have names, or None."""

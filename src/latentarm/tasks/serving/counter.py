@@ -79,9 +79,12 @@ def hand(place: FloatArray, bearing_rad: float, tilt_rad: float = 0.0) -> Pose:
         tilt_rad: how far what it holds leans to the left, about that bearing, rad.
     """
     out = np.array([np.cos(bearing_rad), np.sin(bearing_rad), 0.0])
-    points = np.cos(PITCH_RAD) * out + np.sin(PITCH_RAD) * np.array([0.0, 0.0, 1.0])
+    up = np.array([0.0, 0.0, 1.0])
     right = np.array([out[1], -out[0], 0.0])
-    upright = np.stack([np.cross(right, points), right, points], axis=-1)
+    cos, sin = np.cos(PITCH_RAD), np.sin(PITCH_RAD)
+    upright = np.array([cos * up - sin * out, right, cos * out + sin * up]).T
+    if tilt_rad == 0.0:
+        return Pose(np.array(place), upright)
     return Pose(np.array(place), Rotation.from_rotvec(-tilt_rad * out).as_matrix() @ upright)
 
 
