@@ -25,7 +25,8 @@ class Preset:
         demonstrations: further runs of the demonstrator, those that succeed train the models; a fifth of them
             is for validation and decides which epoch is best.
         models: kinds that are driven with.
-        contexts: what their decoders see, names of `CONTEXTS`.
+        context: what their decoders see, a name of `CONTEXTS`.
+        moved_contexts: the same, side by side, where things were moved.
         seeds: models of each kind, used in turn, so that no figure depends on one of them.
         epochs: passes over the training pairs, at most.
         batch_size: pairs per step.
@@ -39,13 +40,14 @@ class Preset:
     runs: int = 50
     demonstrations: int = 60
     models: tuple[str, ...] = ("cvae", "homogeneous")
-    contexts: tuple[str, ...] = ("joints", "joints objects")
+    context: str = "joints objects"
+    moved_contexts: tuple[str, ...] = ("joints", "joints objects")
     seeds: int = 3
     epochs: int = 60
     batch_size: int = 256
     hidden: tuple[int, ...] = (64, 64)
     state_noise_rad: float = 0.01
-    person: OperatorName = "greedy"
+    person: OperatorName = "planning"
     block: int = 5
 
 

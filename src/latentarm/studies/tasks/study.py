@@ -41,7 +41,7 @@ def _measure(request: Request[Preset], grid: Grid) -> Measured:
             (task, training_set(task, _trains(shown, task))) for task in request.tasks
         )
         for model in preset.models
-        for context in preset.contexts
+        for context in (preset.moved_contexts if task in MOVED else (preset.context,))
     ]
     trained = grid.run("Models", train, training, lambda cell: f"{cell.task}, {cell.model}, {cell.context}")
     driven = grid.run("Drives", drive, _drive_cells(request, trained), _drive_label)

@@ -177,7 +177,9 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
         TaskStep("scooped", "drawn through the icing", Swept(MARSHMALLOW, "icing", WET, SWEEP_M), through),
         TaskStep("above", "over the rice", CarriedOver(MARSHMALLOW, "rice bowl", 0.03), into[:1]),
         TaskStep("dipped", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),
-        TaskStep("above", "over the own plate", CarriedOver(MARSHMALLOW, "own plate", 0.03), (over,)),
+        TaskStep(
+            "above", "over the own plate", CarriedOver(MARSHMALLOW, "own plate", 0.03), (*into[:1], over)
+        ),
         TaskStep("placed", "set down", laid, (over, down)),
     )
 
