@@ -40,7 +40,7 @@ def learned(task: str, model: str, preset: Preset, seed: int, jobs: int) -> Trai
         for numbers in blocks(preset.demonstrations, preset.block)
     ]
     shown = run_grid(show, cells, jobs=jobs, backend="joblib", label=lambda cell: task, bars=True)
-    return train(TrainingCell(task, model, preset.contexts[0], training_set(task, shown), preset, seed))
+    return train(TrainingCell(task, model, preset.context, training_set(task, shown), preset, seed))
 
 
 def film(task: str, model: str, preset: Preset, seed: int, jobs: int) -> None:

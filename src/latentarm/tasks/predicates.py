@@ -219,7 +219,7 @@ class Swept:
 @final
 @dataclass(eq=False)
 class Stirred:
-    """A thing has gone round in a container.
+    """A thing has been led to and fro about the middle of a container.
 
     It remembers: made anew for every run.
 
@@ -227,7 +227,7 @@ class Stirred:
         thing: its name.
         container: its name.
         interior: the room in it; the thing's frame must be below its rim.
-        turns: how often it must go round, in either direction.
+        turns: how far it must go about the middle, to and fro counted alike, in whole turns.
     """
 
     thing: str
@@ -246,13 +246,13 @@ class Stirred:
             return self._enough
         angle_rad = float(np.arctan2(y, x))
         if self._last_rad is not None:
-            self._swept_rad += float(np.angle(np.exp(1j * (angle_rad - self._last_rad))))
+            self._swept_rad += abs(float(np.angle(np.exp(1j * (angle_rad - self._last_rad)))))
         self._last_rad = angle_rad
         return self._enough
 
     @property
     def _enough(self) -> bool:
-        return abs(self._swept_rad) >= 2.0 * np.pi * self.turns
+        return self._swept_rad >= 2.0 * np.pi * self.turns
 
 
 @final

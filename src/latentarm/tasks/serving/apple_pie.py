@@ -75,10 +75,12 @@ STAND_M: Final = 0.05
 SPOON_M: Final = 0.17
 """Length of the spoon."""
 
-STIR_TURNS: Final = 2.0
+STIR_TURNS: Final = 1.5
 STIR_RADIUS_M: Final = 0.05
-STIR_POINTS: Final = 8
-"""Places on the circle that the spoon is led round."""
+STIR_RAD: Final = 0.9
+"""How far the spoon is led to either side, opposite the apple."""
+
+STIR_STROKES: Final = 6
 
 
 @final
@@ -211,9 +213,9 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
     carry = Waypoint(partial(over, thing="bowl", height_m=0.22))
     drop = Waypoint(partial(over, thing="bowl", height_m=0.10), gripper="open", wait_s=0.8)
     spoon_up = 0.115
-    circle = _Circle(spoon_up + 0.012)
-    enter = Waypoint(partial(circle.pose, index=0, up_m=BOWL_HEIGHT_M + 0.03))
-    round_it = [Waypoint(partial(circle.pose, index=index)) for index in range(STIR_POINTS)]
+    strokes = _Strokes(spoon_up + 0.012)
+    enter = Waypoint(partial(strokes.pose, index=0, up_m=BOWL_HEIGHT_M + 0.03))
+    to_and_fro = [Waypoint(partial(strokes.pose, index=index)) for index in range(STIR_STROKES)]
     above = Waypoint(partial(over, thing="bowl", height_m=spoon_up + 0.10))
     stirred = Stirred("spoon", "bowl", rooms["bowl"], STIR_TURNS)
     return (
@@ -222,7 +224,7 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
         TaskStep("placed", "the apple in the bowl", Within("apple", "bowl", rooms["bowl"]), (carry, drop)),
         *take("spoon", TOP_M, spoon_up),
         TaskStep("above", "the spoon over the bowl", CarriedOver("spoon", "bowl", 0.04), (above,)),
-        TaskStep("stirred", "stirred", stirred, (enter, *round_it)),
+        TaskStep("stirred", "stirred", stirred, (enter, *to_and_fro)),
     )
 
 
@@ -247,8 +249,8 @@ def _back(cup: str, place: FloatArray) -> TaskStep:
 
 
 @final
-class _Circle:
-    """Where the hand leads the spoon, from opposite the apple once round the bowl.
+class _Strokes:
+    """Where the hand leads the spoon: to and fro on the side of the bowl where the apple is not.
 
     Args:
         up_m: height of the hand over the bowl's underside, m.
@@ -259,12 +261,12 @@ class _Circle:
         self._entered_rad = 0.0
 
     def pose(self, state: SceneState, index: int, up_m: float = 0.0) -> Pose:
-        """A place on or over the circle; where it begins is settled while the spoon is over the bowl."""
+        """An end of a stroke, or over it; which side is settled while the spoon is over the bowl."""
         middle = state.poses["bowl"].position
         if state.poses["spoon"].position[2] > middle[2] + BOWL_HEIGHT_M:
             apple = state.poses["apple"].position - middle
             self._entered_rad = float(np.arctan2(apple[1], apple[0])) + np.pi
-        angle = self._entered_rad + 2.0 * np.pi * index / STIR_POINTS
+        angle = self._entered_rad + (STIR_RAD if index % 2 else -STIR_RAD)
         circle = STIR_RADIUS_M * np.array([np.cos(angle), np.sin(angle), 0.0])
         return at_place(state, middle + circle + np.array([0.0, 0.0, self._up_m + up_m]))
 

@@ -38,13 +38,13 @@ GRAINS: Final = 24
 LARGE_M: Final = 0.0065
 """Radius of a grain: they fill the cup, or all of them would leave it at once."""
 
-SHARE: Final = 0.25
+SHARE: Final = 0.2
 """Share of the grains that must end in each bowl."""
 
 SPILLED: Final = 0.25
 """Share that may be spilled."""
 
-TIP_SPEED: Final = 0.2
+TIP_SPEED: Final = 0.12
 """How fast the cup is tipped, as a share of the person's usual speed: some must stay in it."""
 
 
