@@ -16,7 +16,7 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.panda import HOME
-from latentarm.scene.containers import bowl, cup, packed
+from latentarm.scene.containers import WALL_M, bowl, cup, packed
 from latentarm.scene.scene import Scene
 from latentarm.scene.thing import Bond, Food, Grains, Part, Thing
 from latentarm.tasks.inverse_kinematics import solve
@@ -132,6 +132,8 @@ def test_food_is_stabbed_lifted_and_scraped_off():
     stabbed = world.move((0.0, 0.0, -0.05), 0.45)
     assert stabbed.stabbed == {"marshmallow"}
     assert 2.0 <= stabbed.force_n["marshmallow", "tool"] < 20.0
+    for _ in range(5):
+        assert world.move((0.0, 0.0, -0.05), 0.01).stabbed, "pressed deeper, it is held all the while"
     lifted = world.move((0.0, 0.0, 0.05))
     assert lifted.poses["marshmallow"].position[2] > 0.03
     under = world.move((0.06, 0.0, 0.0))
@@ -140,6 +142,16 @@ def test_food_is_stabbed_lifted_and_scraped_off():
     assert not scraped.stabbed
     assert scraped.poses["marshmallow"].position[2] < 0.05
     assert scraped.force_n["marshmallow", "rail"] > 1.0
+
+
+def test_an_apple_that_falls_into_a_bowl_does_not_come_out_below():
+    dish = bowl(0.08)
+    apple = Thing("apple", (Part("sphere", (0.03,)),), 0.1, upright(0.5, 0.0, 0.33 + 0.05))
+    stand = Thing("bowl", dish.parts, 0.3, upright(0.5, 0.0, 0.3), fixed=True, interior=dish.interior)
+    world = World("panda", Scene((apple, stand)), HOME)
+    heights = [world.move(seconds=0.01).poses["apple"].position[2] for _ in range(60)]
+    assert min(heights) > 0.33
+    assert heights[-1] == pytest.approx(0.33 + WALL_M, abs=1e-3)
 
 
 def test_a_touch_does_not_stab():
