@@ -9,7 +9,7 @@ from latentarm.control.safety.bounds import STOPPED_WITHIN_S, Bounds
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.newest_reading import NewestReading
 from latentarm.control.step import Step
-from latentarm.types import Input, Reading
+from latentarm.types import GripperReading, Input, Reading
 
 PUSH, NEUTRAL = Input(np.array([1.0, 0.0])), Input(np.zeros(2))
 
@@ -26,7 +26,7 @@ def step(arm, scripted):
 
 
 def reading(arm, time_s, sequence):
-    return Reading(arm.home, np.zeros(7), time_s, sequence)
+    return Reading(arm.home, np.zeros(7), time_s, sequence, GripperReading(arm.gripper.width_m))
 
 
 def test_a_reading_may_be_five_periods_old_and_no_older(step, arm):

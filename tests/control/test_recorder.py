@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -190,7 +190,8 @@ READINGS = st.none() | st.builds(GripperReading, FINITE, st.booleans())
 GRIPPER_COMMANDS = st.none() | st.builds(GripperCommand, FINITE, FINITE, FINITE)
 
 
-@given(st.lists(st.tuples(READINGS, GRIPPER_COMMANDS), min_size=1, max_size=5))
+@settings(max_examples=15)
+@given(st.lists(st.tuples(READINGS, GRIPPER_COMMANDS), min_size=10, max_size=40))
 def test_a_gripper_is_read_back_exactly(steps):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "drive.sqlite"

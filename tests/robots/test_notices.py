@@ -12,7 +12,9 @@ from latentarm.robots.planar import planar
 
 def real(robot):
     """What the driver of a real arm says of it."""
-    return ArmSpec(robot.joint_names, rate_hz=100.0, stops_after_s=0.02, simulated=False)
+    return ArmSpec(
+        robot.joint_names, rate_hz=100.0, stops_after_s=0.02, simulated=False, gripper=robot.gripper
+    )
 
 
 def test_built_in_robots_assume_nothing(the_panda):

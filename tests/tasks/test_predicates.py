@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.scene.interior import Interior
 from latentarm.scene.scene import TABLE, TOOL
-from latentarm.scene.thing import Interior
 from latentarm.tasks import predicates as p
 from scene_states import at, standing
 

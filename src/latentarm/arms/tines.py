@@ -41,7 +41,7 @@ class TinesInFood:
     in, and no longer collide with it. Once one is `Food.depth_m` deep in it, counted along the tine, a weld
     holds it as it is then. The weld breaks when something pulls it off along the tines with more than
     `Food.grip_n`: its own weight and inertia, a rim that it is scraped on. Pressed on with more than
-    `Food.pierce_n`, the tines go deeper, and hold it again as it is then. Food that was pulled off is not
+    `Food.pierce_n`, the tines go deeper, and it is held all the while. Food that was pulled off is not
     held again before all tines have left it; whatever they have left collides with them again. With
     everything else food collides all the time.
 
@@ -104,9 +104,11 @@ class TinesInFood:
         """Rules for food that tines may be in."""
         if food.way == "held":
             pull = self._pull(food, turn[:, 2])
-            if not -food.food.pierce_n <= pull <= food.food.grip_n:
+            if pull > food.food.grip_n:
                 self._data.eq_active[food.weld] = 0
-                food.way = "loose" if pull > 0.0 else "entered"
+                food.way = "loose"
+            elif pull < -food.food.pierce_n:
+                self._hold(food, place, turn)
             return
         points = (self._points @ turn.T + place - self._data.xpos[food.body]) @ self._data.xmat[
             food.body

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final, final
 
-from latentarm.scene.thing import Interior
+from latentarm.scene.interior import Interior
 from latentarm.types import FloatArray, Pose
 
 TINES_BODY: Final = "tines"

@@ -7,7 +7,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from latentarm.errors import UserError
-from latentarm.scene.thing import Interior, Part
+from latentarm.scene.interior import Interior
+from latentarm.scene.thing import Part
 from latentarm.types import FloatArray, Pose
 
 Colour = tuple[float, float, float, float]

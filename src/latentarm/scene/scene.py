@@ -8,7 +8,8 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import HalfSpace
-from latentarm.scene.thing import Bond, Grains, Interior, Thing
+from latentarm.scene.interior import Interior
+from latentarm.scene.thing import Bond, Grains, Thing
 from latentarm.types import BoolArray, FloatArray, Pose
 
 TABLE: Final = "table"

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal, final
 
 from latentarm.errors import UserError
+from latentarm.scene.interior import Interior
 from latentarm.types import FloatArray, Pose
 
 Shape = Literal["box", "cylinder", "capsule", "sphere"]
@@ -47,22 +48,6 @@ class Food:
     pierce_n: float
     depth_m: float
     grip_n: float
-
-
-@final
-@dataclass(frozen=True)
-class Interior:
-    """The room inside a container: an upright cylinder in its frame.
-
-    Attributes:
-        radius_m: m.
-        bottom_m: lowest height in the thing's frame, m.
-        top_m: height of the rim in the thing's frame, m.
-    """
-
-    radius_m: float
-    bottom_m: float
-    top_m: float
 
 
 @final

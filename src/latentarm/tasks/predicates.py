@@ -5,8 +5,8 @@ from typing import final
 
 import numpy as np
 
+from latentarm.scene.interior import Interior
 from latentarm.scene.scene import TOOL, SceneState
-from latentarm.scene.thing import Interior
 from latentarm.types import FloatArray
 
 

@@ -11,6 +11,7 @@ from matplotlib.image import imread
 
 from latentarm.alignment.contract import identity
 from latentarm.alignment.demonstrated import demonstrated_motions
+from latentarm.context import ContextLayout
 from latentarm.controllers.latent import LatentController
 from latentarm.operators.expectation import Expectation
 from latentarm.operators.person import Person
@@ -89,7 +90,7 @@ class OneGoal(Task):
 class TwoDirections:
     """A decoder linear in z: axis 1 moves the tool sideways, axis 2 forward and down, without a turn."""
 
-    context = "state"
+    layout = ContextLayout(("joints",), joints=7)
     context_dim = 7
     latent_dim = 2
 

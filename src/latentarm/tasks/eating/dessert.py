@@ -10,8 +10,9 @@ from latentarm.kinematics.obstacles import Obstacle
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.scene.containers import bowl, packed
+from latentarm.scene.interior import Interior
 from latentarm.scene.scene import Scene, SceneState
-from latentarm.scene.thing import Grains, Interior, Thing
+from latentarm.scene.thing import Grains, Thing
 from latentarm.tasks.eating.marshmallows import START_SPREAD_RAD
 from latentarm.tasks.eating.stabbing import HOVER_M, above, stab
 from latentarm.tasks.eating.table import (

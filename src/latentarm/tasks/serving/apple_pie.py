@@ -10,8 +10,9 @@ from latentarm.kinematics.obstacles import Obstacle
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.scene.containers import bowl, cup
+from latentarm.scene.interior import Interior
 from latentarm.scene.scene import Scene, SceneState
-from latentarm.scene.thing import Interior, Part, Thing
+from latentarm.scene.thing import Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.tasks.predicates import CarriedOver, Dropped, KnockedOver, Placed, Spilled, Stirred, Within
 from latentarm.tasks.region import Region, anywhere

@@ -5,8 +5,8 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.scene.interior import Interior
 from latentarm.scene.scene import SceneState
-from latentarm.scene.thing import Interior
 from latentarm.tasks.predicates import CarriedOver, Holding, Poured
 from latentarm.tasks.serving.counter import GRIP_M, TOP_M, bearing_of, hand, pouring
 from latentarm.tasks.steps import TaskStep, Waypoint
