@@ -30,7 +30,7 @@ from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sp
 from latentarm.kinematics.reader import read
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.types import Context, FloatArray, Input, Reading
+from latentarm.types import Context, FloatArray, GripperReading, Input, Reading
 
 CLEARANCE_M = SafetyConfig().clearance
 ROUNDING_M = 1e-5
@@ -335,7 +335,8 @@ def drive(robot: Robot, harm: str, period_s: float, rng: np.random.Generator) ->
     step = Step(robot, controller, SafetyConfig(obstacles=obstacles), dt_s=period_s)
     step.reset(q)
     at_rest = np.zeros(robot.dof)
-    step(Input(np.zeros(1)), 0.0, Reading(q, at_rest, 0.0, 0), 0.0)
+    hand = None if robot.gripper is None else GripperReading(robot.gripper.width_m)
+    step(Input(np.zeros(1)), 0.0, Reading(q, at_rest, 0.0, 0, hand), 0.0)
     if step.enable() is not None:
         raise RuntimeError("the arm could not be enabled")
     ticks, look = round(PUSH_S / period_s), round(LOOK_S / period_s)
@@ -346,7 +347,7 @@ def drive(robot: Robot, harm: str, period_s: float, rng: np.random.Generator) ->
         if tick % max(1, round(0.05 / period_s)) == 0:
             controller.wanted = push.towards(q)
         now_s = (tick + 1) * period_s
-        record = step(Input(np.ones(1)), 0.0, Reading(q, at_rest, now_s, tick + 1), now_s)
+        record = step(Input(np.ones(1)), 0.0, Reading(q, at_rest, now_s, tick + 1, hand), now_s)
         if record.command.stop is not None and tick < ticks:
             raise RuntimeError(f"stopped: {record.command.stop.reason}")
         q = q + record.command.velocity * period_s

@@ -22,6 +22,7 @@ COMMANDS = {
     "properties": ["reproduce", "properties", "--preset", "paper"],
     "shared-autonomy": ["reproduce", "shared-autonomy", "--preset", "paper", "--seed", "2"],
     "alignment": ["reproduce", "alignment", "--preset", "paper", "--seed", "2"],
+    "tasks": ["reproduce", "tasks", "--preset", "paper"],
     "compare": ["compare", "--demonstrations", *RECORDED],
 }
 PREFIXES = {
@@ -29,6 +30,7 @@ PREFIXES = {
     "properties": "properties_",
     "shared-autonomy": "shared_autonomy_",
     "alignment": "alignment_",
+    "tasks": "tasks_",
     "compare": "compare_",
 }
 """What a command's figures are called in ``docs/figures``, before their own name."""

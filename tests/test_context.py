@@ -12,8 +12,9 @@ from latentarm.context import FEATURES, OBJECT, context_vector, feature_names
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.latent import LatentController
-from latentarm.demonstrations.contexts import GRIPPER_WIDTH, context_layout, episode_contexts
+from latentarm.demonstrations.contexts import context_layout, episode_contexts
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
+from latentarm.demonstrations.gripper import GRIPPER_WIDTH
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError

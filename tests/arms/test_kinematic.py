@@ -4,7 +4,8 @@ import pytest
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.errors import UserError
-from latentarm.types import Command
+from latentarm.robots.planar import planar
+from latentarm.types import Command, GripperCommand, GripperReading
 
 
 def test_a_joint_ends_at_its_hard_stop(the_panda):
@@ -31,3 +32,24 @@ def test_it_does_not_start_outside_its_limits(the_panda):
 def test_it_does_not_start_nowhere(the_panda, start):
     with pytest.raises(UserError, match="7 finite joint positions"):
         KinematicArm(the_panda, start, SimulatedClock().now_s)
+
+
+def test_its_gripper_closes_at_its_speed_and_holds_nothing(the_panda):
+    clock = SimulatedClock()
+    arm = KinematicArm(the_panda, the_panda.home, clock.now_s)
+    arm.connect()
+    arm.enable()
+    assert arm.spec.gripper == the_panda.gripper
+    # The command's velocity runs out; its gripper does not. It is no faster than the gripper can be.
+    arm.send(Command(np.zeros(7), duration_s=0.01, gripper=GripperCommand(0.01, 1.0, 20.0)))
+    clock.wait_until(0.5)
+    assert arm.read().gripper.width_m == pytest.approx(0.03)
+    arm.stop()
+    clock.wait_until(1.0)
+    assert arm.read().gripper == GripperReading(pytest.approx(0.03), holding=False)
+    with pytest.raises(ValueError, match="finite width"):
+        arm.send(Command(np.zeros(7), 0.01, gripper=GripperCommand(np.nan, 1.0, 1.0)))
+    bare = KinematicArm(planar(), planar().home, clock.now_s)
+    assert bare.spec.gripper is None
+    with pytest.raises(ValueError, match="no gripper"):
+        bare.send(Command(np.zeros(5), 0.01, gripper=GripperCommand(0.0, 1.0, 1.0)))

@@ -10,7 +10,7 @@ import pytest
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.provenance import provenance_now
-from latentarm.types import Command, StepRecord
+from latentarm.types import Command, GripperCommand, GripperReading, StepRecord
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -26,8 +26,12 @@ def teleop(workplace: Path) -> Path:
         )
         for tick in range(5):
             two = np.full(2, 0.01 * (tick + index))
+            command = Command(two, 0.05, gripper=GripperCommand(0.0, 0.05, 20.0) if tick == 2 else None)
+            gripper = GripperReading(0.08 if tick < 3 else 0.06, holding=tick >= 3)
             recorder.record(
-                StepRecord(0.01 * tick, two, two, two, two, two, 0.0, np.zeros(0), 0, Command(two, 0.05))
+                StepRecord(
+                    0.01 * tick, two, two, two, two, two, 0.0, np.zeros(0), 0, command, gripper=gripper
+                )
             )
         if index < 2:
             recorder.end_episode("gamepad")
@@ -62,6 +66,9 @@ def test_recordings_become_a_dataset_that_inspect_shows(run: Run, teleop: Path) 
     assert "Ada" in out
     assert "gamepad" in out
     assert "eat-cvae" in out
+    # Closed for the second half of each episode; two episodes of four steps.
+    closed = [line.split()[1:] for line in out.partition("Gripper")[2].splitlines() if "50" in line]
+    assert closed == [["50", "–", "1"]] * 2
     code, _, err = run("export", "teleop", "--out", "eaten")
     assert code == 2
     assert "already exists" in err

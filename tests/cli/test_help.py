@@ -17,6 +17,8 @@ from latentarm.studies.catalogue import load_study
 from latentarm.studies.properties.preset import PRESETS
 from latentarm.studies.shared_autonomy import preset as shared_autonomy
 from latentarm.studies.shared_autonomy.cell import TASKS
+from latentarm.studies.tasks import preset as tasks_preset
+from latentarm.tasks.catalogue import SCENE_TASKS
 from latentarm.tasks.planar.catalogue import MOTIONS
 
 COMMANDS = [
@@ -34,7 +36,7 @@ COMMANDS = [
     "bench",
     "robots",
 ]
-STUDIES = ["properties", "shared-autonomy", "alignment"]
+STUDIES = ["properties", "shared-autonomy", "alignment", "tasks"]
 HEAVY = {"torch", "mujoco", "matplotlib", "scipy", "pyarrow", "sklearn", "joblib", "pandas"}
 Run = Callable[..., tuple[int, str, str]]
 
@@ -78,6 +80,7 @@ def test_the_list_of_studies(run: Run) -> None:
         ("properties", MOTIONS, PRESETS),
         ("shared-autonomy", TASKS, shared_autonomy.PRESETS),
         ("alignment", alignment.TASKS, alignment_preset.PRESETS),
+        ("tasks", SCENE_TASKS, tasks_preset.PRESETS),
     ],
 )
 def test_a_study_offers_what_there_is(

@@ -94,6 +94,17 @@ def test_a_press_of_the_switch_survives_a_later_input_once():
     assert not port.latest(0.0)[0].switch_mode
 
 
+def test_what_is_asked_of_the_gripper_survives_later_inputs_once_and_the_newest_counts():
+    port, _ = port_and_clock()
+    nonce = port.issue_nonce()
+    for number, asked in enumerate(["close", "open", None, None]):
+        port.offer(Input(np.zeros(2), gripper=asked), nonce, number)
+    assert [port.latest(0.0)[0].gripper for _ in range(3)] == ["open", None, None]
+    # Held, it is seen as held: what it is pressed for counts it once.
+    port.offer(Input(np.zeros(2), gripper="toggle"), nonce, 9)
+    assert [port.latest(0.0)[0].gripper for _ in range(2)] == ["toggle", "toggle"]
+
+
 def test_the_sender_cannot_change_an_input_afterwards():
     port, _ = port_and_clock()
     u = np.zeros(2)

@@ -1,13 +1,16 @@
 import dataclasses
+import json
 import math
 import os
 import signal
 import sqlite3
 import subprocess
 import sys
+import tempfile
 import textwrap
 import time
 from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,9 +22,9 @@ from latentarm.control.export import ImplausibleWarning, demonstrations_of, expo
 from latentarm.control.journal import list_journal, read_journal
 from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalLostError, JournalWatch
 from latentarm.control.recorder import EpisodeHeader, Recorder
-from latentarm.control.samples import packed, unpacked
+from latentarm.control.samples import figures_of, packed, unpacked
 from latentarm.errors import UserError
-from latentarm.types import Command, Goal, Pose, StepRecord, Stop
+from latentarm.types import Command, Goal, GripperCommand, GripperReading, Pose, StepRecord, Stop
 
 HOME = np.array([0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785])
 NAMES = tuple(f"joint{i}" for i in range(7))
@@ -69,6 +72,7 @@ def same(one, other):
     assert one.command.duration_s == other.command.duration_s
     assert one.command.stop == other.command.stop
     assert one.command.limited_by == other.command.limited_by
+    assert (one.gripper, one.command.gripper) == (other.gripper, other.command.gripper)
 
 
 def write(path, episodes, *, end_last=True):
@@ -129,7 +133,7 @@ def rewritten(path, scalars_of):
     database = sqlite3.connect(path, isolation_level=None)
     samples = database.execute("SELECT episode, number, figures FROM samples").fetchall()
     for episode, number, figures in samples:
-        scalars, *rest = unpacked(figures, 8)
+        scalars, *rest = unpacked(figures)[:8]
         parts = [scalars_of(scalars), *rest]
         widths = np.array([len(part) for part in parts], dtype=np.float64)
         changed = np.concatenate([widths, *parts]).tobytes()
@@ -152,6 +156,74 @@ def test_a_journal_from_before_the_bound_was_recorded_is_read_and_gone_on_with(t
     assert "assist.bound" in demonstrations_of([old], source="drive").episodes[0].extras
 
 
+OF_VERSION_2 = bytes.fromhex(
+    "0205000200028002800200024001000200000000000000f83f000000000000e03f000000000000f03f9a9999999999993f00"
+    "00000000000040000000000000d03f000000000000e0bf000000000000d03f000000000000e0bf000000000000f03f000000"
+    "000000d03f000000000000e0bf"
+)
+"""A sample as it was written before there were grippers."""
+
+
+def test_a_journal_from_before_grippers_is_read_and_gone_on_with(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    write(path, [1])
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE samples SET figures = ?", (OF_VERSION_2,))
+        database.execute("PRAGMA user_version = 2")
+    database.close()
+    write(path, [2])
+    old, new = read_journal(path)
+    two, none = np.array([0.25, -0.5]), np.zeros(2)
+    command = Command(two, 0.025)
+    same(StepRecord(1.5, two, none, none, two, two, 0.5, np.ones(1), 1, command, 2.0), old.records[0])
+    same(record(0), new.records[0])
+
+
+def gripped(tick, reading, asked):
+    """The same step with a gripper."""
+    one = record(tick)
+    return dataclasses.replace(one, gripper=reading, command=dataclasses.replace(one.command, gripper=asked))
+
+
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+READINGS = st.none() | st.builds(GripperReading, FINITE, st.booleans())
+GRIPPER_COMMANDS = st.none() | st.builds(GripperCommand, FINITE, FINITE, FINITE)
+
+
+@given(st.lists(st.tuples(READINGS, GRIPPER_COMMANDS), min_size=1, max_size=5))
+def test_a_gripper_is_read_back_exactly(steps):
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "drive.sqlite"
+        recorder = Recorder(path)
+        recorder.begin_episode(header())
+        given = [gripped(tick, *step) for tick, step in enumerate(steps)]
+        for one in given:
+            recorder.record(one)
+        recorder.close()
+        (episode,) = read_journal(path)
+    for one, other in zip(given, episode.records, strict=True):
+        same(one, other)
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_a_gripper_that_is_not_finite_is_neither_written_nor_read(tmp_path, bad):
+    path = tmp_path / "drive.sqlite"
+    recorder = Recorder(path)
+    recorder.begin_episode(header())
+    recorder.record(record(0))
+    for step in ((GripperReading(bad), None), (None, GripperCommand(0.0, 0.1, bad))):
+        with pytest.raises(UserError, match=r"drive\.sqlite.*gripper.*not finite"):
+            recorder.record(gripped(1, *step))
+    recorder.close()
+    for parts in ([[bad, 0.0], []], [[0.04, 0.5], []], [[0.04], []], [[], [0.0, 0.1, bad]], [[], [0.0]]):
+        figures = packed([*figures_of(record(0))[:8], *(np.array(part, dtype=float) for part in parts)])
+        with sqlite3.connect(path) as database:
+            database.execute("UPDATE samples SET figures = ?", (figures,))
+        database.close()
+        with pytest.raises(UserError, match=r"drive\.sqlite is damaged.*gripper"):
+            read_journal(path)
+
+
 @pytest.mark.parametrize("count", [3, 6])
 def test_a_sample_of_unknown_make_is_damage(tmp_path, count):
     path = tmp_path / "drive.sqlite"
@@ -164,19 +236,21 @@ def test_a_sample_of_unknown_make_is_damage(tmp_path, count):
 ANY = st.floats(width=64) | st.sampled_from([0.0, -0.0, np.nan, np.inf, 5e-324])
 
 
-@given(st.lists(arrays(np.float64, st.integers(0, 9), elements=ANY), max_size=8), st.booleans())
-def test_a_sample_is_written_and_read_exactly(parts, twice):
-    if twice:
-        parts = [part for part in parts for _ in range(2)]
-    found = unpacked(packed(parts), len(parts))
+FIVE = st.lists(arrays(np.float64, st.integers(0, 9), elements=ANY), min_size=5, max_size=5)
+
+
+@given(FIVE, FIVE | st.none())
+def test_a_sample_is_written_and_read_exactly(parts, others):
+    parts = [part for part in parts for _ in range(2)] if others is None else [*parts, *others]
+    found = unpacked(packed(parts))
     # Bit for bit, so that -0.0 and NaN count too.
     assert [part.tobytes() for part in found] == [part.tobytes() for part in parts]
 
 
-@given(st.binary(max_size=120) | st.binary(max_size=120).map(lambda rest: b"\x02" + rest))
-def test_bytes_that_are_no_sample_are_refused(sample):
+@given(st.sampled_from([b"", b"\x02", b"\x03"]), st.binary(max_size=120))
+def test_bytes_that_are_no_sample_are_refused(start, rest):
     with suppress(ValueError):
-        assert len(unpacked(sample, 8)) == 8
+        assert len(unpacked(start + rest)) in (8, 10)
 
 
 def test_nothing_is_written_twice(tmp_path):
@@ -496,6 +570,58 @@ def test_the_exported_dataset_reads_back(tmp_path, arm):
     np.testing.assert_allclose(found.episodes[0].extras["action.human"][2], record(2).action_human, rtol=1e-6)
     np.testing.assert_allclose(found.episodes[0].extras["assist.bound"][:2, 0], [record(0).bound_rad, -1.0])
     np.testing.assert_allclose(found.goals[1].configuration, np.full(7, 0.2))
+
+
+def recorded(path, *episodes):
+    """A journal of complete episodes, each a list of a reading and a command of the gripper."""
+    recorder = Recorder(path)
+    for steps in episodes:
+        recorder.begin_episode(header())
+        for tick, step in enumerate(steps):
+            recorder.record(gripped(tick, *step))
+        recorder.end_episode()
+    recorder.close()
+    return path
+
+
+HELD, OPEN = GripperReading(0.06, True), GripperReading(0.08)
+CLOSE, LET_GO = GripperCommand(0.0, 0.05, 20.0), GripperCommand(0.08, 0.05, 20.0)
+
+
+def test_a_gripper_s_life_goes_into_the_dataset(tmp_path, arm):
+    from latentarm.demonstrations.dataset import read_dataset
+    from latentarm.demonstrations.summary import summarise
+
+    steps = [(OPEN, None), (OPEN, CLOSE), (HELD, None), (HELD, None), (GripperReading(-1e-5), LET_GO)]
+    export_journal(recorded(tmp_path / "drive.sqlite", steps, steps[:2]), tmp_path / "dataset")
+    demonstrations = read_dataset(tmp_path / "dataset")
+    extras = demonstrations.episodes[0].extras
+    width, holding, action = (
+        extras[name].ravel()
+        for name in ("observation.gripper_width", "observation.gripper_holding", "action.gripper")
+    )
+    np.testing.assert_allclose(width, [0.08, 0.08, 0.06, 0.06, 0.0], rtol=1e-6)
+    np.testing.assert_array_equal(holding, [0, 0, 1, 1, 0])
+    # It stays as it is until a command comes, which counts until the next.
+    np.testing.assert_allclose(action, [0.08, 0.0, 0.0, 0.0, 0.08], rtol=1e-6)
+    statistics = json.loads((tmp_path / "dataset/meta/stats.json").read_text())
+    assert statistics["observation.gripper_width"]["max"] == [pytest.approx(0.08)]
+    first, second = summarise(demonstrations).gripper
+    assert (first.changes, first.closed_fraction) == (2, pytest.approx(0.75))
+    assert (second.changes, second.closed_fraction) == (1, 0.0)
+
+
+def test_an_episode_is_cut_where_its_gripper_could_not_be_read(tmp_path):
+    path = recorded(tmp_path / "drive.sqlite", [(OPEN, None), (HELD, None), (None, None), (OPEN, None)])
+    with pytest.warns(ImplausibleWarning, match="the gripper could not be read"):
+        (episode,) = demonstrations_of(read_journal(path), source="drive").episodes
+    assert len(episode.state) == 2
+
+
+def test_episodes_with_a_gripper_and_without_do_not_mix(tmp_path):
+    path = recorded(tmp_path / "drive.sqlite", [(OPEN, None)] * 3, [(None, None)] * 3)
+    with pytest.raises(UserError, match=r"with a gripper and without: export them apart, with --episodes"):
+        demonstrations_of(read_journal(path), source="drive")
 
 
 def test_a_journal_without_a_complete_episode_exports_nothing(tmp_path):

@@ -189,6 +189,43 @@ def test_robomimic_two_arms_are_one_state(tmp_path: Path) -> None:
     assert np.all(state[:, 7:] == 1)
 
 
+def with_a_gripper(path: Path, robot: str, key: str, **keywords: object) -> Path:
+    """A file of robosuite with a gripper that closes from its second sample on."""
+    robomimic(path)
+    with h5py.File(path, "a") as file:
+        arguments = {"env_kwargs": {"control_freq": 20, "robots": [robot], **keywords}}
+        file["data"].attrs["env_args"] = json.dumps(arguments)
+        for demo in (0, 2, 10):
+            file[f"data/demo_{demo}/obs/robot0_joint_pos"][:] = panda().home + 0.01 * np.arange(4)[:, None]
+            finger = np.array([0.04, 0.03, 0.02, -1e-5])
+            file[f"data/demo_{demo}/obs/{key}"] = np.stack([finger, -finger], axis=1)
+            file[f"data/demo_{demo}/actions"][:, -1] = [0.0, 1.0, 0.0, -1.0]
+    return path
+
+
+@pytest.mark.parametrize("key", ["robot0_gripper_qpos", "gripper_states"])
+def test_robomimic_s_panda_has_an_opening_and_where_it_goes(tmp_path: Path, key: str) -> None:
+    source = with_a_gripper(tmp_path / "demo.hdf5", "Panda", key, gripper_types="default")
+    import_to(source, tmp_path / "data", panda())
+    demonstrations = read_dataset(tmp_path / "data")
+    extras = demonstrations.episodes[1].extras
+    np.testing.assert_allclose(extras["observation.gripper_width"].ravel(), [0.08, 0.06, 0.04, 0.0])
+    np.testing.assert_allclose(extras["action.gripper"].ravel(), [0.08, 0.0, 0.0, 0.08])
+    assert demonstrations.import_record["gripper"] == "observation.gripper_width"
+
+
+@pytest.mark.parametrize(
+    ("robot", "keywords"), [("Sawyer", {}), ("Panda", {"gripper_types": ["Robotiq85Gripper"]})]
+)
+def test_robomimic_s_other_grippers_stay_as_recorded(
+    tmp_path: Path, robot: str, keywords: dict[str, object]
+) -> None:
+    source = with_a_gripper(tmp_path / "demo.hdf5", robot, "robot0_gripper_qpos", **keywords)
+    extras = import_demonstrations(source).episodes[0].extras
+    assert set(extras) == {"observation.gripper"}
+    assert extras["observation.gripper"].shape == (4, 2)
+
+
 def test_a_dataset_of_ours_imports_with_everything(
     tmp_path: Path, demonstrations: Demonstrations, equal: Equal
 ) -> None:

@@ -9,6 +9,7 @@ import os
 import subprocess
 import venv
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -171,6 +172,28 @@ def test_lerobot_reads_what_we_write(
     assert seen["last"] == [8, "stir"]
 
 
+def test_a_gripper_reaches_lerobot(
+    tmp_path: Path, lerobot: Callable[..., str], demonstrations: Demonstrations
+) -> None:
+    def gripped(episode: Episode) -> Episode:
+        width = np.linspace(0.08, 0.06, len(episode.state))[:, None]
+        gripper = {
+            "observation.gripper_width": width,
+            "observation.gripper_holding": (width < 0.062).astype(float),
+            "action.gripper": np.zeros_like(width),
+        }
+        return replace(episode, extras={**episode.extras, **gripper})
+
+    episodes = tuple(map(gripped, demonstrations.episodes))
+    write_dataset(replace(demonstrations, episodes=episodes), tmp_path / "data")
+    seen = json.loads(lerobot(READ, tmp_path / "data", 17))
+    item = seen["item"]
+    assert item["observation.gripper_width"] == np.float32(0.06)
+    assert (item["observation.gripper_holding"], item["action.gripper"]) == (1.0, 0.0)
+    found = import_demonstrations(tmp_path / "data").episodes[2].extras
+    np.testing.assert_array_equal(found["observation.gripper_holding"].ravel(), [0, 0, 0, 0, 0, 0, 1])
+
+
 def test_lerobot_lays_out_the_same_files_and_columns(
     tmp_path: Path, lerobot: Callable[..., str], demonstrations: Demonstrations
 ) -> None:
@@ -301,4 +324,5 @@ def test_the_real_recordings_reach_lerobot(
         assert seen["frames"] == len(arrays["q"])
         assert seen["episodes"] == 15
         assert seen["item"]["observation.state"] == arrays["q"][1234].astype(np.float32).tolist()
+        assert ("observation.gripper_toggled" in seen["item"]) == (arrays["gripper_toggles"].size > 0)
         np.testing.assert_allclose(seen["mean"], arrays["q"].mean(axis=0), atol=1e-6)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -35,6 +37,18 @@ def test_the_result_can_be_written_and_says_what_was_done():
     assert found.rate_hz == 10.0
     assert found.episodes[0].task == "pour"
     assert len(found.episodes[0].state) == 17  # 1.55 s, and what is left of the last step
+
+
+def test_a_gripper_that_moves_while_the_arm_rests_is_kept():
+    recorded = drives(1.0, 2.0, 1.0)
+    (episode,) = recorded.episodes
+    width = np.interp(episode.timestamp, [1.5, 2.5], [0.08, 0.0])[:, None]
+    extras = {"observation.gripper_width": width, "action.gripper": width}
+    both = replace(recorded, episodes=(replace(episode, extras=extras),))
+    (found,) = without_pauses(both, 10.0).episodes
+    assert set(found.extras) == {"observation.gripper_width"}
+    # Open until the arm rests, closed from where it goes on.
+    np.testing.assert_array_equal(found.extras["observation.gripper_width"].ravel(), [0.08] * 10 + [0.0] * 11)
 
 
 def test_episodes_without_motion_are_left_out():

@@ -6,6 +6,8 @@ import pytest
 from latentarm.demonstrations.figure import draw_trajectories
 from latentarm.demonstrations.importing import import_demonstrations
 from latentarm.demonstrations.summary import summarise
+from latentarm.demonstrations.validation import validate
+from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.planar import planar
 from latentarm.types import Demonstrations, Episode
@@ -54,6 +56,61 @@ def test_tables_and_rows_say_the_same(demonstrations: Demonstrations) -> None:
     assert len(rows) == len(summary.rows())
     assert summary.features == ("action", "assist.alpha", "belief")
     assert summary.goals == ("cup",)
+
+
+def with_gripper(feature: str, values: list[float], **others: list[float]) -> Demonstrations:
+    """Five samples over two seconds."""
+    extras = {name: np.array(one)[:, None] for name, one in {feature: values, **others}.items()}
+    time = np.array([0.0, 0.5, 1.0, 1.5, 2.0])
+    return Demonstrations((Episode(np.arange(5.0)[:, None] / 10, time, extras=extras),), 2.0, ("joint1",))
+
+
+@pytest.mark.parametrize(
+    ("feature", "values", "others", "shown"),
+    [
+        ("observation.gripper_width", [0.08, 0.08, 0.01, 0.01, 0.08], {}, ("50", "–", "2")),
+        # Closed round something wide: what it was told says so, or that it holds.
+        (
+            "observation.gripper_width",
+            [0.08, 0.06, 0.06, 0.06, 0.08],
+            {"action.gripper": [0.0, 0.0, 0.0, 0.08, 0.08]},
+            ("75", "–", "1"),
+        ),
+        (
+            "observation.gripper_width",
+            [0.08, 0.06, 0.06, 0.06, 0.08],
+            {"observation.gripper_holding": [0.0, 1.0, 1.0, 1.0, 0.0]},
+            ("75", "–", "2"),
+        ),
+        ("observation.gripper_opening", [0.2, 0.3, 0.3, 0.2, 0.3], {}, ("100", "–", "0")),
+        ("observation.gripper_toggled", [0.0, 1.0, 0.0, 0.0, 1.0], {}, ("–", "25", "3")),
+    ],
+)
+def test_what_a_gripper_did_is_counted(
+    feature: str, values: list[float], others: dict[str, list[float]], shown: tuple[str, ...]
+) -> None:
+    demonstrations = with_gripper(feature, values, **others)
+    validate(demonstrations, "here")
+    summary = summarise(demonstrations)
+    *_, gripper = summary.tables()
+    assert (gripper.title, gripper.rows) == ("Gripper", (("0", *shown),))
+    rows = {row.measure: row.mean for row in summary.rows()}
+    assert rows["gripper_changes"] == int(shown[2])
+
+
+@pytest.mark.parametrize(
+    ("feature", "value"),
+    [
+        ("observation.gripper_width", -0.01),
+        ("observation.gripper_width", 80.0),
+        ("observation.gripper_width", np.nan),
+        ("observation.gripper_holding", 0.5),
+        ("observation.gripper_toggled", 2.0),
+    ],
+)
+def test_a_gripper_that_cannot_be_is_refused(feature: str, value: float) -> None:
+    with pytest.raises(UserError, match=rf"here: episode 0, sample 3: {feature}\[0\] is"):
+        validate(with_gripper(feature, [0.0, 0.0, 1.0, value, 0.0]), "here")
 
 
 @pytest.mark.parametrize("dof", [1, 2, 7])

@@ -213,6 +213,22 @@ def test_columns_can_be_told(told: tuple[str, ...], columns: tuple[int, ...]) ->
     assert (found.joints, found.gripper, found.dropped) == (columns, 2, ())
 
 
+def test_a_column_that_is_called_a_width_is_one(tmp_path: Path) -> None:
+    header = ",".join(["episode", "timestamp", *panda().joint_names, "gripper_width"])
+    for name, width in (("m", 0.04), ("mm", 40.0)):
+        lines = [f"0,{0.1 * row},{','.join(map(str, panda().home))},{width}" for row in range(5)]
+        (tmp_path / f"{name}.csv").write_text("\n".join([header, *lines]))
+    found = import_demonstrations(tmp_path / "m.csv", panda())
+    np.testing.assert_array_equal(
+        found.episodes[0].extras["observation.gripper_width"], np.full((5, 1), 0.04)
+    )
+    assert (
+        found.import_record["gripper"] == "gripper_width, stored as observation.gripper_width, m by its name"
+    )
+    with pytest.raises(UserError, match=r"gripper_width\[0\] is 40; an opening is from 0 to 1 m"):
+        import_demonstrations(tmp_path / "mm.csv", panda())
+
+
 @pytest.mark.parametrize(
     ("told", "gripper", "said"),
     [

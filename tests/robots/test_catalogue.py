@@ -17,7 +17,8 @@ def test_every_robot_of_the_catalogue_is_whole(name):
     assert not robot.limits.violation(robot.home).any()
     assert robot.tool_speed_limit > 0
     assert np.linalg.matrix_rank(robot.chain.jacobian(robot.home)) >= 3
-    assert robot.model().njnt == robot.dof
+    fingers = () if robot.gripper is None else robot.gripper.joints
+    assert robot.model().njnt == robot.dof + len(fingers)
 
 
 def test_an_unknown_name_is_answered_with_the_known_ones():

@@ -72,7 +72,7 @@ def placed(robot, surface, q):
     """Where MuJoCo puts the manufacturer's surface, (K, 3) by body."""
     model = robot.model()
     data = mujoco.MjData(model)
-    data.qpos[:] = q
+    data.qpos[: robot.dof] = q
     mujoco.mj_kinematics(model, data)
     return {
         body: points @ data.body(body).xmat.reshape(3, 3).T + data.body(body).xpos

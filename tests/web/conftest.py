@@ -20,11 +20,12 @@ from latentarm.control.clock import Clock, SimulatedClock
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
 from latentarm.testing.faults import FaultyArm
+from latentarm.types import GripperAsk
 from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.arm_process.recording import EpisodeWriter
-from latentarm.web.protocol.channel import Given, Order, Report, new_channel, parse_report
+from latentarm.web.protocol.channel import AskedGripper, Given, Order, Report, new_channel, parse_report
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
@@ -124,10 +125,25 @@ class Desk:
         """So much time; afterwards the loop has ended and the arm is at rest."""
         self.drive.run(round(for_s / PERIOD_S))
 
-    def give(self, *u: float, nonce: str | None = None, latched: bool = False, driver: int = 1) -> None:
+    def give(
+        self,
+        *u: float,
+        nonce: str | None = None,
+        latched: bool = False,
+        driver: int = 1,
+        gripper: GripperAsk | None = None,
+    ) -> None:
         self.sequence += 1
         known = nonce or (self.reports[-1].nonce if self.reports else "")
-        given = Given(driver=driver, seq=self.sequence, nonce=known, u=u, latched=latched, source="keyboard")
+        given = Given(
+            driver=driver,
+            seq=self.sequence,
+            nonce=known,
+            u=u,
+            latched=latched,
+            source="keyboard",
+            gripper=gripper and AskedGripper(ask=gripper, seq=self.sequence, nonce=known),
+        )
         self.channel.given.write(given.model_dump_json().encode())
 
     def order(self, order: Order) -> None:

@@ -369,6 +369,7 @@ def test_the_scene_has_a_pose_for_every_body(site, setup):
         poses = np.array(page.state["bodies"])
     assert len(scene["bodies"]) == len(poses) == setup.task.robot.dof + 1
     np.testing.assert_allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, atol=1e-3)
-    assert sum(len(body["geoms"]) for body in scene["bodies"]) == setup.task.robot.model().ngeom
+    parts = [*scene["bodies"], *scene["fingers"]]
+    assert sum(len(part["geoms"]) for part in parts) == setup.task.robot.model().ngeom
     with pytest.raises(urllib.error.HTTPError):
         get(site, "/mesh/0")

@@ -20,6 +20,7 @@ INPUT = {
 
 def test_a_page_s_messages_are_read():
     assert parse_message(json.dumps(INPUT)).u == (0.5, -1.0)
+    assert parse_message(json.dumps({**INPUT, "gripper": "toggle"})).gripper == "toggle"
     assert parse_message('{"type": "mode", "mode": "end_effector", "axes": 2}').axes == 2
     assert parse_message('{"type": "profile", "name": null}').name is None
 
@@ -42,6 +43,8 @@ def test_a_page_s_messages_are_read():
         {"u": 0.5},
         {"source": "mind"},
         {"latched": 1},
+        {"gripper": "grab"},
+        {"gripper": True},
         {"extra": 1},
         {"type": "Input"},
         {"type": None},

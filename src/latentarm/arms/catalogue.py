@@ -1,12 +1,14 @@
 """The arms by name: ours, and those that other distributions register."""
 
+import inspect
 from collections.abc import Callable
 from typing import Final, Protocol, cast
 
-from latentarm.arms.contract import Arm
+from latentarm.arms.contract import Arm, SceneArm
 from latentarm.errors import UserError
 from latentarm.plugins import Catalogue
 from latentarm.robots.robot import Robot
+from latentarm.scene.scene import Scene
 from latentarm.types import FloatArray
 
 
@@ -20,6 +22,21 @@ class ArmFactory(Protocol):
             robot: whose joints these are.
             state: (n,), where a simulated arm starts, rad; a real arm is where it is.
             now_s: the clock that readings are timed by, s; never goes back.
+        """
+        ...
+
+
+class SceneArmFactory(Protocol):
+    """What makes an arm that can have things about it."""
+
+    def __call__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float], *, scene: Scene) -> Arm:
+        """An arm that is not connected; see `ArmFactory`.
+
+        Args:
+            robot: whose joints these are.
+            state: (n,), where the arm starts, rad.
+            now_s: the clock that readings are timed by, s; never goes back.
+            scene: what stands about it.
         """
         ...
 
@@ -42,6 +59,9 @@ ARMS: Final = Catalogue(
 
 DEFAULT_ARM: Final = "kinematic"
 
+PHYSICAL_ARM: Final = "mujoco"
+"""The arm that can touch and hold things."""
+
 
 def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
     """An arm of the catalogue; it is not connected yet.
@@ -56,10 +76,7 @@ def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], flo
         UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is not an
         arm.
     """
-    arm = cast(object, ARMS.find(name, "--arm")(robot, state, now_s))  # a plug-in may break the contract
-    if not isinstance(arm, Arm):
-        raise UserError(f"--arm {name} made {type(arm).__name__}, not a latentarm.arms.contract.Arm.")
-    return arm
+    return _checked(name, ARMS.find(name, "--arm")(robot, state, now_s))
 
 
 def make_simulated_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
@@ -68,10 +85,44 @@ def make_simulated_arm(name: str, robot: Robot, state: FloatArray, now_s: Callab
     Raises:
         UserError: as `make_arm`, and where the arm is real: it would not wait for simulated time.
     """
-    arm = make_arm(name, robot, state, now_s)
+    return _simulated(name, make_arm(name, robot, state, now_s))
+
+
+def make_scene_arm(
+    name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float], scene: Scene
+) -> SceneArm:
+    """A simulated arm with things about it; see `make_arm`.
+
+    Args:
+        name: a name in `ARMS`; only an arm whose factory takes a ``scene`` can have one.
+        robot: whose joints these are.
+        state: (n,), where the arm starts, rad.
+        now_s: the clock that readings are timed by, s; never goes back.
+        scene: what stands about the arm.
+
+    Raises:
+        UserError: as `make_arm`, and where the arm can have no things about it.
+    """
+    factory = ARMS.find(name, "--arm")
+    if "scene" not in inspect.signature(factory).parameters:
+        raise UserError(f"--arm {name} has no things about it to touch or hold: use --arm {PHYSICAL_ARM}.")
+    arm = _simulated(name, _checked(name, cast(SceneArmFactory, factory)(robot, state, now_s, scene=scene)))
+    if not isinstance(arm, SceneArm):
+        raise UserError(f"--arm {name} made {type(arm).__name__}, not a latentarm.arms.contract.SceneArm.")
+    return arm
+
+
+def _simulated(name: str, arm: Arm) -> Arm:
     if not arm.spec.simulated:
         raise UserError(
             f"--arm {name} is a real arm, and time is simulated here: choose a simulated one, such as"
             f" {DEFAULT_ARM}."
         )
+    return arm
+
+
+def _checked(name: str, arm: object) -> Arm:
+    """A plug-in may break the contract."""
+    if not isinstance(arm, Arm):
+        raise UserError(f"--arm {name} made {type(arm).__name__}, not a latentarm.arms.contract.Arm.")
     return arm

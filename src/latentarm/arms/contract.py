@@ -10,6 +10,7 @@ from latentarm.errors import UserError
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.notices import assumed_limits
 from latentarm.robots.robot import Robot
+from latentarm.scene.scene import SceneState
 from latentarm.types import Command, Reading
 
 ArmPhase = Literal["off", "disabled", "ready", "moving", "fault", "emergency_stop"]
@@ -139,6 +140,14 @@ class Arm(ABC):
     ) -> None:
         """Close."""
         self.close()
+
+
+class SceneArm(Arm, ABC):
+    """A simulated arm with things about it."""
+
+    @abstractmethod
+    def scene_state(self) -> SceneState:
+        """How everything stands by now: the truth, whatever is read."""
 
 
 def check_arm(spec: ArmSpec, robot: Robot) -> None:

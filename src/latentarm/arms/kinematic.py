@@ -1,11 +1,13 @@
 """An arm without inertia: it does what it is told, and stops by itself when told nothing more."""
 
+import math
 from collections.abc import Callable
 from typing import Final, final
 
 import numpy as np
 
 from latentarm.arms.simulated import SimulatedArm
+from latentarm.arms.simulated_gripper import KinematicGripper
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray
 
@@ -17,7 +19,7 @@ RATE_HZ: Final = 1000.0
 class KinematicArm(SimulatedArm):
     """Kinematic simulation of the paper's transition, ``s' = s + a dt``.
 
-    A joint that reaches a limit stays there, as at a hard stop.
+    A joint that reaches a limit stays there, as at a hard stop. A gripper opens and closes as it is told.
 
     Args:
         robot: whose joints these are.
@@ -29,7 +31,16 @@ class KinematicArm(SimulatedArm):
     """
 
     def __init__(self, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> None:
-        super().__init__(robot, state, now_s, rate_hz=RATE_HZ, stops_after_s=0.0)
+        self._fingers = None if robot.gripper is None else KinematicGripper(robot.gripper)
+        super().__init__(
+            robot,
+            state,
+            now_s,
+            rate_hz=RATE_HZ,
+            stops_after_s=0.0,
+            gripper=self._fingers,
+            settles_s=math.inf,
+        )
         self._limits = robot.limits
         self._state = np.array(state, dtype=np.float64)
         self._velocity = np.zeros(robot.dof)
@@ -38,6 +49,8 @@ class KinematicArm(SimulatedArm):
         moved = self._state + commanded * span_s
         self._state = np.clip(moved, self._limits.lower, self._limits.upper)
         self._velocity = np.where(moved == self._state, commanded, 0.0)
+        if self._fingers is not None:
+            self._fingers.elapse(span_s)
 
     def _measure(self) -> tuple[FloatArray, FloatArray, float]:
         return self._state.copy(), self._velocity.copy(), 0.0

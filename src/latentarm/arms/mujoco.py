@@ -8,12 +8,18 @@ from typing import Final, final
 import mujoco
 import numpy as np
 
+from latentarm.arms.contract import SceneArm
+from latentarm.arms.finger_servo import FingerServo, add_finger_servos
+from latentarm.arms.scene_model import add_scene
+from latentarm.arms.scene_watch import SceneWatch
 from latentarm.arms.servo import Servo, add_servos, drop_actuators, hold_still_joints, torque_limits
-from latentarm.arms.simulated import SimulatedArm
+from latentarm.arms.simulated import SETTLED_S, SimulatedArm, check_start
+from latentarm.arms.tines import TinesInFood
 from latentarm.errors import UserError
-from latentarm.kinematics.reader import read, reference_positions
+from latentarm.kinematics.reader import ModelChain, read, reference_positions
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
+from latentarm.scene.scene import Scene, SceneState
+from latentarm.types import FloatArray, IntArray
 
 STEP_S: Final = 0.001
 """Time step of the physics and of the servo, s."""
@@ -23,6 +29,12 @@ _HARD_STOP: Final = (2.0 * STEP_S, 1.0)
 
 RATE_HZ: Final = 1000.0
 """How many commands the servo takes per second."""
+
+LOOK_STEPS: Final = 4
+"""Contacts, stabs and cuts are looked at after so many time steps."""
+
+SCENE_SETTLED_S: Final = 10.0
+"""Without a command, things about an arm have come to rest after this time, s."""
 
 
 @final
@@ -54,19 +66,21 @@ class Imperfections:
 
 
 @final
-class MujocoArm(SimulatedArm):
-    """A robot in MuJoCo, driven by torques.
+class MujocoArm(SimulatedArm, SceneArm):
+    """A robot in MuJoCo, driven by torques, alone or with a scene about it.
 
     Each joint has a velocity servo at 1 kHz: a torque in proportion to the error of the velocity and to that
     of its integral. Gravity is compensated for the robot's own bodies. The servo follows a command no faster
     than the joint may accelerate, and slows down as fast as that once a command has run out or was taken
-    back. Torques end at the limits of the robot's model. What the model does not drive stays where it is.
+    back. Torques end at the limits of the robot's model. A gripper begins open, and holds by contact alone;
+    see `FingerServo`. What the model does not drive stays where it is.
 
     Args:
         robot: whose model is simulated.
         state: (n,), where the arm starts, rad.
         now_s: the clock, s; never goes back.
         imperfections: of the arm and its sensors.
+        scene: what stands about the arm, in its base frame; None where there is nothing, not even a table.
 
     Raises:
         UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits; or the model
@@ -79,33 +93,102 @@ class MujocoArm(SimulatedArm):
         state: FloatArray,
         now_s: Callable[[], float],
         imperfections: Imperfections | None = None,
+        scene: Scene | None = None,
     ) -> None:
-        super().__init__(robot, state, now_s, rate_hz=RATE_HZ, stops_after_s=STEP_S)
+        check_start(robot, state)
         self._imperfections = imperfections or Imperfections()
-        self._model, self._joints = _world(robot, state, self._imperfections.payload_kg)
-        self._positions = self._model.jnt_qposadr[self._joints]
-        self._speeds = self._model.jnt_dofadr[self._joints]
+        self._model, found = _world(robot, state, self._imperfections.payload_kg, scene)
+        self._positions = self._model.jnt_qposadr[found.joints]
+        self._speeds = self._model.jnt_dofadr[found.joints]
         self._data = mujoco.MjData(self._model)
-        self._data.qpos[:] = reference_positions(robot.model())
+        reference = reference_positions(robot.model())
+        self._data.qpos[: len(reference)] = reference
         self._data.qpos[self._positions] = state
-        self._servo = Servo(self._model, self._data, self._joints, robot.limits.acceleration * STEP_S)
+        self._servo = Servo(self._model, self._data, found.joints, robot.limits.acceleration * STEP_S)
+        self._fingers = None
+        if robot.gripper is not None:
+            self._fingers = FingerServo(
+                robot.gripper, self._model, self._data, 2 * robot.dof, self._imperfections.delay_s
+            )
+        super().__init__(
+            robot,
+            state,
+            now_s,
+            rate_hz=RATE_HZ,
+            stops_after_s=STEP_S,
+            gripper=self._fingers,
+            settles_s=SETTLED_S if scene is None else SCENE_SETTLED_S,
+        )
+        self._watch = self._tines = None
+        self._bonds = frozenset((one.first, one.second) for one in (() if scene is None else scene.bonds))
+        if scene is not None:
+            self._watch = SceneWatch(self._model, self._data, robot, found.body_link, scene)
+            if robot.attachment is not None and robot.attachment.tines is not None:
+                self._tines = TinesInFood(self._model, self._data, robot.attachment.tines, scene)
+        self._steps = 0
         self._behind_s = 0.0
         self._rng = np.random.default_rng(self._imperfections.seed)
         self._measured: deque[tuple[float, FloatArray, FloatArray]] = deque()
         self._note()
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """The compiled model of the arm and its scene, to draw it; not to be changed."""
+        return self._model
+
+    @property
+    def data(self) -> mujoco.MjData:
+        """What moves, as it was after the last time step, to draw it; not to be changed."""
+        return self._data
 
     def truth(self) -> tuple[FloatArray, FloatArray]:
         """Where the joints are by now, (n,), rad, and how fast they move, (n,), rad/s, whatever is read."""
         self._elapse()
         return self._data.qpos[self._positions].copy(), self._data.qvel[self._speeds].copy()
 
+    def scene_state(self) -> SceneState:
+        """How everything stands by now: the truth, whatever is read.
+
+        Forces are looked at every `LOOK_STEPS` time steps; one that rises and falls in between is missed.
+        Things that have come to rest sleep: the forces between them are left out.
+
+        Raises:
+            RuntimeError: the arm has no scene.
+        """
+        if self._watch is None:
+            raise RuntimeError("an arm without a scene has no state of it")
+        self._elapse()
+        q = self._data.qpos[self._positions].copy()
+        if self._tines is None:
+            return self._watch.state(q, frozenset(), self._bonds)
+        return self._watch.state(q, self._tines.stabbed, self._tines.bonds)
+
     def _pass(self, span_s: float, commanded: FloatArray) -> None:
         self._behind_s += span_s
         steps = int((self._behind_s + 1e-9) / STEP_S)
         self._behind_s -= steps * STEP_S
         if steps:
-            self._servo.run(steps, commanded)
+            self._run(steps, commanded)
             self._note()
+
+    def _run(self, steps: int, commanded: FloatArray) -> None:
+        """Let time steps pass: one by one while a servo must be set anew each time."""
+        fingers, watch = self._fingers, self._watch
+        while steps:
+            anew = self._servo.prepare(commanded)
+            if fingers is not None:
+                anew |= fingers.prepare()
+            taken = 1 if anew else steps
+            if watch is not None:
+                taken = min(taken, LOOK_STEPS - self._steps % LOOK_STEPS)
+            mujoco.mj_step(self._model, self._data, taken)
+            self._servo.unwind()
+            self._steps += taken
+            steps -= taken
+            if watch is not None and self._steps % LOOK_STEPS == 0:
+                watch.look()
+                if self._tines is not None:
+                    self._tines.look()
 
     def _note(self) -> None:
         """Keep what is measured now for as long as readings are delayed."""
@@ -114,6 +197,8 @@ class MujocoArm(SimulatedArm):
         self._measured.append((time_s, q, dq))
         while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._imperfections.delay_s - 1e-9:
             self._measured.popleft()
+        if self._fingers is not None:
+            self._fingers.note()
 
     def _measure(self) -> tuple[FloatArray, FloatArray, float]:
         time_s, q, dq = self._measured[0]
@@ -126,16 +211,23 @@ class MujocoArm(SimulatedArm):
         """Nothing: without a command the servo slows down from the next step on."""
 
 
-def _world(robot: Robot, state: FloatArray, payload_kg: float) -> tuple[mujoco.MjModel, np.ndarray]:
-    """The robot's model with servos, and the model's id of each of the robot's joints."""
+def _world(
+    robot: Robot, state: FloatArray, payload_kg: float, scene: Scene | None
+) -> tuple[mujoco.MjModel, ModelChain]:
+    """The robot's model with servos and a scene, and where the robot's parts are in it."""
     spec = mujoco.MjSpec.from_string(robot.mjcf)
     bare = spec.compile()
     found = read(bare, [tool.name for tool in robot.chain.tools])
+    fingers = () if robot.gripper is None else robot.gripper.joints
     torque = torque_limits(bare, found.joints, robot)
-    inertia = _inertia(bare, found.joints, state)
+    inertia = _inertia(bare, found.joints, found.joints, state)
     drop_actuators(spec)
-    hold_still_joints(spec, bare, found.joints)
+    hold_still_joints(spec, bare, found.joints, fingers)
     add_servos(spec, bare, found.joints, torque, inertia)
+    if robot.gripper is not None:
+        slides = np.array([bare.joint(name).id for name in fingers])
+        moved = _inertia(bare, slides, found.joints, state)
+        add_finger_servos(spec, robot.gripper, moved)
     _let_first_links_turn(spec, bare, found.joints)
     for joint in spec.joints:
         joint.solref_limit[:] = _HARD_STOP
@@ -143,23 +235,25 @@ def _world(robot: Robot, state: FloatArray, payload_kg: float) -> tuple[mujoco.M
         body.gravcomp = 1.0
     if payload_kg > 0.0:
         _hang(spec, robot, payload_kg)
+    if scene is not None:
+        add_scene(spec, scene, robot.attachment, grips=robot.gripper is not None)
     spec.option.timestep = STEP_S
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    return spec.compile(), found.joints
+    return spec.compile(), found
 
 
-def _inertia(model: mujoco.MjModel, joints: np.ndarray, state: FloatArray) -> FloatArray:
-    """(n,), what each joint moves by itself at the start, kg m²; kg where it slides."""
+def _inertia(model: mujoco.MjModel, joints: IntArray, arm: IntArray, state: FloatArray) -> FloatArray:
+    """(k,), what each of some joints moves by itself with the arm at its start, kg m²; kg where it slides."""
     data = mujoco.MjData(model)
     data.qpos[:] = reference_positions(model)
-    data.qpos[model.jnt_qposadr[joints]] = state
+    data.qpos[model.jnt_qposadr[arm]] = state
     mujoco.mj_forward(model, data)
     whole = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, whole)
     return np.diag(whole)[model.jnt_dofadr[joints]]
 
 
-def _let_first_links_turn(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: np.ndarray) -> None:
+def _let_first_links_turn(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArray) -> None:
     """No contact between a link and the base that it turns on, as between any other link and its parent."""
     for body in {int(model.jnt_bodyid[joint]) for joint in joints}:
         parent = int(model.body_parentid[body])

@@ -1,5 +1,6 @@
 """Velocity servos for the joints of a MuJoCo model, in place of whatever actuators it has."""
 
+from collections.abc import Sequence
 from typing import Final, final
 
 import mujoco
@@ -10,7 +11,7 @@ from latentarm.kinematics.reader import reference_positions
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, IntArray
 
-STIFFNESS_PER_S: Final = 100.0
+FREQUENCY_RAD_S: Final = 100.0
 """Natural frequency of a joint that only its servo moves, rad/s; it is critically damped."""
 
 _JOINT: Final = int(mujoco.mjtTrn.mjTRN_JOINT)
@@ -40,31 +41,28 @@ class Servo:
         self._farthest = model.jnt_actfrcrange[joints, 1] / stiffness
         data.act[: self._n] = data.qpos[self._positions]
 
-    def run(self, steps: int, commanded: FloatArray) -> None:
-        """Let time steps pass.
+    def prepare(self, commanded: FloatArray) -> bool:
+        """Set the servos for the next time step; whether those after it need to be set anew.
 
         Args:
-            steps: how many.
             commanded: (n,), velocity to reach and then to keep, rad/s.
         """
-        while steps and (self._velocity != commanded).any():
+        changes = bool((self._velocity != commanded).any())
+        if changes:
             change = np.clip(commanded - self._velocity, -self._quickening, self._quickening)
             self._velocity = np.where(
                 np.abs(commanded - self._velocity) <= self._quickening, commanded, self._velocity + change
             )
-            self._step(1)
-            steps -= 1
-        if steps:
-            self._step(steps)
-
-    def _step(self, steps: int) -> None:
         n = self._n
         self._data.ctrl[:n] = self._velocity
-        self._data.ctrl[n:] = self._velocity
-        mujoco.mj_step(self._model, self._data, steps)
-        # A joint that is held must not wind its servo up, or it would leap once it is free.
+        self._data.ctrl[n : 2 * n] = self._velocity
+        return changes
+
+    def unwind(self) -> None:
+        """After a time step: a joint that is held must not wind its servo up, or it would leap once free."""
         q = self._data.qpos[self._positions]
-        self._data.act[:n] = np.clip(self._data.act[:n], q - self._farthest, q + self._farthest)
+        act = self._data.act[: self._n]
+        self._data.act[: self._n] = np.clip(act, q - self._farthest, q + self._farthest)
 
 
 def torque_limits(model: mujoco.MjModel, joints: IntArray, robot: Robot) -> FloatArray:
@@ -115,13 +113,16 @@ def drop_actuators(spec: mujoco.MjSpec) -> None:
         spec.delete(part)
 
 
-def hold_still_joints(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArray) -> None:
+def hold_still_joints(
+    spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArray, fingers: Sequence[str]
+) -> None:
     """Hold every hinge and slide that is not driven where the model starts.
 
     Args:
         spec: gets the constraints.
         model: compiled from it.
         joints: (n,), ids of the joints that are driven.
+        fingers: names of further joints that are driven.
     """
     held = reference_positions(model)
     driven = {int(joint) for joint in joints}
@@ -129,7 +130,7 @@ def hold_still_joints(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArr
     for joint in spec.joints:
         if joint.type not in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE):
             continue
-        if joint.id in driven or joint.id in following:
+        if joint.id in driven or joint.id in following or joint.name in fingers:
             continue
         joint.name = joint.name or f"joint{joint.id}"
         at = int(model.jnt_qposadr[joint.id])
@@ -137,7 +138,7 @@ def hold_still_joints(spec: mujoco.MjSpec, model: mujoco.MjModel, joints: IntArr
             type=mujoco.mjtEq.mjEQ_JOINT,
             name1=joint.name,
             objtype=mujoco.mjtObj.mjOBJ_JOINT,
-            data=[held[at] - model.qpos0[at], *([0.0] * 11)],
+            data=[held[at] - model.qpos0[at], *([0.0] * (mujoco.mjNEQDATA - 1))],
         )
 
 
@@ -154,8 +155,8 @@ def add_servos(
         inertia: (n,), what each joint moves, kg m².
     """
     of = {joint.id: joint for joint in spec.joints}
-    stiffness = STIFFNESS_PER_S**2 * inertia
-    damping = 2.0 * STIFFNESS_PER_S * inertia
+    stiffness = FREQUENCY_RAD_S**2 * inertia
+    damping = 2.0 * FREQUENCY_RAD_S * inertia
     for index, joint in enumerate(int(joint) for joint in joints):
         of[joint].name = of[joint].name or f"joint{joint}"
         of[joint].actfrclimited = True

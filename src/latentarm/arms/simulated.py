@@ -8,6 +8,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.contract import Arm, ArmPhase, ArmSpec, ArmStatus
+from latentarm.arms.simulated_gripper import SimulatedGripper
 from latentarm.errors import UserError
 from latentarm.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
@@ -16,7 +17,7 @@ from latentarm.types import Command, FloatArray, Reading
 _CLOCK_DIGITS: Final = 9
 """Time passes in whole nanoseconds, so that equal periods of a clock are equally long for the arm."""
 
-_SETTLED_S: Final = 1.0
+SETTLED_S: Final = 1.0
 """An arm without a command is at rest after this time, s: no more of it is simulated."""
 
 _REASONS: Final[dict[ArmPhase, str]] = {
@@ -37,6 +38,8 @@ class SimulatedArm(Arm):
         now_s: the clock, s; never goes back.
         rate_hz: how many commands it takes per second.
         stops_after_s: how soon it notices that a command has run out, s.
+        gripper: its gripper, if it has one.
+        settles_s: how long anything can move after the last command, s: no more of it is simulated.
 
     Raises:
         UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits.
@@ -50,9 +53,19 @@ class SimulatedArm(Arm):
         *,
         rate_hz: float,
         stops_after_s: float,
+        gripper: SimulatedGripper | None = None,
+        settles_s: float = SETTLED_S,
     ) -> None:
         check_start(robot, state)
-        self._spec = ArmSpec(robot.joint_names, rate_hz, stops_after_s, simulated=True)
+        self._spec = ArmSpec(
+            robot.joint_names,
+            rate_hz,
+            stops_after_s,
+            simulated=True,
+            gripper=None if gripper is None else gripper.gripper,
+        )
+        self._gripper = gripper
+        self._settles_s = settles_s
         self._now_s = now_s
         self._at_s = now_s()
         self._phase: ArmPhase = "off"
@@ -140,15 +153,20 @@ class SimulatedArm(Arm):
         """See the base class.
 
         Raises:
-            ValueError: the velocity has the wrong shape or is not finite: no safety filter sends that.
+            ValueError: the velocity has the wrong shape or is not finite, or there is a command for a gripper
+                that the arm does not have: no safety filter sends that.
         """
         velocity = np.array(command.velocity, dtype=np.float64)
         if velocity.shape != self._rest.shape or not np.isfinite(velocity).all():
             raise ValueError(f"a command needs {len(self._rest)} finite joint velocities")
+        if command.gripper is not None and self._gripper is None:
+            raise ValueError("this arm has no gripper to command")
         self._elapse()
         if self._phase == "ready":
             self._commanded = velocity
             self._left_s = max(float(command.duration_s), 0.0)
+            if self._gripper is not None and command.gripper is not None:
+                self._gripper.send(command.gripper)
 
     @final
     def stop(self) -> None:
@@ -156,6 +174,8 @@ class SimulatedArm(Arm):
         self._elapse()
         self._commanded, self._left_s = self._rest, 0.0
         self._halt()
+        if self._gripper is not None:
+            self._gripper.halt()
         self._read_at_s = math.nan  # what was read in this moment no longer holds
 
     def _elapse(self) -> None:
@@ -174,12 +194,13 @@ class SimulatedArm(Arm):
         idle_s = round(span_s - commanded_s, _CLOCK_DIGITS)
         if idle_s > 0.0:
             self._commanded = self._rest
-            self._pass(min(idle_s, _SETTLED_S), self._rest)
+            self._pass(min(idle_s, self._settles_s), self._rest)
 
     def _renew(self) -> Reading:
         q, dq, age_s = self._measure()
         sequence = 0 if self._newest is None else self._newest.sequence + 1
-        self._newest = Reading(q, dq, self._at_s - age_s, sequence)
+        gripper = None if self._gripper is None else self._gripper.measure()
+        self._newest = Reading(q, dq, self._at_s - age_s, sequence, gripper)
         self._read_at_s = self._at_s
         return self._newest
 

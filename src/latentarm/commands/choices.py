@@ -5,15 +5,17 @@ from typing import TYPE_CHECKING, Literal
 from latentarm.arms.catalogue import ARMS
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.models.catalogue import KINDS
-from latentarm.tasks.catalogue import HELD_OUT, TASKS
+from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, TASKS
 
 if TYPE_CHECKING:
     ArmName = str
     BeliefName = str
     ModelName = str
     TaskName = str
+    AnyTaskName = str
 else:
     ArmName = Literal[tuple(ARMS)]
     BeliefName = Literal[tuple(BELIEFS)]
     ModelName = Literal[tuple(KINDS)]
     TaskName = Literal[(*TASKS, HELD_OUT)]
+    AnyTaskName = Literal[(*TASKS, *SCENE_TASKS, HELD_OUT)]

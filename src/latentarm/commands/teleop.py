@@ -8,7 +8,7 @@ from typing import Annotated
 from tyro.conf import Positional, arg
 
 from latentarm.arms.catalogue import DEFAULT_ARM
-from latentarm.commands.choices import ArmName
+from latentarm.commands.choices import AnyTaskName, ArmName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import say
@@ -29,6 +29,10 @@ def teleop(
     certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
     arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM,
+    task: Annotated[
+        AnyTaskName | None,
+        arg(help="What the arm is driven at; the run's own task, or a table, where none is named."),
+    ] = None,
     seed: Seed = 0,
     out: Annotated[Path, arg(metavar="DIR", help="Folder for what is recorded.")] = Path("teleop"),
     most_gb: Annotated[
@@ -54,6 +58,6 @@ def teleop(
             print(json_format.dumps({"address": address}), flush=True)
 
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
-    config = TeleopConfig(Spec(run, profile, seed, out, room, arm), host, port, certfile, keyfile)
+    config = TeleopConfig(Spec(run, profile, seed, out, room, arm, task), host, port, certfile, keyfile)
     serve(config, partial(say, json=json), ready)
     return 0

@@ -11,11 +11,12 @@ import numpy as np
 from latentarm.control.journal import JournalEpisode, read_journal
 from latentarm.control.recorded_states import first_implausible
 from latentarm.control.recorder import EpisodeHeader
+from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_HOLDING, GRIPPER_WIDTH, going_to
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
 from latentarm.kinematics.pose_rows import stored_rows
 from latentarm.robots.limits import JointLimits
-from latentarm.types import Demonstrations, Episode, FloatArray
+from latentarm.types import Demonstrations, Episode, FloatArray, StepRecord
 
 NO_BOUND = -1.0
 """Stands for "no bound" in a dataset, whose numbers are all finite: a radius is never negative."""
@@ -37,7 +38,9 @@ def demonstrations_of(
     The command is the action. Further features: ``input.u``, ``latent.z``, ``action.human``,
     ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief``, ``assist.bound``
     (rad; -1 where nothing helps) and ``observation.environment_state`` (poses of the goals, which are the
-    dataset's objects).
+    dataset's objects). An arm with a gripper adds ``observation.gripper_width`` (m; a reading below zero
+    counts as zero), ``observation.gripper_holding`` (0 or 1) and ``action.gripper`` (m): the width that was
+    commanded last, or the one that it has until something is commanded.
     Time starts at each episode's first sample. Incomplete episodes are skipped unless asked for. An episode
     is cut before its first impossible sample (see `first_implausible`).
 
@@ -50,7 +53,8 @@ def demonstrations_of(
         ImplausibleWarning: an episode was cut, or skipped because too little of it remained.
 
     Raises:
-        UserError: no episode is complete and long enough, or the episodes are of different robots or goals.
+        UserError: no episode is complete and long enough, or the episodes are of different robots or goals,
+            or of an arm with a gripper and one without.
     """
     usable = [_until_implausible(episode) for episode in episodes if incomplete or episode.complete]
     kept = [episode for episode in usable if len(episode.records) >= _SHORTEST]
@@ -63,6 +67,10 @@ def demonstrations_of(
         if header.joint_names != first.joint_names or [goal.name for goal in header.goals] != names:
             raise UserError(
                 f"{source} holds episodes of different robots or goals: export them apart, with --episodes."
+            )
+        if _has_gripper(episode) != _has_gripper(kept[0]):
+            raise UserError(
+                f"{source} holds episodes with a gripper and without: export them apart, with --episodes."
             )
     return Demonstrations(
         episodes=tuple(_episode(episode) for episode in kept),
@@ -128,6 +136,26 @@ def _limits(header: EpisodeHeader) -> JointLimits | None:
     return limits if limits.dof == len(header.joint_names) else None
 
 
+def _has_gripper(episode: JournalEpisode) -> bool:
+    """Whether its samples, which agree in this, have a gripper."""
+    return episode.records[0].gripper is not None
+
+
+def _gripper(records: Sequence[StepRecord]) -> dict[str, FloatArray]:
+    """Features of the gripper; none without one."""
+    measured = [one.gripper for one in records if one.gripper is not None]
+    if not measured:
+        return {}
+    width_m = np.array([max(one.width_m, 0.0) for one in measured])
+    commands = [one.command.gripper for one in records]
+    commanded = np.array([np.nan if one is None else one.width_m for one in commands])
+    return {
+        GRIPPER_WIDTH: width_m[:, None],
+        GRIPPER_HOLDING: np.array([[float(one.holding)] for one in measured]),
+        ACTION_GRIPPER: going_to(commanded, width_m)[:, None],
+    }
+
+
 def _episode(recorded: JournalEpisode) -> Episode:
     records, goals = recorded.records, recorded.header.goals
     time_s = np.array([record.time_s for record in records])
@@ -145,6 +173,7 @@ def _episode(recorded: JournalEpisode) -> Episode:
         extras["assist.bound"] = np.where(np.isnan(bound), NO_BOUND, bound)
         poses = [stored_rows(goal.pose) for goal in goals]
         extras[ENVIRONMENT] = np.tile(np.concatenate(poses), (len(records), 1))
+    extras |= _gripper(records)
     return Episode(
         state=np.stack([record.state for record in records]),
         timestamp=time_s - time_s[0],

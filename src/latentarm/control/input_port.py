@@ -10,7 +10,7 @@ from typing import final
 import numpy as np
 
 from latentarm.control.clock import Clock
-from latentarm.types import FloatArray, Input
+from latentarm.types import FloatArray, GripperAsk, Input
 
 NONCE_LIFE_S = 0.2
 """An input must echo a nonce no older than this."""
@@ -40,7 +40,8 @@ class InputPort(InputSource):
     The loop's side issues nonces. The sender of inputs echoes the newest nonce that it has seen, with a
     sequence number that grows. A message that was delayed in either direction is thus detected without
     trusting the sender's clock. At most one input is kept. A press of the
-    mode switch is not lost when a later input replaces it before the loop has looked.
+    mode switch, and what is asked of the gripper, is not lost when a later input replaces it before the loop
+    has looked.
 
     Args:
         input_dim: number of axes d.
@@ -55,6 +56,8 @@ class InputPort(InputSource):
         self._u: FloatArray = np.zeros(input_dim)
         self._switch = False
         self._pressed = False
+        self._gripper: GripperAsk | None = None
+        self._asked: GripperAsk | None = None
         self._issued_s = self._received_s = -math.inf
 
     def issue_nonce(self) -> str:
@@ -93,6 +96,8 @@ class InputPort(InputSource):
             self._u = u
             self._switch = bool(given.switch_mode)
             self._pressed |= self._switch
+            self._gripper = given.gripper
+            self._asked = given.gripper or self._asked
             self._issued_s, self._received_s = issued_s, now_s
             return True
 
@@ -104,10 +109,11 @@ class InputPort(InputSource):
         with self._lock:
             switch = self._switch or self._pressed
             self._pressed = False
+            gripper, self._asked = self._gripper or self._asked, None
             age_s = now_s - self._received_s
             if now_s - self._issued_s > NONCE_LIFE_S or self._received_s > self._clock.now_s():
                 age_s = math.inf
-            return Input(self._u, switch), max(age_s, 0.0)
+            return Input(self._u, switch, gripper), max(age_s, 0.0)
 
 
 def _is_stamp(nonce: object, sequence: object) -> bool:

@@ -11,7 +11,7 @@ from typing import Any, final
 import numpy as np
 
 from latentarm.control.recorder import LIMITS, EpisodeHeader, check_is_journal
-from latentarm.control.samples import COMPACT, unpacked
+from latentarm.control.samples import ALWAYS, COMPACT, gripper_command, gripper_reading, unpacked
 from latentarm.demonstrations.provenance import parse_provenance
 from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
@@ -21,7 +21,6 @@ from latentarm.untrusted.documents import parse_object
 from latentarm.untrusted.memory import bounded_memory
 from latentarm.untrusted.opening import check_file, is_missing
 
-_PARTS = 8
 _SCALARS = 5
 _MOST_FIGURES = 100_000
 _MOST_CELL_BYTES = 1 << 20
@@ -226,20 +225,22 @@ def _goal(goal: dict[str, Any]) -> Goal:
 
 
 def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:
-    if figures[: len(COMPACT)] == COMPACT:
-        return _step_record(unpacked(figures, _PARTS), stop, limited_by)
+    if figures[:1] in COMPACT:
+        return _step_record(unpacked(figures), stop, limited_by)
     values = np.frombuffer(figures, dtype=np.float64)
-    widths = values[:_PARTS]
-    if len(widths) < _PARTS or not (widths >= 0).all() or widths.sum() != len(values) - _PARTS:
+    widths = values[:ALWAYS]
+    if len(widths) < ALWAYS or not (widths >= 0).all() or widths.sum() != len(values) - ALWAYS:
         raise ValueError("a sample has the wrong length")
     if len(values) > _MOST_FIGURES:
         raise ValueError("a sample is too long")
-    parts = np.split(values[_PARTS:], np.cumsum(widths.astype(np.int64))[:-1])
+    parts = np.split(values[ALWAYS:], np.cumsum(widths.astype(np.int64))[:-1])
     return _step_record(parts, stop, limited_by)
 
 
 def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str) -> StepRecord:
-    scalars, state, given, latent, human, assist, belief, velocity = parts
+    scalars, state, given, latent, human, assist, belief, velocity, *gripper = parts
+    # Journals from before grippers were recorded have no such parts.
+    measured, asked = gripper or (np.zeros(0), np.zeros(0))
     # Journals from before the bound was recorded have one less.
     known = scalars.tolist() if len(scalars) == _SCALARS else [*scalars.tolist(), math.nan]
     time_s, alpha, mode, duration_s, bound_rad = known
@@ -258,6 +259,8 @@ def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str)
             duration_s=duration_s,
             stop=None if stop is None else Stop(str(stop)),
             limited_by=tuple(limited_by.split(",")) if limited_by else (),
+            gripper=gripper_command(asked),
         ),
         bound_rad=bound_rad,
+        gripper=gripper_reading(measured),
     )

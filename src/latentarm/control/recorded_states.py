@@ -24,7 +24,8 @@ def first_implausible(
     Args:
         records: the episode, in order.
         joint_names: n names.
-        limits: of the joints; None checks only that the readings are numbers and that time goes on.
+        limits: of the joints; None checks only that the readings are numbers and that time goes on. Where one
+            sample has a gripper, those without are impossible.
 
     Returns:
         Its index and a short reason; None if every sample is possible.
@@ -37,6 +38,9 @@ def first_implausible(
     unread = ~np.isfinite(state).all(axis=1)
     if unread.any():
         found.append((int(unread.argmax()), "the joints could not be read"))
+    ungripped = np.array([record.gripper is None for record in records])
+    if ungripped.any() and not ungripped.all():
+        found.append((int(ungripped.argmax()), "the gripper could not be read"))
     elapsed_s = np.diff(time_s)
     # Written so that a time that is not a number counts as well.
     back = ~(elapsed_s > 0.0)

@@ -8,8 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import final
 
+import numpy as np
+
 from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalWatch
-from latentarm.control.samples import figures_of, packed
+from latentarm.control.samples import ALWAYS, figures_of, packed
 from latentarm.demonstrations.provenance import provenance_json
 from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
@@ -20,10 +22,11 @@ from latentarm.untrusted.opening import check_file, is_missing
 LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
 """What a header says of the joints' limits."""
 
-SCHEMA_VERSION = 2
-"""Version 2 made samples compact. Version 1 can still be read and appended to."""
+SCHEMA_VERSION = 3
+"""Version 2 made samples compact, version 3 gave them a gripper. Both older versions can still be read and
+appended to."""
 
-_READABLE = (1, 2)
+_READABLE = (1, 2, 3)
 
 _PAGE_BYTES = 2048
 """Each sample is a transaction, and each transaction writes one or two whole pages to the log."""
@@ -196,16 +199,19 @@ class Recorder:
             JournalFullError: there is no room for more; the episode was completed before this step.
             JournalLostError: the journal has gone, and the episode with it.
             UserError: the journal cannot be written (the disk is full; the episode then stays incomplete), or
-                no episode is under way, or the record's shapes differ from those before.
+                no episode is under way, the record's shapes differ from those before, or a figure of its
+                gripper is not finite.
         """
         if self._episode is None:
             raise UserError(f"{self._path} has no episode under way: begin one before recording.")
         if self._number % self._samples_per_check == self._samples_per_check - 1:
             self.check()
         parts = figures_of(record)
-        widths = tuple(len(part) for part in parts)
+        widths = tuple(len(part) for part in parts[:ALWAYS])
         if self._number and widths != self._widths:
             raise UserError(f"A record for {self._path} has other shapes than those before it.")
+        if not all(np.isfinite(part).all() for part in parts[ALWAYS:]):
+            raise UserError(f"A record for {self._path} has a gripper whose figures are not finite.")
         stop = record.command.stop
         row = (
             self._episode,

@@ -6,21 +6,30 @@ from typing import Final
 
 import numpy as np
 
-from latentarm.types import FloatArray, StepRecord
+from latentarm.types import FloatArray, GripperCommand, GripperReading, StepRecord
 
-COMPACT: Final = b"\x02"
-"""First byte of a compact sample. Older ones begin with a small integer as a float64: a byte of 0."""
+COMPACT: Final = {b"\x02": 8, b"\x03": 10}
+"""How many parts a compact sample has, by its first byte; the last two, a gripper's, came later. Samples from
+before compact ones begin with a small integer as a float64: a byte of 0."""
+
+ALWAYS: Final = 8
+"""Parts that every step of an episode has, in one width. Those after them are a gripper's, and are empty
+where nothing was measured or commanded."""
+
+_WRITTEN: Final = b"\x03"
 
 _ZERO: Final = 0x8000
 _SAME: Final = 0x4000
 _WIDEST: Final = 0x3FFF
+_NOTHING: Final = np.zeros(0)
 _LEFT_OUT_MOST: Final = 64
 """Wider parts are always written in full: a small untrusted journal must not expand into a large one."""
 
 
 def figures_of(record: StepRecord) -> Sequence[FloatArray]:
-    """The numbers of a record, in the journal's order: times and scalars first, then arrays."""
+    """The numbers of a record, in the journal's order: times and scalars, arrays, then the gripper's."""
     command = record.command
+    measured, asked = record.gripper, command.gripper
     return (
         np.array([record.time_s, record.alpha, float(record.mode), command.duration_s, record.bound_rad]),
         record.state,
@@ -30,16 +39,50 @@ def figures_of(record: StepRecord) -> Sequence[FloatArray]:
         record.action_assist,
         record.belief,
         command.velocity,
+        _NOTHING if measured is None else np.array([measured.width_m, float(measured.holding)]),
+        _NOTHING if asked is None else np.array([asked.width_m, asked.speed_m_s, asked.force_n]),
     )
 
 
+def gripper_reading(part: FloatArray) -> GripperReading | None:
+    """What a gripper measured, from a sample's part.
+
+    Raises:
+        ValueError: it is not what `figures_of` makes.
+    """
+    if not len(part):
+        return None
+    width_m, holding = _gripper_figures(part, 2)
+    if holding not in (0.0, 1.0):
+        raise ValueError("a gripper neither holds something nor holds nothing")
+    return GripperReading(width_m, holding == 1.0)
+
+
+def gripper_command(part: FloatArray) -> GripperCommand | None:
+    """What a gripper was sent, from a sample's part.
+
+    Raises:
+        ValueError: it is not what `figures_of` makes.
+    """
+    if not len(part):
+        return None
+    width_m, speed_m_s, force_n = _gripper_figures(part, 3)
+    return GripperCommand(width_m, speed_m_s, force_n)
+
+
+def _gripper_figures(part: FloatArray, count: int) -> list[float]:
+    if len(part) != count or not np.isfinite(part).all():
+        raise ValueError("a gripper's figures are missing or not finite")
+    return part.tolist()
+
+
 def packed(parts: Sequence[FloatArray]) -> bytes:
-    """Parts as one sample: `COMPACT`, two bytes for each part, then the parts that must be written.
+    """Parts as one sample: a byte, two more for each part, then the parts that must be written.
 
     The two bytes hold the part's width, and a bit where it is all zeros, or equals the part before it.
 
     Args:
-        parts: each (k,), float64.
+        parts: what `figures_of` gave, each (k,), float64.
 
     Raises:
         ValueError: a part is too wide.
@@ -62,25 +105,25 @@ def packed(parts: Sequence[FloatArray]) -> bytes:
             heads.append(len(part))
             written.append(content)
         before = content
-    return b"".join((COMPACT, struct.pack(f"<{len(heads)}H", *heads), *written))
+    return b"".join((_WRITTEN, struct.pack(f"<{len(heads)}H", *heads), *written))
 
 
-def unpacked(sample: bytes, count: int) -> list[FloatArray]:
-    """The parts of a sample that `packed` made.
+def unpacked(sample: bytes) -> list[FloatArray]:
+    """The parts of a compact sample.
 
     Args:
-        sample: as it was written.
-        count: how many parts it has.
+        sample: as `packed` made it, or as it was made before there were grippers.
 
     Raises:
         ValueError: it is not what `packed` makes.
     """
-    start = len(COMPACT) + 2 * count
-    if len(sample) < start or sample[: len(COMPACT)] != COMPACT:
+    count = COMPACT.get(sample[:1], 0)
+    start = 1 + 2 * count
+    if not count or len(sample) < start:
         raise ValueError("a sample has the wrong length")
     parts: list[FloatArray] = []
     before = b""
-    for head in struct.unpack_from(f"<{count}H", sample, len(COMPACT)):
+    for head in struct.unpack_from(f"<{count}H", sample, 1):
         size = 8 * (head & _WIDEST)
         if head & ~_WIDEST and size > 8 * _LEFT_OUT_MOST:
             raise ValueError("a sample is too long")

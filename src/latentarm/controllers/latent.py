@@ -7,7 +7,7 @@ from latentarm.alignment.contract import Alignment, identity
 from latentarm.alignment.profile import load_profile
 from latentarm.context import BELIEF, GRIPPER, ContextLayout, context_vector
 from latentarm.control.controller import Controller
-from latentarm.demonstrations.contexts import GRIPPER_WIDTH
+from latentarm.demonstrations.gripper import GRIPPER_WIDTH
 from latentarm.errors import UserError
 from latentarm.models.kind import Decoder
 from latentarm.models.saving import load_decoder

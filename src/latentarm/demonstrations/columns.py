@@ -41,6 +41,11 @@ def is_gripper(name: str) -> bool:
     return not _GRIPPERS.isdisjoint(_words(name))
 
 
+def is_width(name: str) -> bool:
+    """Whether a gripper's name says that it is an opening, in m."""
+    return "width" in _words(name)
+
+
 def find_columns(
     names: Sequence[str],
     joints: Sequence[str],

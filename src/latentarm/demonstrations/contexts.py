@@ -15,16 +15,13 @@ from latentarm.context import (
     context_vector,
     feature_names,
 )
-from latentarm.demonstrations.npz_file import GRIPPER_FEATURE
+from latentarm.demonstrations.gripper import GRIPPER_TOGGLED, GRIPPER_WIDTH
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
 from latentarm.kinematics.pose_rows import STORED, seen_rows
 from latentarm.types import NO_GRIPPER, NO_OBJECTS, Context, Demonstrations, Episode, FloatArray
 
-GRIPPER_WIDTH: Final = "observation.gripper_width"
-"""Opening of the gripper, m."""
-
-GRIPPER_SOURCES: Final = (GRIPPER_WIDTH, GRIPPER_FEATURE)
+GRIPPER_SOURCES: Final = (GRIPPER_WIDTH, GRIPPER_TOGGLED)
 """Features of a dataset that tell how far the gripper is open, the best first."""
 
 

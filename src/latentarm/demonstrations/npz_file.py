@@ -21,6 +21,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
+from latentarm.demonstrations.gripper import GRIPPER_TOGGLED
 from latentarm.demonstrations.info import default_joint_names
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray, IntArray
@@ -31,8 +32,6 @@ MAX_ARRAYS: Final = 100
 """In one archive."""
 
 TEXTS: Final = ("joint_names", "robot")
-GRIPPER_FEATURE: Final = "observation.gripper_toggled"
-"""Whether the gripper is other than when the episode began: 0 or 1."""
 
 
 def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None) -> Demonstrations:
@@ -68,7 +67,7 @@ def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None
             )
     extras = {feature: by_sample[key] for key, feature in FEATURES.items() if key in by_sample}
     if arrays.get("gripper_toggles", np.empty(0)).size:
-        extras[GRIPPER_FEATURE] = _gripper(arrays["gripper_toggles"], ends, source)
+        extras[GRIPPER_TOGGLED] = _gripper(arrays["gripper_toggles"], ends, source)
     episodes = tuple(
         Episode(
             state=q[start:end],

@@ -6,6 +6,11 @@ from the control frequency in the environment's arguments. Recorded actions in s
 are scaled end-effector displacements; they are kept only where the environment's arguments say
 that one arm was driven by a ``JOINT_VELOCITY`` controller, and are then scaled to rad/s.
 
+The gripper is ``obs/robot0_gripper_qpos`` (robosuite) or ``obs/gripper_states`` (LIBERO). robosuite's own
+gripper of the Panda has two fingers that slide from 0 to 0.04 m, the second one negative, and takes the last
+entry of an action as open (below zero) or close (above): its opening and where it is going are kept in m.
+Joints of other grippers are kept as they were recorded.
+
 The HDF5 library is not hardened: a file that was damaged on purpose may end the whole process. Even then the
 destination of an import stays empty, because it is written only after everything was read.
 """
@@ -20,6 +25,7 @@ import h5py
 import numpy as np
 
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
+from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_WIDTH, going_to
 from latentarm.demonstrations.info import MAX_RATE_HZ, default_joint_names
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
@@ -31,6 +37,10 @@ MAX_CHUNKS: Final = 100_000
 """Of one table; each is looked up by itself."""
 
 SECOND_ARM_KEY: Final = "robot1_joint_pos"
+GRIPPER_KEYS: Final = ("robot0_gripper_qpos", "gripper_states")
+_PANDAS: Final = frozenset({"Panda", "MountedPanda", "OnTheGroundPanda"})
+_PANDA_GRIPPERS: Final = (None, "default", "PandaGripper")
+_PANDA_OPEN_M: Final = 0.08
 
 
 def read_robomimic(
@@ -65,8 +75,10 @@ def read_robomimic(
             rate = _rate(arguments, source) if rate_hz is None else rate_hz
             scale = 1.0 if actions == "joint_velocity" else _velocity_scale(arguments)
             what = task or str(arguments.get("env_name", source.stem))
+            panda = _has_panda_gripper(arguments)
             episodes = tuple(
-                _episode(demo, index, rate, what, scale, source) for index, demo in enumerate(demonstrated)
+                _episode(demo, index, rate, what, scale, panda, source)
+                for index, demo in enumerate(demonstrated)
             )
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, OverflowError) as error:
         raise UserError(f"{source} is not a whole HDF5 file; it is truncated or damaged.") from error
@@ -117,7 +129,7 @@ def _declared_count(demo: h5py.Group) -> int:
     observations = _member(demo, "obs")
     members = [_member(demo, "actions")]
     if isinstance(observations, h5py.Group):
-        members += [_member(observations, key) for key in (*STATE_KEYS, SECOND_ARM_KEY)]
+        members += [_member(observations, key) for key in (*STATE_KEYS, SECOND_ARM_KEY, *GRIPPER_KEYS)]
     return sum(math.prod(member.shape or ()) for member in members if isinstance(member, h5py.Dataset))
 
 
@@ -159,8 +171,32 @@ def _velocity_scale(arguments: Mapping[str, Any]) -> float | None:
     return largest_out / largest_in if numbers and largest_in > 0 else None
 
 
+def _has_panda_gripper(arguments: Mapping[str, Any]) -> bool:
+    """Whether the environment's one arm is a Panda with its own gripper."""
+    types = _nested(arguments, "env_kwargs", "gripper_types")
+    one = cast(list[object], types)[0] if isinstance(types, list) and len(types) == 1 else types
+    return _robot(arguments) in _PANDAS and one in _PANDA_GRIPPERS
+
+
+def _gripper(demo: h5py.Group, panda: bool, source: Path) -> dict[str, FloatArray]:
+    """Features of one arm's gripper; none where nothing was recorded."""
+    found = (_array(_group(demo, "obs", source), key, source) for key in GRIPPER_KEYS)
+    joints = next((values for values in found if values is not None), None)
+    if joints is None:
+        return {}
+    if not panda or joints.shape[1] != 2:
+        return {GRIPPER: joints}
+    width_m = np.maximum(joints[:, 0] - joints[:, 1], 0.0)
+    recorded = _array(demo, "actions", source)
+    if recorded is None or len(recorded) != len(width_m):
+        return {GRIPPER_WIDTH: width_m[:, None]}
+    asked = recorded[:, -1]
+    commanded = np.select([asked > 0.0, asked < 0.0], [0.0, _PANDA_OPEN_M], np.nan)
+    return {GRIPPER_WIDTH: width_m[:, None], ACTION_GRIPPER: going_to(commanded, width_m)[:, None]}
+
+
 def _episode(
-    demo: h5py.Group, index: int, rate_hz: float, task: str, scale: float | None, source: Path
+    demo: h5py.Group, index: int, rate_hz: float, task: str, scale: float | None, panda: bool, source: Path
 ) -> Episode:
     observations = _group(demo, "obs", source)
     found = (_array(observations, key, source) for key in STATE_KEYS)
@@ -178,4 +214,10 @@ def _episode(
     if scale is not None and second is None:
         recorded = _array(demo, "actions", source)
         action = None if recorded is None else recorded[:, : state.shape[1]] * scale
-    return Episode(state=state, timestamp=np.arange(len(state)) / rate_hz, action=action, task=task)
+    return Episode(
+        state=state,
+        timestamp=np.arange(len(state)) / rate_hz,
+        action=action,
+        task=task,
+        extras={} if second is not None else _gripper(demo, panda, source),
+    )

@@ -6,6 +6,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.demonstrations.gripper import GripperUse, gripper_uses
 from latentarm.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.robot import Robot
@@ -102,6 +103,7 @@ class Summary:
         joints: one summary each.
         goals: their names.
         features: names of what is recorded beside the states.
+        gripper: what the gripper did in each episode; empty where that is not recorded.
     """
 
     robot: str
@@ -110,6 +112,7 @@ class Summary:
     joints: tuple[JointSummary, ...]
     goals: tuple[str, ...]
     features: tuple[str, ...]
+    gripper: tuple[GripperUse, ...] = ()
 
     @property
     def samples(self) -> int:
@@ -121,9 +124,10 @@ class Summary:
         """Length of all episodes together."""
         return sum(episode.duration_s for episode in self.episodes)
 
-    def tables(self) -> tuple[Table, Table]:
-        """Episodes and joints, ready to be drawn."""
-        return _episode_table(self.episodes), _joint_table(self.joints)
+    def tables(self) -> tuple[Table, ...]:
+        """Episodes, joints and, where there is one, the gripper, ready to be drawn."""
+        gripper = (_gripper_table(self.gripper),) if self.gripper else ()
+        return _episode_table(self.episodes), _joint_table(self.joints), *gripper
 
     def rows(self) -> list[Row]:
         """Every figure in the one format that machines read; the condition is the episode or joint."""
@@ -154,6 +158,13 @@ class Summary:
                 _row("speed_p99", "rad/s", joint.speed_p99, joint.name),
                 _row("speed_max", "rad/s", joint.speed_max, joint.name),
             ]
+        for index, use in enumerate(self.gripper):
+            name = f"episode_{index}"
+            rows += [
+                _row("gripper_closed_fraction", "1", use.closed_fraction, name),
+                _row("gripper_toggled_fraction", "1", use.toggled_fraction, name),
+                _row("gripper_changes", "count", use.changes, name),
+            ]
         return [row for row in rows if row.mean is not None]
 
 
@@ -173,6 +184,7 @@ def summarise(demonstrations: Demonstrations, robot: Robot | None = None) -> Sum
         joints=_joints(demonstrations, None if robot is None else robot.limits),
         goals=tuple(goal.name for goal in demonstrations.goals),
         features=(*recorded, *sorted(first.extras)),
+        gripper=gripper_uses(demonstrations, None if robot is None else robot.gripper),
     )
 
 
@@ -265,6 +277,20 @@ def _episode_table(episodes: Sequence[EpisodeSummary]) -> Table:
         for one in episodes
     )
     return Table("Episodes", columns, rows)
+
+
+def _gripper_table(uses: Sequence[GripperUse]) -> Table:
+    columns = ("episode", "closed (%)", "toggled (%)", "changes")
+    rows = tuple(
+        (
+            str(index),
+            _text(None if one.closed_fraction is None else 100 * one.closed_fraction, 0),
+            _text(None if one.toggled_fraction is None else 100 * one.toggled_fraction, 0),
+            str(one.changes),
+        )
+        for index, one in enumerate(uses)
+    )
+    return Table("Gripper", columns, rows)
 
 
 def _joint_table(joints: Sequence[JointSummary]) -> Table:

@@ -7,7 +7,8 @@ from typing import Final, Literal, final
 
 import numpy as np
 
-from latentarm.demonstrations.columns import Columns, find_columns
+from latentarm.demonstrations.columns import Columns, find_columns, is_width
+from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_OPENING, GRIPPER_WIDTH, OBSERVED
 from latentarm.demonstrations.robot_names import is_so_arm, may_be
 from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.units import Conversion, Unit, conversion, parse_units
@@ -15,13 +16,6 @@ from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, Episode, FloatArray
 
-GRIPPER_OPENING: Final = "observation.gripper_opening"
-"""Share of the gripper's opening, from 0 (closed) to 1 (open)."""
-
-GRIPPER: Final = "observation.gripper"
-"""The gripper as it was recorded, where its unit is unknown."""
-
-ACTION_GRIPPER: Final = "action.gripper"
 TARGET_POSITION: Final = "action.target_position"
 """Joint positions that were commanded, rad."""
 
@@ -96,14 +90,15 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
         units, robot.joint_names, robot.limits, robot.chain.slide, full_turn=is_so_arm(given.robot)
     )
     kind = data.actions if told.actions == "known" else told.actions.removeprefix("joint_")
-    episodes = tuple(_episode(one, columns, turned, kind, motors) for one in given.episodes)
+    gripper = "" if columns.gripper is None else _gripper_feature(names[columns.gripper], motors)
+    episodes = tuple(_episode(one, columns, turned, kind, gripper) for one in given.episodes)
     episodes, clipped = _clipped(episodes, robot, told.clip_rad)
     record = {
         "source": f"{Path(source).name}, {data.layout}",
         "recorded on": given.robot or "not said",
         "joints": f"{_pairs(robot, names, columns)} ({columns.how})",
         "units": how,
-        "gripper": "none" if columns.gripper is None else _gripper_text(names[columns.gripper], motors),
+        "gripper": _gripper_text(given, columns, gripper),
         "columns left out": ", ".join(names[index] for index in columns.dropped) or "none",
         "actions": _action_text(given.episodes[0], kind) if given.episodes else "none",
     }
@@ -214,7 +209,12 @@ def _radians_after_all(
     return ""
 
 
-def _episode(episode: Episode, columns: Columns, turned: Conversion, kind: str, motors: bool) -> Episode:
+def _gripper_feature(column: str, motors: bool) -> str:
+    """What the gripper's column is stored as."""
+    return GRIPPER_OPENING if motors else GRIPPER_WIDTH if is_width(column) else GRIPPER
+
+
+def _episode(episode: Episode, columns: Columns, turned: Conversion, kind: str, gripper: str) -> Episode:
     if episode.state.ndim != 2:
         return episode  # validation says what is wrong
     joints, width = list(columns.joints), episode.state.shape[1]
@@ -223,9 +223,9 @@ def _episode(episode: Episode, columns: Columns, turned: Conversion, kind: str, 
         if name in extras and extras[name].ndim == 2 and extras[name].shape[1] == width:
             picked = extras[name][:, joints]
             extras[name] = picked if name == "observation.effort" else turned.rates(picked)
-    opening = 0.01 if motors else 1.0
+    opening = 0.01 if gripper == GRIPPER_OPENING else 1.0
     if columns.gripper is not None:
-        extras[GRIPPER_OPENING if motors else GRIPPER] = opening * episode.state[:, [columns.gripper]]
+        extras[gripper] = opening * episode.state[:, [columns.gripper]]
     action = episode.action
     if action is not None and kind != "unknown" and action.ndim == 2 and action.shape[1] == width:
         if columns.gripper is not None and np.isfinite(action[:, columns.gripper]).all():
@@ -262,9 +262,15 @@ def _pairs(robot: Robot, names: Sequence[str], columns: Columns) -> str:
     )
 
 
-def _gripper_text(column: str, motors: bool) -> str:
-    if motors:
+def _gripper_text(given: Demonstrations, columns: Columns, feature: str) -> str:
+    if columns.gripper is None:
+        extras = given.episodes[0].extras if given.episodes else {}
+        return ", ".join(name for name in OBSERVED if name in extras) or "none"
+    column = given.joint_names[columns.gripper]
+    if feature == GRIPPER_OPENING:
         return f"{column}, 0 to 100, stored as {GRIPPER_OPENING} from 0 (closed) to 1 (open)"
+    if feature == GRIPPER_WIDTH:
+        return f"{column}, stored as {GRIPPER_WIDTH}, m by its name"
     return f"{column}, stored as {GRIPPER} as recorded: its unit is not known"
 
 

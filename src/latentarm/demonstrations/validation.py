@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from latentarm.demonstrations.gripper import check_gripper
 from latentarm.demonstrations.things import check_things
 from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
@@ -95,6 +96,7 @@ def validate_episode(
     _check_shapes(episode, len(joint_names), where)
     for name, values in _features(episode):
         _check_finite(name, values, where)
+    check_gripper(episode, where)
     _check_times(episode.timestamp, where)
     if not _is_text(episode.task):
         raise UserError(f"{where}: its task {episode.task!a} is not text that a file can hold.")

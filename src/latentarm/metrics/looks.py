@@ -9,6 +9,7 @@ LOOKS: Final[dict[str, Look]] = {
     "latent": Look("latent actions", "#0072B2", "o", "-"),
     "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),
     "end_effector": Look("mode switching", "#7f7f7f", "s", ":"),
+    "demonstrator": Look("scripted demonstrator", "#000000", "D", "-"),
     "LA": Look("LA", "#7f7f7f", "s", ":"),
     "LA+SA": Look("LA+SA", "#D55E00", "^", "--"),
     "LA+SA+Entropy": Look("LA+SA+Entropy", "#0072B2", "o", "-"),
@@ -29,6 +30,13 @@ LOOKS: Final[dict[str, Look]] = {
     "reach_and_pour": Look("Reach & Pour", "#000000", "o", "-"),
     "planar_two_cups": Look("planar, 5 joints", "#009E73", "D", "--"),
     "panda_two_cups": Look("Panda, 7 joints", "#CC79A7", "v", "-"),
+    "marshmallows": Look("Marshmallows", "#CC79A7", "v", "-."),
+    "entree": Look("Entree", "#009E73", "D", "--"),
+    "dessert": Look("Dessert", "#000000", "o", "-"),
+    "avoid": Look("Avoid", "#D55E00", "X", "--"),
+    "apple_pie": Look("Apple pie", "#882255", "^", "-"),
+    "moved_marshmallows": Look("Marshmallows, moved", "#CC79A7", "v", ":"),
+    "moved_reach_and_pour": Look("Reach & Pour, moved", "#56B4E9", "s", ":"),
 }
 """Of conditions and tasks; a model's look is that of its kind."""
 

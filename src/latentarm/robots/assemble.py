@@ -8,7 +8,9 @@ import numpy as np
 
 from latentarm.kinematics.chain import Capsules
 from latentarm.kinematics.reader import read
+from latentarm.robots.attachment import ATTACHED_BODIES, Attachment
 from latentarm.robots.end_effector import arm_joints, finger_joints
+from latentarm.robots.gripper import Gripper
 from latentarm.robots.limits import JointLimits, Source
 from latentarm.robots.limits_file import with_stated
 from latentarm.robots.robot import Robot
@@ -26,6 +28,8 @@ def assemble(
     model_path: str | None = None,
     model: mujoco.MjModel | None = None,
     tool_speed_source: Source = "assumed",
+    gripper: Gripper | None = None,
+    attachment: Attachment | None = None,
 ) -> Robot:
     """Read a robot's kinematics and shape from its model, and add what the model does not contain.
 
@@ -40,6 +44,8 @@ def assemble(
         model_path: the file that the model was read from.
         model: compiled from ``mjcf``, if the caller already has it: large meshes take seconds to compile.
         tool_speed_source: how the limit of the tool's speed is known.
+        gripper: its gripper, if it has one that can be driven.
+        attachment: what its model carries in its hand, if anything.
 
     Returns:
         The robot.
@@ -50,7 +56,8 @@ def assemble(
     if model is None:
         model = mujoco.MjModel.from_xml_string(mjcf)
     reading = read(model, end_effectors)
-    capsules = read_capsules(model, reading)
+    sliding = () if gripper is None else gripper.joints
+    capsules = read_capsules(model, reading, sliding, () if attachment is None else ATTACHED_BODIES)
     joints = frozenset(int(joint) for joint in reading.joints)
     return Robot(
         name=name,
@@ -65,6 +72,8 @@ def assemble(
         tool_speed_limit=tool_speed_limit,
         tool_speed_source=tool_speed_source,
         model_path=model_path,
+        gripper=gripper,
+        attachment=attachment,
     )
 
 
@@ -89,7 +98,16 @@ def restate(robot: Robot, stated: StatedLimits) -> Robot:
     names = [tool.name for tool in chain.tools]
     # Recomputed, because the joint ranges decide which capsules can touch.
     anew = assemble(
-        robot.name, robot.mjcf, names, limits, home, tool_speed, robot.model_path, tool_speed_source=source
+        robot.name,
+        robot.mjcf,
+        names,
+        limits,
+        home,
+        tool_speed,
+        robot.model_path,
+        tool_speed_source=source,
+        gripper=robot.gripper,
+        attachment=robot.attachment,
     )
     return replace(anew, stated_limits=stated)
 

@@ -2,12 +2,14 @@
 
 import importlib
 from collections.abc import Callable
+from functools import cache
 from os import fspath
 from pathlib import Path
 from typing import Any
 
 from latentarm.errors import UserError
 from latentarm.robots.assemble import restate
+from latentarm.robots.attachments import attach
 from latentarm.robots.end_effector import AmbiguousEndEffectorError
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.panda import panda
@@ -19,6 +21,9 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
     "panda": panda,
     "planar": planar,
     "planar2": lambda: planar(arms=2),
+    "panda_fork": cache(lambda: attach(panda(), "fork")),
+    "panda_spoon": cache(lambda: attach(panda(), "spoon")),
+    "panda_cup": cache(lambda: attach(panda(), "cup")),
 }
 """The built-in robots."""
 

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 
 from latentarm.robots.assemble import assemble
+from latentarm.robots.gripper import Gripper
 from latentarm.robots.limits import JointLimits, LimitSources
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray
@@ -65,10 +66,29 @@ _INERTIA = (
         (0.012516, 0.010027, 0.004815, -0.000428, -0.001196, -0.000741),
     ),
 )
-_HAND_INERTIA = (0.76, (-0.01, 0.0, 0.03), (0.001, 0.0025, 0.0017, 0.0, 0.0, 0.0))
+_HAND_INERTIA = (0.73, (-0.01, 0.0, 0.03), (0.001, 0.0025, 0.0017, 0.0, 0.0, 0.0))
+
+GRIPPER = Gripper(joints=("finger_joint1", "finger_joint2"), width_m=0.08, speed_m_s=0.1, force_n=70.0)
+"""The Franka Hand: its datasheet's stroke, speed for each change of the opening, and continuous force."""
+
+_FINGER_Z = 0.0584  # hand -> finger, m
+_FINGER_KG = 0.015
+_FINGER_INERTIA = 2.375e-6, 2.375e-6, 7.5e-7  # kg m²
+_FINGER_ARMATURE = 0.1  # kg: what the motor and its gear add
+# A finger in its own frame: at zero its pad lies in the plane y = 0. What the capsule covers is the shell of
+# the real finger; the pad is what grips, and makes the capsule about both fingers no thicker.
+_FINGER_SHELL = ((0.0, 0.011, 0.008), (0.0, 0.011, 0.044), 0.01)
+_PAD_HALF = (0.0085, 0.004, 0.0085)
+_PAD_AT = (0.0, 0.004, 0.0435)
+_PAD_FRICTION = (1.5, 0.02, 0.0001)
+# As stiff as a time step of 1 ms allows: friction has no memory, so what is held creeps, by gravity and by
+# the hand's own turning, in proportion to this time constant. With MuJoCo's 0.02 a cup creeps by 1 mm/s.
+_PAD_SOLREF = (0.003, 1.0)
+_PAD_SOLIMP = (0.99, 0.99, 0.001, 0.5, 2.0)
 
 _WHITE = (0.93, 0.94, 0.95, 1.0)
 _GREY = (0.35, 0.37, 0.40, 1.0)
+_DARK = (0.15, 0.15, 0.16, 1.0)
 
 # The shell, capsule by capsule: body, both ends in its frame (m), radius (m), colour. Fitted to the
 # manufacturer's visual meshes (franka_description): the smallest capsules found that together leave
@@ -87,8 +107,6 @@ _SHELL = (
     ("link7", (0.0, 0.0, -0.05), (0.003, 0.003, 0.064), 0.057, _WHITE),
     ("link7", (0.032, 0.06, 0.083), (0.06, 0.032, 0.083), 0.027, _WHITE),
     ("hand", (0.0, -0.068, 0.023), (0.0, 0.068, 0.023), 0.052, _GREY),
-    ("hand", (0.0, -0.02, 0.0664), (0.0, -0.02, 0.1024), 0.01, _GREY),
-    ("hand", (0.0, 0.02, 0.0664), (0.0, 0.02, 0.1024), 0.01, _GREY),
 )
 # For the eye only: the elbow's bridges over the 82.5 mm offset on either side of joint 4, and the waist.
 _DECORATION = (
@@ -111,7 +129,7 @@ _NEVER_MEET = (
 
 @cache
 def panda() -> Robot:
-    """The Panda with its hand at a fixed opening; "tool" is the point between the fingertips.
+    """The Panda with its hand; "tool" is the point between the fingertips.
 
     Returns the same object each time; do not write to its arrays.
     """
@@ -156,14 +174,66 @@ def panda() -> Robot:
                 contype=collides,
                 conaffinity=collides,
             )
+    _add_fingers(spec, hand)
     for first, second in _NEVER_MEET:
         spec.add_exclude(bodyname1=first, bodyname2=second)
     spec.compile()
-    spec.add_key(name="home", qpos=list(HOME))
+    spec.add_key(name="home", qpos=[*HOME, *([GRIPPER.width_m / 2] * 2)])
     spec.compile()
     return assemble(
-        "panda", spec.to_xml(), ["tool"], LIMITS, HOME, TOOL_SPEED_LIMIT, tool_speed_source="manufacturer"
+        "panda",
+        spec.to_xml(),
+        ["tool"],
+        LIMITS,
+        HOME,
+        TOOL_SPEED_LIMIT,
+        tool_speed_source="manufacturer",
+        gripper=GRIPPER,
     )
+
+
+def _add_fingers(spec: mujoco.MjSpec, hand: mujoco.MjsBody) -> None:
+    """Two fingers that slide along y, coupled as by the hand's rack and pinion."""
+    for side, joint, turn in zip(("left", "right"), GRIPPER.joints, (0.0, np.pi), strict=True):
+        finger = hand.add_body(
+            name=f"{side}_finger",
+            pos=[0.0, 0.0, _FINGER_Z],
+            quat=[np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)],
+        )
+        _give_inertia(finger, _FINGER_KG, (0.0, 0.01, 0.025), (*_FINGER_INERTIA, 0.0, 0.0, 0.0))
+        finger.add_joint(
+            name=joint,
+            type=mujoco.mjtJoint.mjJNT_SLIDE,
+            axis=[0.0, 1.0, 0.0],
+            range=[0.0, GRIPPER.width_m / 2],
+            actfrclimited=True,
+            actfrcrange=[-GRIPPER.force_n, GRIPPER.force_n],
+            armature=_FINGER_ARMATURE,
+        )
+        start, end, radius = _FINGER_SHELL
+        finger.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_CAPSULE, fromto=[*start, *end], size=[radius, 0.0, 0.0], rgba=_GREY
+        )
+        finger.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            pos=_PAD_AT,
+            size=_PAD_HALF,
+            rgba=_DARK,
+            condim=4,
+            friction=_PAD_FRICTION,
+            priority=1,
+            solref=_PAD_SOLREF,
+            solimp=_PAD_SOLIMP,
+        )
+    spec.add_exclude(bodyname1="left_finger", bodyname2="right_finger")
+    coupling = spec.add_equality(
+        type=mujoco.mjtEq.mjEQ_JOINT,
+        name1=GRIPPER.joints[1],
+        name2=GRIPPER.joints[0],
+        objtype=mujoco.mjtObj.mjOBJ_JOINT,
+        data=[0.0, 1.0, *([0.0] * (mujoco.mjNEQDATA - 2))],
+    )
+    coupling.solref = [0.002, 1.0]
 
 
 def _give_inertia(

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, final
 
 from latentarm.kinematics.chain import Capsules, Chain
+from latentarm.robots.attachment import Attachment
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.limits import JointLimits, Source
 from latentarm.types import FloatArray, IntArray, StatedLimits
@@ -32,6 +33,7 @@ class Robot:
         driven_fingers: joints that look like a gripper's and are driven as the arm's.
         stated_limits: what a limits file says of it, or None.
         gripper: its gripper, or None where it has none that can be driven.
+        attachment: what it carries in its hand, or None.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Robot:
     driven_fingers: tuple[str, ...] = ()
     stated_limits: StatedLimits | None = None
     gripper: Gripper | None = None
+    attachment: Attachment | None = None
 
     @property
     def dof(self) -> int:

@@ -1,5 +1,6 @@
 """A robot's capsules, derived from the geoms of any MuJoCo model, and which of them could collide."""
 
+from collections.abc import Sequence
 from itertools import combinations
 
 import mujoco
@@ -8,7 +9,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from latentarm.kinematics.chain import Capsules, Chain
 from latentarm.kinematics.distances import segment_distance
-from latentarm.kinematics.reader import ModelChain
+from latentarm.kinematics.reader import ModelChain, reference_positions
 from latentarm.robots.limits import JointLimits
 from latentarm.types import BoolArray, FloatArray, IntArray
 
@@ -29,7 +30,9 @@ Balls = tuple[FloatArray, FloatArray]
 """Centres (K, 3), m, and radii (K,), m, of balls whose convex hull covers a shape."""
 
 
-def read_capsules(model: mujoco.MjModel, reading: ModelChain) -> Capsules:
+def read_capsules(
+    model: mujoco.MjModel, reading: ModelChain, sliding: Sequence[str] = (), apart: Sequence[str] = ()
+) -> Capsules:
     """Capsules that cover a robot: its moving links and the fixed bodies that carry them.
 
     Spheres and capsules stay as they are; a cylinder becomes the capsule around its axis; boxes,
@@ -40,15 +43,21 @@ def read_capsules(model: mujoco.MjModel, reading: ModelChain) -> Capsules:
     Args:
         model: the robot's model.
         reading: what `latentarm.kinematics.reader.read` found in it.
+        sliding: names of sliding joints that move by themselves, such as those of a gripper's fingers: what
+            they move is covered wherever it slides.
+        apart: names of bodies whose capsules are merged with no other body's, such as those of a fork: it
+            must come close to things.
 
     Returns:
         The capsules, each in its link's frame.
     """
+    slides = _slides(model, reading, sliding)
     by_link: dict[int, list[tuple[str, Balls]]] = {}
     for body in range(1, model.nbody):
         if not _belongs(model, reading, body):
             continue
-        pieces = [_balls(model, geom, reading.body_transform[body]) for geom in _solid_geoms(model, body)]
+        placed = [_balls(model, geom, reading.body_transform[body]) for geom in _solid_geoms(model, body)]
+        pieces = [_swept(balls, slides.get(body, _UNMOVED)) for balls in placed]
         name = body_name(model, body)
         kept = _merged([(name, piece) for piece in pieces], PER_BODY)
         by_link.setdefault(int(reading.body_link[body]), []).extend(kept)
@@ -56,7 +65,9 @@ def read_capsules(model: mujoco.MjModel, reading: ModelChain) -> Capsules:
     links: list[int] = []
     shapes: list[tuple[FloatArray, FloatArray, float]] = []
     for link, pieces in sorted(by_link.items()):
-        for name, balls in _merged(pieces, PER_LINK):
+        alone = [piece for piece in pieces if piece[0] in apart]
+        others = [piece for piece in pieces if piece[0] not in apart]
+        for name, balls in [*_merged(others, PER_LINK), *alone]:
             names.append(name)
             links.append(link)
             shapes.append(bounding_capsule(*balls))
@@ -67,6 +78,31 @@ def read_capsules(model: mujoco.MjModel, reading: ModelChain) -> Capsules:
         end=np.array([end for _, end, _ in shapes]).reshape(-1, 3),
         radius=np.array([radius for _, _, radius in shapes]),
     )
+
+
+_UNMOVED: FloatArray = np.zeros((1, 3))
+
+
+def _slides(model: mujoco.MjModel, reading: ModelChain, joints: Sequence[str]) -> dict[int, FloatArray]:
+    """For each body that the sliding joints move: (2, 3), from where it is read to both ends, m."""
+    reference = reference_positions(model)
+    found: dict[int, FloatArray] = {}
+    for name in joints:
+        joint = model.joint(name).id
+        at = reference[model.jnt_qposadr[joint]]
+        own = int(model.jnt_bodyid[joint])
+        axis = reading.body_transform[own][:3, :3] @ model.jnt_axis[joint]
+        found[own] = (model.jnt_range[joint] - at)[:, None] * axis
+    for body in range(1, model.nbody):
+        parent = int(model.body_parentid[body])
+        if parent in found:
+            found[body] = found[parent]
+    return found
+
+
+def _swept(balls: Balls, slides: FloatArray) -> Balls:
+    centres, radii = balls
+    return (centres + slides[:, None]).reshape(-1, 3), np.tile(radii, len(slides))
 
 
 def body_name(model: mujoco.MjModel, body: int) -> str:

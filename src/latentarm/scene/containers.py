@@ -1,113 +1,141 @@
-"""Containers: cups and bowls of thin boxes, and grains packed into them."""
+"""Containers made of thin boxes, and grains that begin in them."""
+
+from dataclasses import dataclass
+from typing import Final, final
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from latentarm.errors import UserError
-from latentarm.scene.thing import Interior, Part, Thing
+from latentarm.scene.thing import Interior, Part
 from latentarm.types import FloatArray, Pose
 
-_SIDES = 12
-"""Boxes that the wall of a container is made of."""
+Colour = tuple[float, float, float, float]
 
-_CLOSE = 1.02
-"""Grains are packed with this much more than their diameter between their middles."""
+WALL_M: Final = 0.003
+"""Thickness of walls and floors: thick enough that no grain passes through one within a time step."""
+
+SIDES: Final = 12
+"""Walls of a round container; four of them stand across x and y, where a gripper takes hold."""
+
+_CHINA: Final = (0.92, 0.93, 0.95, 1.0)
+_WOOD: Final = (0.76, 0.60, 0.42, 1.0)
+_ROOM_ABOVE_PLATE_M: Final = 0.06
+_APART: Final = 1.02
 
 
-def walls(
-    radius_m: float, height_m: float, thickness_m: float, colour: tuple[float, float, float, float]
-) -> tuple[tuple[Part, ...], Interior]:
-    """The solids of an open container, its frame in the middle of its underside.
+@final
+@dataclass(frozen=True)
+class Container:
+    """What a container is made of: its frame lies in the middle of its underside, z up.
 
-    Args:
-        radius_m: of the largest upright cylinder in it, m.
-        height_m: from its underside to its rim, m.
-        thickness_m: of its wall and its floor, m.
-        colour: of all of it.
-
-    Returns:
-        Its parts, and the room in it.
+    Attributes:
+        parts: its floor and walls.
+        interior: the room in it.
     """
-    outside = radius_m + thickness_m
-    floor = Part("cylinder", (outside, thickness_m / 2), (0.0, 0.0, thickness_m / 2), colour=colour)
-    middle = radius_m + thickness_m / 2
-    # As wide as a side of the polygon about the outer circle, so that no gap is left at the corners.
-    half_width = outside * np.tan(np.pi / _SIDES)
-    half_height = (height_m - thickness_m) / 2
-    sides = [
-        Part(
-            "box",
-            (thickness_m / 2, half_width, half_height),
-            (middle * np.cos(angle), middle * np.sin(angle), thickness_m + half_height),
-            (np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)),
-            colour,
-        )
-        for angle in 2 * np.pi * np.arange(_SIDES) / _SIDES
-    ]
-    return (floor, *sides), Interior(radius_m, thickness_m, height_m)
+
+    parts: tuple[Part, ...]
+    interior: Interior
 
 
-def cup(
-    name: str,
-    pose: Pose,
-    radius_m: float = 0.03,
-    height_m: float = 0.09,
-    *,
-    mass_kg: float = 0.08,
-    colour: tuple[float, float, float, float] = (0.36, 0.55, 0.75, 1.0),
-) -> Thing:
-    """A cup that can be gripped, its frame in the middle of its underside."""
-    parts, interior = walls(radius_m, height_m, 0.003, colour)
-    return Thing(name, parts, mass_kg, pose, friction=1.0, interior=interior)
-
-
-def bowl(
-    name: str,
-    pose: Pose,
-    radius_m: float = 0.07,
-    height_m: float = 0.05,
-    *,
-    colour: tuple[float, float, float, float] = (0.93, 0.93, 0.95, 1.0),
-) -> Thing:
-    """A bowl that stays where it stands, its frame in the middle of its underside."""
-    parts, interior = walls(radius_m, height_m, 0.004, colour)
-    return Thing(name, parts, 0.5, pose, fixed=True, interior=interior)
-
-
-def packed(container: Thing, count: int, radius_m: float) -> FloatArray:
-    """Places of grains in a container, layer on layer.
+def cup(radius_m: float = 0.032, height_m: float = 0.09, colour: Colour = _CHINA) -> Container:
+    """An upright cup.
 
     Args:
-        container: has an interior.
-        count: K, how many grains.
+        radius_m: of the inside, m. A gripper must open by more than ``2 * (radius_m + WALL_M)`` to take it.
+        height_m: of the rim, m.
+        colour: red, green, blue, opacity.
+    """
+    return _round(radius_m, height_m, 0.0, colour)
+
+
+def bowl(radius_m: float = 0.06, height_m: float = 0.05, colour: Colour = _CHINA) -> Container:
+    """A bowl, wider at its rim.
+
+    Args:
+        radius_m: of the floor, m.
+        height_m: of the rim, m.
+        colour: red, green, blue, opacity.
+    """
+    return _round(radius_m, height_m, np.deg2rad(20.0), colour)
+
+
+def plate(radius_m: float = 0.1, colour: Colour = _CHINA) -> Container:
+    """A plate with a low rim; its interior is where things lie on it.
+
+    Args:
+        radius_m: of the floor, m.
+        colour: red, green, blue, opacity.
+    """
+    made = _round(radius_m, 0.012, np.deg2rad(50.0), colour)
+    return Container(made.parts, Interior(radius_m, 0.0, WALL_M + _ROOM_ABOVE_PLATE_M))
+
+
+def box(half_m: tuple[float, float, float], colour: Colour = _WOOD) -> Container:
+    """A box without a lid. Its interior is the widest upright cylinder in it.
+
+    Args:
+        half_m: half lengths of the outside, along x, y, z, m.
+        colour: red, green, blue, opacity.
+    """
+    x, y, z = half_m
+    half = WALL_M / 2.0
+    walls = [Part("box", (x, y, half), (0.0, 0.0, half), colour=colour)]
+    for sign in (-1.0, 1.0):
+        walls.append(Part("box", (half, y, z), (sign * (x - half), 0.0, z), colour=colour))
+        walls.append(Part("box", (x, half, z), (0.0, sign * (y - half), z), colour=colour))
+    return Container(tuple(walls), Interior(min(x, y) - WALL_M, WALL_M, 2.0 * z))
+
+
+def _round(radius_m: float, height_m: float, flare_rad: float, colour: Colour) -> Container:
+    half = WALL_M / 2.0
+    parts = [Part("cylinder", (radius_m + WALL_M, half), (0.0, 0.0, half), colour=colour)]
+    lean = height_m * np.tan(flare_rad)
+    slant = height_m / np.cos(flare_rad)
+    width = (radius_m + WALL_M + lean) * np.tan(np.pi / SIDES)
+    for side in range(SIDES):
+        turn = Rotation.from_euler("ZY", [2.0 * np.pi * side / SIDES, flare_rad])
+        out = Rotation.from_euler("Z", 2.0 * np.pi * side / SIDES)
+        middle = out.apply([radius_m + half / np.cos(flare_rad) + lean / 2.0, 0.0, height_m / 2.0])
+        parts.append(
+            Part(
+                "box",
+                (half, float(width), float(slant / 2.0)),
+                (float(middle[0]), float(middle[1]), float(middle[2])),
+                _quaternion(turn),
+                colour,
+            )
+        )
+    return Container(tuple(parts), Interior(float(radius_m + lean), WALL_M / 2.0, height_m))
+
+
+def _quaternion(turn: Rotation) -> tuple[float, float, float, float]:
+    w, x, y, z = (float(one) for one in turn.as_quat(scalar_first=True))
+    return w, x, y, z
+
+
+def packed(room: Interior, pose: Pose, count: int, radius_m: float) -> FloatArray:
+    """Where grains begin that fill a container from its floor up, without touching each other.
+
+    Args:
+        room: the room in the container; as wide at its floor as at its rim.
+        pose: of the container.
+        count: how many grains.
         radius_m: of a grain, m.
 
     Returns:
-        (K, 3), in the base frame of the arm, m.
+        (count, 3), their middles, m.
 
     Raises:
-        UserError: it is no container, or they do not fit into it.
+        UserError: the room is too small for them.
     """
-    room = interior_of(container)
-    step = 2.0 * _CLOSE * radius_m
-    free = room.radius_m - _CLOSE * radius_m
-    across = np.arange(-np.floor(free / step), np.floor(free / step) + 1) * step
-    x, y = (one.ravel() for one in np.meshgrid(across, across))
-    layer = np.stack([x, y], axis=1)[np.hypot(x, y) <= free]
-    layers = int((room.top_m - room.bottom_m) / step)
-    if not len(layer) or count > layers * len(layer):
-        raise UserError(f"{count} grains do not fit into {container.name!r}: take fewer or smaller ones.")
-    number = np.arange(count)
-    height = room.bottom_m + (number // len(layer) + 0.5) * step
-    local = np.column_stack([layer[number % len(layer)], height])
-    return container.pose.position + local @ container.pose.rotation.T
-
-
-def interior_of(container: Thing) -> Interior:
-    """The room in a container.
-
-    Raises:
-        UserError: it is no container.
-    """
-    if container.interior is None:
-        raise UserError(f"{container.name!r} is no container: nothing can be poured into it.")
-    return container.interior
+    step = 2.0 * _APART * radius_m
+    most = room.radius_m - _APART * radius_m
+    line = np.arange(-int(most / step), int(most / step) + 1) * step if most >= 0.0 else np.zeros(0)
+    layer = np.array([[x, y] for x in line for y in line if np.hypot(x, y) <= most]).reshape(-1, 2)
+    layers = int((room.top_m - room.bottom_m - step) / step) + 1
+    if len(layer) * max(layers, 0) < count:
+        raise UserError(f"{count} grains of {radius_m:g} m do not fit into a room {room.radius_m:g} m wide.")
+    heights = room.bottom_m + (np.arange(layers) + 0.5) * step
+    places = np.array([[x, y, z] for z in heights for x, y in layer])[:count]
+    return places @ pose.rotation.T + pose.position

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal, final
 
+from latentarm.errors import UserError
 from latentarm.types import FloatArray, Pose
 
 Shape = Literal["box", "cylinder", "capsule", "sphere"]
@@ -88,6 +89,17 @@ class Thing:
     fixed: bool = False
     food: Food | None = None
     interior: Interior | None = None
+
+    @property
+    def room(self) -> Interior:
+        """The room in it.
+
+        Raises:
+            UserError: it is no container.
+        """
+        if self.interior is None:
+            raise UserError(f"{self.name!r} is no container: nothing can be in it.")
+        return self.interior
 
 
 @final

@@ -1,6 +1,6 @@
 """Demonstrations of a task with things: a simulated person guides the arm through its steps, in physics."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -129,18 +129,21 @@ def demonstrate(
     all_of_them = run_grid(
         _demonstrate, calls, jobs=jobs, backend="joblib", label=_name_of, bars=bars, unit="demonstrations"
     )
-    kept = tuple(one.episode for one in all_of_them if one.progress.succeeded)
+    return dataset_of(task, all_of_them), all_of_them
+
+
+def dataset_of(task: SceneTask, demonstrations: Sequence[Demonstration]) -> Demonstrations:
+    """Those demonstrations of a task that succeeded, as a dataset."""
     robot = task.robot
-    dataset = Demonstrations(
-        episodes=kept,
+    return Demonstrations(
+        episodes=tuple(one.episode for one in demonstrations if one.progress.succeeded),
         rate_hz=1.0 / (PERIOD_S * SAMPLE_TICKS),
         joint_names=robot.joint_names,
         robot=robot.name,
         end_effector=robot.end_effector,
         limits=robot.stated_limits,
-        objects=all_of_them[0].objects,
+        objects=demonstrations[0].objects,
     )
-    return dataset, all_of_them
 
 
 @final
@@ -224,7 +227,7 @@ def _episode(begun: Beginning, samples: list[tuple[Reading, Command]], states: l
         extras["action.gripper"] = np.array(_targets(samples, widths[0]))[:, None]
     return Episode(
         state=np.stack([reading.q for reading, _ in samples]),
-        timestamp=np.arange(len(samples)) * PERIOD_S * SAMPLE_TICKS,
+        timestamp=np.arange(len(samples), dtype=np.float64) * (PERIOD_S * SAMPLE_TICKS),
         task=begun.text,
         extras=extras,
     )

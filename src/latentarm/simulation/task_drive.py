@@ -14,7 +14,6 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.kinematics.pose_rows import object_rows
 from latentarm.metrics.task_drives import TaskDrive, measure_task_drive, preference_alignment
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.operator import Operator
@@ -23,7 +22,8 @@ from latentarm.scene.scene import TABLE, TOOL, Scene, SceneState
 from latentarm.simulation.drive import BELIEF_PERIOD_S, RATE_HZ
 from latentarm.tasks.predicates import Spilled
 from latentarm.tasks.scene_task import Beginning, SceneTask
-from latentarm.tasks.steps import Progress, Waypoint
+from latentarm.tasks.steps import Progress, TaskStep, Waypoint
+from latentarm.tasks.surroundings import watched
 from latentarm.types import FloatArray, Input, Pose, Reading, StepRecord
 
 STUCK_S: Final = 20.0
@@ -61,7 +61,8 @@ class TaskTrace:
     Attributes:
         figures: what is measured of it.
         choice: index into the task's choices.
-        ended_in: the step that was not done, in words; "" where all were.
+        steps: what was to be done, in order.
+        done_s: when each of the steps that were done was done, s.
         why: why the drive ended, in a few words.
         time_s: (T,), s.
         position: (T, 3), the tool, m.
@@ -70,11 +71,18 @@ class TaskTrace:
 
     figures: TaskDrive
     choice: int
-    ended_in: str
+    steps: tuple[TaskStep, ...]
+    done_s: tuple[float, ...]
     why: str
     time_s: FloatArray
     position: FloatArray
     states: tuple[SceneState, ...]
+
+    @property
+    def ended_in(self) -> str:
+        """The step that was not done, in words; "" where all were."""
+        done = len(self.done_s)
+        return self.steps[done].name if done < len(self.steps) else ""
 
 
 def drive_task(
@@ -124,10 +132,6 @@ def drive_task(
 
 
 def _step(setup: TaskSetup, begun: Beginning, follow: "_Watch") -> Step:
-    def surroundings() -> FloatArray:
-        return object_rows(follow.poses, setup.controller.objects)
-
-    surroundings()  # fails now rather than in the loop
     belief = None
     if begun.goals:
         goals = np.stack([goal.configuration for goal in begun.goals])
@@ -140,7 +144,7 @@ def _step(setup: TaskSetup, begun: Beginning, follow: "_Watch") -> Step:
         belief=belief,
         arbitration=setup.arbitration if begun.goals else None,
         dt_s=1.0 / RATE_HZ,
-        surroundings=surroundings,
+        surroundings=watched(lambda: follow.poses, setup.controller.objects),
     )
 
 
@@ -174,6 +178,7 @@ class _Watch:
         self._points: list[FloatArray] = []
         self._needed: list[FloatArray] = []
         self._states: list[SceneState] = []
+        self._done_s: list[float] = []
         self._force_n: dict[str, float] = {}
         self._waypoint: Waypoint | None = None
         self._nearest = np.inf
@@ -183,6 +188,7 @@ class _Watch:
         """Take how things stand before the next input."""
         self.poses = state.poses
         self.progress.update(state)
+        self._done_s += [state.time_s] * (self.progress.done - len(self._done_s))
         self._feel(state)
         if len(self._position) % 10 == 0:
             self._states.append(state)
@@ -201,7 +207,6 @@ class _Watch:
     def trace(self, choice: int) -> TaskTrace:
         """What is kept."""
         state = self._states[-1]
-        step = self.progress.step
         spilled = [fails for fails in self._begun.failures if isinstance(fails, Spilled)]
         position = np.stack(self._position[: len(self.records)])
         figures = measure_task_drive(
@@ -217,7 +222,8 @@ class _Watch:
         return TaskTrace(
             figures=figures,
             choice=choice,
-            ended_in="" if step is None else step.name,
+            steps=self._begun.steps,
+            done_s=tuple(self._done_s),
             why=self.ended or "out of time",
             time_s=np.array([record.time_s for record in self.records]),
             position=position,

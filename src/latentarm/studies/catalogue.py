@@ -1,9 +1,11 @@
-"""The paper's studies by name: what `latentarm reproduce` offers. Nothing is imported before a study runs."""
+"""The studies by name: what `latentarm reproduce` offers. Nothing is imported before a study runs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
+
+from latentarm.tasks.catalogue import SCENE_TASKS
 
 if TYPE_CHECKING:
     from latentarm.studies.study import Study
@@ -52,6 +54,12 @@ STUDIES: Final[Mapping[str, Entry]] = {
         "Learn from few answers what simulated people mean by their stick (section 8.3).",
         ("plane", "pour", "reach_and_pour", "table_top"),
         "One of the paper's tasks, drives at the demo's table, or all of it.",
+        {"paper": _PAPER, "smoke": _SMOKE},
+    ),
+    "tasks": Entry(
+        "Let simulated people do tasks with food in physics, by mode switching and by latent actions.",
+        (*SCENE_TASKS, "moved_marshmallows", "moved_reach_and_pour"),
+        "One of the tasks, or all of them; in moved ones things stand where no demonstration had them.",
         {"paper": _PAPER, "smoke": _SMOKE},
     ),
 }

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from latentarm.errors import UserError
+from latentarm.robots.fixing import arm_model
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, Pose
 
@@ -35,7 +36,7 @@ def solve(robot: Robot, pose: Pose, posture: FloatArray, held: Sequence[int] = (
     """
     import mink
 
-    model = robot.model()
+    model = arm_model(robot)
     wanted = np.eye(4)
     wanted[:3, :3], wanted[:3, 3] = pose.rotation, pose.position
     tool = mink.FrameTask(robot.chain.tools[0].name, "site", 1.0, 1.0, lm_damping=1e-6)

@@ -219,16 +219,18 @@ class Swept:
 @final
 @dataclass(eq=False)
 class Stirred:
-    """The tool has gone round in a container.
+    """A thing has gone round in a container.
 
     It remembers: made anew for every run.
 
     Attributes:
+        thing: its name.
         container: its name.
-        interior: the room in it; the tool must be below its rim.
+        interior: the room in it; the thing's frame must be below its rim.
         turns: how often it must go round, in either direction.
     """
 
+    thing: str
     container: str
     interior: Interior
     turns: float
@@ -238,7 +240,7 @@ class Stirred:
     def __call__(self, state: SceneState) -> bool:
         """Whether it has, counting what it has seen so far."""
         pose = state.poses[self.container]
-        x, y, z = (state.tool.position - pose.position) @ pose.rotation
+        x, y, z = (state.poses[self.thing].position - pose.position) @ pose.rotation
         if not (np.hypot(x, y) <= self.interior.radius_m and z <= self.interior.top_m):
             self._last_rad = None
             return self._enough

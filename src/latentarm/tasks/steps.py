@@ -94,6 +94,11 @@ class Progress:
         self._failure: str | None = None
 
     @property
+    def steps(self) -> tuple[TaskStep, ...]:
+        """What is to be done, in order."""
+        return self._steps
+
+    @property
     def done(self) -> int:
         """How many steps have been done."""
         return self._done

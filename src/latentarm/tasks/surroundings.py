@@ -1,24 +1,42 @@
 """Where the things are that a decoder looks at."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from latentarm.kinematics.pose_rows import object_rows
-from latentarm.tasks.task import Task
-from latentarm.types import FloatArray
+from latentarm.tasks.place import Place
+from latentarm.types import FloatArray, Pose
 
 
-def surroundings_of(task: Task, objects: Sequence[str]) -> Callable[[], FloatArray] | None:
-    """What tells `Step` the poses (K, 9) of things at a task without physics, whose goals they are.
+def surroundings_of(place: Place, objects: Sequence[str]) -> Callable[[], FloatArray] | None:
+    """What tells `Step` the poses (K, 9) of things where nothing moves: the goals of a place.
 
     Args:
-        task: its goals are the things.
+        place: its goals are the things.
         objects: names of those that a controller looks at; where there are none, nothing is told.
 
     Raises:
-        UserError: a thing is none of the task's goals.
+        UserError: a thing is none of the place's goals.
     """
     if not objects:
         return None
-    rows = object_rows({goal.name: goal.pose for goal in task.goals}, objects)
+    rows = object_rows({goal.name: goal.pose for goal in place.goals}, objects)
     rows.flags.writeable = False
     return lambda: rows
+
+
+def watched(
+    poses: Callable[[], Mapping[str, Pose]], objects: Sequence[str]
+) -> Callable[[], FloatArray] | None:
+    """What tells `Step` the poses (K, 9) of things that may move.
+
+    Args:
+        poses: where things are now, by name.
+        objects: names of those that a controller looks at; where there are none, nothing is told.
+
+    Raises:
+        UserError: there is no thing of a name.
+    """
+    if not objects:
+        return None
+    object_rows(poses(), objects)  # fails now rather than in the loop
+    return lambda: object_rows(poses(), objects)

@@ -79,13 +79,13 @@ def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
         yield address
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def start_server() -> Callable[..., AbstractContextManager[str]]:
     """A server of its own for a test that changes what is driven."""
     return _started
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def watch() -> Callable[[str], AbstractContextManager[Any]]:
     """Watches the arm of such a server."""
     return _watching
@@ -117,6 +117,7 @@ class Arm:
         self.welcome: dict[str, Any] = {}
         self.learning: dict[str, Any] = {}
         self.ghosts: dict[str, list[list[float]]] = {}
+        self.things: dict[str, list[list[float]]] = {}
         self.states: list[dict[str, Any]] = []
 
     @property
@@ -176,6 +177,7 @@ class Arm:
                     self.learning = message
                 elif message["type"] == "state":
                     self.ghosts = message["ghosts"] or self.ghosts
+                    self.things = message["things"] or self.things
                     self.state = message
 
 

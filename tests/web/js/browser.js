@@ -139,7 +139,7 @@ export function key(type, code, fields = {}) {
 
 const STATE = {
   type: "state", nonce: "n", tick: 0, phase: "disengaged", note: null, reason: null, held_back: null, mode: "latent", axes: 0, profile: null, bodies: [], tool: [0, 0, 0],
-  ghosts: null, belief: null, alpha: 0, bound_m: null, driver: null, driver_name: null, watchers: 0, asking: null,
+  gripper: null, things: null, ghosts: null, belief: null, alpha: 0, bound_m: null, driver: null, driver_name: null, watchers: 0, asking: null,
   asking_name: null, recording: null, trail: 0, late_share: 0, you: false,
 };
 
@@ -153,6 +153,6 @@ export function welcomeOf(fields = {}) {
   return {
     type: "welcome", version: 1, id: "me", dof: 7, latent_dim: 2, robot: "panda", run: "one", profiles: [],
     modes: ["latent", "assisted", "end_effector"], goals: [], end_effector_modes: ["x-y", "z-yaw", "roll-pitch"],
-    limits: { latch_max_s: 5 }, ...fields,
+    limits: { latch_max_s: 5 }, gripper_width_m: null, ...fields,
   };
 }

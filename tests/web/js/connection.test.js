@@ -30,10 +30,10 @@ test("an input echoes the newest nonce and is numbered upwards", () => {
   socket.says(stateOf({ nonce: "a" }));
   connection.sendInput([1, 0], "dpad", false);
   socket.says(stateOf({ nonce: "b" }));
-  connection.sendInput([0, 0], "dpad", true);
+  connection.sendInput([0, 0], "dpad", true, "close");
   assert.deepEqual(socket.taken(), [
-    { type: "input", seq: 1, nonce: "a", u: [1, 0], source: "dpad", latched: false },
-    { type: "input", seq: 2, nonce: "b", u: [0, 0], source: "dpad", latched: true },
+    { type: "input", seq: 1, nonce: "a", u: [1, 0], source: "dpad", latched: false, gripper: null },
+    { type: "input", seq: 2, nonce: "b", u: [0, 0], source: "dpad", latched: true, gripper: "close" },
   ]);
 });
 

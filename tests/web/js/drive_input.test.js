@@ -76,6 +76,20 @@ test("a press moves the arm only while it is enabled and this page drives", () =
   assert.ok(!input.live);
 });
 
+test("the gripper is asked once, with the deflection as it is, and not before the arm is enabled", () => {
+  assert.ok(!input.ask("close", "keyboard"));
+  input.enable();
+  drive(100, { phase: "ready" });
+  sent();
+  input.hold("dpad", 1, 0);
+  assert.ok(input.ask("close", "keyboard"));
+  drive(60, { phase: "moving" });
+  const [held, asked, ...later] = sent("input");
+  assert.deepEqual([held.gripper, asked.gripper, asked.u, asked.source], [null, "close", [1, 0], "dpad"]);
+  assert.ok(asked.seq > held.seq);
+  assert.deepEqual(later.map(({ gripper }) => gripper), [null, null, null]);
+});
+
 test("stop before enable has gone out leaves the arm alone", () => {
   input.enable();
   pass(30);

@@ -39,6 +39,7 @@ beforeEach(() => {
   attachGamepad(input, settings, {
     enable: () => done.push("enable"),
     stop: () => done.push("stop"),
+    gripper: () => done.push("gripper"),
     press: (number, down) => {
       if (scanning && down) done.push(`switch ${number}`);
       return scanning;
@@ -88,6 +89,16 @@ test("any button can be the one that stops, the first too", () => {
   press(plug(), 0);
   press(pads[0], 3);
   assert.deepEqual(done, ["stop", "stop"]);
+});
+
+test("the third button moves the gripper, the fourth where the third stops, and none where any stops", () => {
+  press(plug(), 2);
+  settings.change({ gamepadStop: "2" });
+  press(pads[0], 2);
+  press(pads[0], 3);
+  settings.change({ gamepadStop: "any" });
+  press(pads[0], 2);
+  assert.deepEqual(done, ["gripper", "stop", "gripper", "stop"]);
 });
 
 test("where scanning is on, buttons are switches and neither stop nor enable", () => {

@@ -19,6 +19,7 @@ beforeEach(() => {
     enable: () => done.push("enable"),
     nextMode: () => done.push("mode"),
     axes: (index) => done.push(index),
+    gripper: () => done.push("gripper"),
   });
 });
 
@@ -52,7 +53,7 @@ test("an arrow and its letter together are no faster", () => {
 
 test("letters and digits do nothing once they are turned off; arrows and Enter still do", () => {
   settings.change({ shortcuts: false });
-  for (const code of ["KeyW", "KeyM", "Digit2"]) key("keydown", code);
+  for (const code of ["KeyW", "KeyM", "KeyG", "Digit2"]) key("keydown", code);
   assert.deepEqual(at(), [0, 0]);
   key("keydown", "Enter");
   key("keydown", "ArrowDown");
@@ -60,15 +61,17 @@ test("letters and digits do nothing once they are turned off; arrows and Enter s
   assert.deepEqual(done, ["enable"]);
 });
 
-test("Enter enables, M changes the mode, digits choose axes", () => {
-  for (const code of ["Enter", "KeyM", "Digit3"]) key("keydown", code);
-  assert.deepEqual(done, ["enable", "mode", 2]);
+test("Enter enables, M changes the mode, digits choose axes, G moves the gripper", () => {
+  for (const code of ["Enter", "KeyM", "Digit3", "KeyG"]) key("keydown", code);
+  assert.deepEqual(done, ["enable", "mode", 2, "gripper"]);
 });
 
 test("a key that repeats because it is held acts once", () => {
   key("keydown", "KeyM");
   key("keydown", "KeyM", { repeat: true });
-  assert.deepEqual(done, ["mode"]);
+  key("keydown", "KeyG");
+  key("keydown", "KeyG", { repeat: true });
+  assert.deepEqual(done, ["mode", "gripper"]);
 });
 
 for (const modifier of ["ctrlKey", "altKey", "metaKey"]) {

@@ -98,6 +98,17 @@ test("other choices begin at the first one; the same ones leave the light where 
   assert.equal(lit(), "enable");
 });
 
+test("a choice that is called otherwise stays lit, and is taken as it is called", () => {
+  scanner.next();
+  let painted = 0;
+  scanner.addEventListener("change", () => (painted += 1));
+  const renamed = choices("up", "down", "mode", "stop");
+  renamed[1].label = "lower";
+  scanner.offer(renamed);
+  assert.equal(scanner.choices[scanner.lit].label, "lower");
+  assert.equal(painted, 1);
+});
+
 test("a gamepad's first button chooses, and its second goes on only with two switches", () => {
   assert.equal(scanner.press(1, true), false);
   settings.change({ switches: "2" });

@@ -1,5 +1,6 @@
 """A marshmallow stabbed, drawn through icing and dipped in rice: the paper's *Dessert*, in physics."""
 
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Final, final
 
@@ -8,7 +9,7 @@ import numpy as np
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
-from latentarm.scene.containers import bowl, interior_of, packed
+from latentarm.scene.containers import bowl, packed
 from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Grains, Interior, Thing
 from latentarm.tasks.eating.marshmallows import START_SPREAD_RAD
@@ -61,7 +62,7 @@ RICE: Final = 40
 
 RICE_RADIUS_M: Final = 0.005
 
-BOWL_RADIUS_M: Final = 0.05
+BOWL_RADIUS_M: Final = 0.045
 BOWL_HEIGHT_M: Final = 0.035
 
 WET: Final = Interior(ICING_RADIUS_M, 0.0, ICING_DEEP_M)
@@ -102,12 +103,13 @@ class Dessert(SceneTask):
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """The marshmallow anywhere in the middle of its plate."""
         x, y = np.array(MIDDLE_M) + rng.uniform(-SPREAD_M, SPREAD_M, 2)
-        dish = bowl("rice bowl", at(*RICE_M, STAND_M), BOWL_RADIUS_M, BOWL_HEIGHT_M)
+        made = bowl(BOWL_RADIUS_M, BOWL_HEIGHT_M)
+        dish = Thing("rice bowl", made.parts, 0.5, at(*RICE_M, STAND_M), fixed=True, interior=made.interior)
         rice = Grains(
             "rice",
             RICE_RADIUS_M,
             2e-4,
-            packed(dish, RICE, RICE_RADIUS_M),
+            packed(replace(made.interior, radius_m=BOWL_RADIUS_M), dish.pose, RICE, RICE_RADIUS_M),
             colour=(0.97, 0.96, 0.92, 1.0),
         )
         things = (
@@ -119,7 +121,7 @@ class Dessert(SceneTask):
         )
         scene = Scene(things, (rice,))
         state = self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
-        room = interior_of(dish)
+        room = dish.room
         return Beginning(
             state=state,
             scene=scene,
@@ -175,7 +177,9 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
         TaskStep("scooped", "drawn through the icing", Swept(MARSHMALLOW, "icing", WET, SWEEP_M), through),
         TaskStep("above", "over the rice", CarriedOver(MARSHMALLOW, "rice bowl", 0.03), into[:1]),
         TaskStep("dipped", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),
-        TaskStep("above", "over the own plate", CarriedOver(MARSHMALLOW, "own plate", 0.03), (over,)),
+        TaskStep(
+            "above", "over the own plate", CarriedOver(MARSHMALLOW, "own plate", 0.03), (*into[:1], over)
+        ),
         TaskStep("placed", "set down", laid, (over, down)),
     )
 

@@ -1,5 +1,6 @@
 """Three marshmallows on a plate, one of which is to be stabbed: the paper's first user study, in physics."""
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, final
 
@@ -13,11 +14,12 @@ from latentarm.tasks.eating.stabbing import HOVER_M, above, stab
 from latentarm.tasks.eating.table import STAND_M, fork, marshmallow, plate
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.predicates import Dropped
+from latentarm.tasks.region import Region, anywhere
 from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.types import FloatArray, Goal
 
-PLATE_AT_M: Final = (0.5, 0.0)
-"""x and y of the plate's middle."""
+PLATE_AT_M: Final[Region] = ((0.5, 0.5), (0.0, 0.0))
+"""x and y of the plate's middle: always the same, as in the paper."""
 
 NAMES: Final = ("left marshmallow", "middle marshmallow", "right marshmallow")
 
@@ -35,8 +37,15 @@ START_SPREAD_RAD: Final = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
 
 
 @final
+@dataclass(frozen=True, eq=False)
 class Marshmallows(SceneTask):
-    """Bring the fork over the chosen marshmallow, stab it and lift it."""
+    """Bring the fork over the chosen marshmallow, stab it and lift it.
+
+    Attributes:
+        plate_at_m: where the middle of the plate may be, x and y, m.
+    """
+
+    plate_at_m: Region = PLATE_AT_M
 
     @property
     def name(self) -> str:
@@ -65,12 +74,13 @@ class Marshmallows(SceneTask):
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Marshmallows anywhere in their sectors, the arm about its home."""
-        places = [self._place(index, rng) for index in range(len(NAMES))]
+        middle = anywhere(self.plate_at_m, rng)
+        places = [_place(middle, index, rng) for index in range(len(NAMES))]
         food = [
             marshmallow(name, x, y, rng.uniform(-np.pi, np.pi))
             for name, (x, y) in zip(NAMES, places, strict=True)
         ]
-        scene = Scene((plate("plate", *PLATE_AT_M), *food))
+        scene = Scene((plate("plate", *middle), *food))
         state = self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
         wanted = NAMES[choice]
         return Beginning(
@@ -83,11 +93,6 @@ class Marshmallows(SceneTask):
             text=f"stab the {wanted}",
         )
 
-    def _place(self, index: int, rng: np.random.Generator) -> tuple[float, float]:
-        bearing = BEARINGS_RAD[index] + rng.uniform(-SECTOR_RAD, SECTOR_RAD)
-        out = rng.uniform(*OUT_M)
-        return PLATE_AT_M[0] + out * np.cos(bearing), PLATE_AT_M[1] + out * np.sin(bearing)
-
     def _goal(self, name: str, place: FloatArray) -> Goal:
         configuration = solve(self.robot, fork(place, HOVER_M), self.robot.home)
         return Goal(name, configuration, self.robot.chain.forward(configuration))
@@ -95,3 +100,10 @@ class Marshmallows(SceneTask):
     @cached_property
     def _robot(self) -> Robot:
         return load_robot("panda_fork")
+
+
+def _place(plate: FloatArray, index: int, rng: np.random.Generator) -> tuple[float, float]:
+    """Somewhere in a marshmallow's sector of the plate."""
+    bearing = BEARINGS_RAD[index] + rng.uniform(-SECTOR_RAD, SECTOR_RAD)
+    out = rng.uniform(*OUT_M)
+    return float(plate[0] + out * np.cos(bearing)), float(plate[1] + out * np.sin(bearing))

@@ -58,6 +58,7 @@ def fork(place: FloatArray, height_m: float, turn_rad: float | None = None, tilt
     bearing = float(np.arctan2(place[1], place[0])) if turn_rad is None else turn_rad
     out = np.array([np.cos(bearing), np.sin(bearing), 0.0])
     side = np.array([out[1], -out[0], 0.0])
-    points = np.sin(tilt_rad) * out - np.cos(tilt_rad) * np.array([0.0, 0.0, 1.0])
-    rotation = np.stack([np.cross(side, points), side, points], axis=-1)
-    return Pose(place + np.array([0.0, 0.0, height_m]), rotation)
+    up = np.array([0.0, 0.0, 1.0])
+    cos, sin = np.cos(tilt_rad), np.sin(tilt_rad)
+    rotation = np.array([cos * out + sin * up, side, sin * out - cos * up]).T
+    return Pose(place + height_m * up, rotation)

@@ -17,12 +17,14 @@ from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import (
     Channel,
     ChooseMode,
     ChooseProfile,
     ChooseRun,
     Enable,
+    GripperState,
     HeldBack,
     ModeName,
     Order,
@@ -118,7 +120,7 @@ class Drive:
         self._orphaned = orphaned
         self._steering = steering
         self._ghosts = GhostPaths(setup.task, setup.controller, setup.help)
-        self._step = setup.step()
+        self._step = setup.step(arm)
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
@@ -128,6 +130,8 @@ class Drive:
         self._enable_until_s = -math.inf
         self._enable_driver = -1
         self._seen = setup.start
+        self._gripper: GripperState | None = None
+        self._whereabouts = Whereabouts(setup.scene, arm)
         self._late_share = self._late_p99_ms = 0.0
         self._note = note
         self._note_until_s = -math.inf if note is None else clock.now_s() + NOTE_S
@@ -151,6 +155,7 @@ class Drive:
         self._steering.tick += 1
         if not math.isnan(record.state[0]):
             self._seen = record.state
+        self._note_gripper(record)
         self._writer.add(record)
         if self._steering.ending_episode and self._step.at_rest:
             self._end_episode()
@@ -159,6 +164,16 @@ class Drive:
         self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
             self._look(record)
+
+    def _note_gripper(self, record: StepRecord) -> None:
+        """Keep what the gripper measured last, and whether it was last told to close."""
+        gripper, measured, command = self._setup.task.robot.gripper, record.gripper, record.command.gripper
+        if gripper is None or measured is None:
+            return
+        closing = None if self._gripper is None else self._gripper.closing
+        if command is not None:
+            closing = command.width_m < gripper.width_m / 2.0
+        self._gripper = GripperState(width_m=measured.width_m, holding=measured.holding, closing=closing)
 
     def _obey(self, record: StepRecord) -> None:
         if self._channel.stop.version != self._stop_version:
@@ -316,6 +331,8 @@ class Drive:
             q=tuple(self._seen.tolist()),
             speed=float(np.abs(self._arm.read().dq).max()),
             tool=(tool[0], tool[1], tool[2]),
+            gripper=self._gripper,
+            things=self._whereabouts.look(self._steering.tick),
             ghosts=self._ghosts.newest,
             belief=tuple(record.belief.tolist()),
             alpha=record.alpha,

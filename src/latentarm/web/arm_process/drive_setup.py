@@ -6,7 +6,8 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.catalogue import ARMS, DEFAULT_ARM
+from latentarm.arms.catalogue import ARMS, DEFAULT_ARM, make_scene_arm
+from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.journal_limits import JournalLimits
@@ -18,8 +19,10 @@ from latentarm.controllers.latent import latent_controller
 from latentarm.errors import UserError
 from latentarm.runs.folder import read_run, weights_fingerprint
 from latentarm.runs.tasks import task_of_run, task_without_run
-from latentarm.tasks.surroundings import surroundings_of
-from latentarm.tasks.task import Task
+from latentarm.scene.scene import Scene
+from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
+from latentarm.tasks.place import Place, ScenePlace
+from latentarm.tasks.surroundings import surroundings_of, watched
 from latentarm.types import FloatArray
 from latentarm.web.arm_process.ghosts import Help
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
@@ -40,6 +43,8 @@ RELEASE_FRACTION: Final = 0.8
 
 MOST_JOINTS: Final = 64
 MOST_GOALS: Final = 200
+MOST_THINGS: Final = 200
+MOST_GRAINS: Final = 2000
 """Largest sizes that fit into the report of a tick."""
 
 COMMAND_PERIODS: Final = 5.0
@@ -58,6 +63,7 @@ class Spec:
         out: folder for recordings.
         journal: how much room a recording may take.
         arm: what moves, a name of `latentarm.arms.catalogue`.
+        task: a name of `latentarm.tasks.catalogue`; None for the run's own, or the table-top task.
 
     Raises:
         UserError: the seed is out of range, or a profile is named without a run.
@@ -69,6 +75,7 @@ class Spec:
     out: Path = Path("teleop")
     journal: JournalLimits = field(default_factory=JournalLimits)
     arm: str = DEFAULT_ARM
+    task: str | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < 2**31:
@@ -94,16 +101,18 @@ class DriveSetup:
         help: whether and how much the robot helps.
         start: (n,), where the arm starts, rad.
         run_fingerprint: of the run's weights; "" without a run.
+        scene: what stands about the arm, or None where things are of no account.
     """
 
     spec: Spec
-    task: Task
+    task: Place
     controller: JoinedController
     latent_dim: int
     axes: tuple[str, ...]
     help: Help
     start: FloatArray
     run_fingerprint: str = ""
+    scene: Scene | None = None
 
     @property
     def modes(self) -> tuple[ModeName, ...]:
@@ -121,8 +130,20 @@ class DriveSetup:
         """
         return (1 if self.latent_dim else 0) + axes if mode == "end_effector" else 0
 
-    def step(self) -> Step:
-        """Algorithm 1 with its safety filters, disengaged."""
+    def step(self, arm: Arm | None = None) -> Step:
+        """Algorithm 1 with its safety filters, disengaged.
+
+        Args:
+            arm: what is driven; None only to see whether it could be. It says where things are by now.
+        """
+        objects = self.controller.objects
+        if self.scene is None:
+            surroundings = surroundings_of(self.task, objects)
+        elif isinstance(arm, SceneArm):
+            surroundings = watched(lambda: arm.scene_state().poses, objects)
+        else:
+            begun = {thing.name: thing.pose for thing in self.scene.things}
+            surroundings = watched(lambda: begun, objects)
         goals = np.array([goal.configuration for goal in self.task.goals])
         return Step(
             self.task.robot,
@@ -138,7 +159,7 @@ class DriveSetup:
             belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
             arbitration=self.help if self.task.goals else None,
             dt_s=PERIOD_S,
-            surroundings=surroundings_of(self.task, self.controller.objects),
+            surroundings=surroundings,
         )
 
 
@@ -167,26 +188,51 @@ def load_setup(spec: Spec) -> DriveSetup:
         UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
     """
     ARMS.find(spec.arm, "--arm")  # so that the error appears where the command was typed
-    if spec.run is None:
-        task = task_without_run()
-        latent = None
-    else:
-        task = task_of_run(read_run(spec.run), option=False)
-        latent = latent_controller(spec.run, spec.profile, task.robot)
-        surroundings_of(task, latent.objects)  # fails now rather than when the arm is driven
+    task, start, scene = _begin(spec)
+    latent = None if spec.run is None else latent_controller(spec.run, spec.profile, task.robot)
     if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
         raise UserError(
             f"{spec.run} has {task.robot.dof} joints and {len(task.goals)} goals: the page drives"
             f" {MOST_JOINTS} joints and shows {MOST_GOALS} goals at most."
         )
     end_effector = EndEffectorController(task.robot)
-    return DriveSetup(
+    setup = DriveSetup(
         spec=spec,
         task=task,
         controller=JoinedController([end_effector] if latent is None else [latent, end_effector]),
         latent_dim=0 if latent is None else latent.input_dim,
         axes=end_effector.modes,
         help=Help(FixedAlpha()),
-        start=task.sample_start(0, np.random.default_rng(spec.seed)),
+        start=start,
         run_fingerprint="" if spec.run is None else weights_fingerprint(spec.run),
+        scene=scene,
     )
+    setup.step()  # what cannot be driven fails now rather than later
+    return setup
+
+
+def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None]:
+    """Where the arm is driven, where it starts, (n,), rad, and what is about it: the same for equal specs."""
+    rng = np.random.default_rng(spec.seed)
+    if spec.task is not None and spec.task in SCENE_TASKS:
+        with_things = make_scene_task(spec.task)
+        begun = with_things.begin(0, rng)
+        _check_things(spec.task, begun.scene)
+        # Made here too, so that an arm that can touch nothing is refused where the command was typed.
+        make_scene_arm(spec.arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
+        place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles)
+        return place, begun.state, begun.scene
+    if spec.run is None:
+        task = task_without_run(spec.task)
+    else:
+        task = task_of_run(read_run(spec.run), spec.task, option=False)
+    return task, task.sample_start(0, rng), None
+
+
+def _check_things(task: str, scene: Scene) -> None:
+    grains = sum(len(one.positions) for one in scene.grains)
+    if len(scene.things) > MOST_THINGS or grains > MOST_GRAINS:
+        raise UserError(
+            f"The task {task} has {len(scene.things)} things and {grains} grains: the page shows"
+            f" {MOST_THINGS} and {MOST_GRAINS} at most."
+        )

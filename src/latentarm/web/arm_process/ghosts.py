@@ -9,7 +9,7 @@ from latentarm.assistance.blending import Arbitration, assistive_action, blend
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.kinematics.obstacles import HalfSpace
-from latentarm.tasks.task import Task
+from latentarm.tasks.place import Place
 from latentarm.types import Context, FloatArray
 from latentarm.web.protocol.channel import Ghosts, Point
 
@@ -59,7 +59,7 @@ class GhostPaths:
         help_: whether and how much the robot helps.
     """
 
-    def __init__(self, task: Task, controller: Controller, help_: Help) -> None:
+    def __init__(self, task: Place, controller: Controller, help_: Help) -> None:
         self._controller = controller
         self._help = help_
         robot = task.robot

@@ -36,7 +36,7 @@ class PageInputs(InputSource):
         driver: whose inputs are taken; -1 before the first.
         fresh: whether the newest input still counts.
         deflected: whether it is outside the dead zone.
-        devices: kinds of device that have moved the arm since this was last emptied.
+        devices: kinds of device that have moved the arm or its gripper since this was last emptied.
     """
 
     def __init__(
@@ -82,14 +82,23 @@ class PageInputs(InputSource):
             self._port = InputPort(self._input_dim, self._clock)
             self._latched_since_s = math.inf
             self._stop(Notice(code="driver_changed"))
-        if self._port.offer(Input(np.array(given.u)), given.nonce, given.seq):
+        u, asked = np.array(given.u), given.gripper
+        # Its own number, which must grow, makes it count once; its own nonce makes it count only in time.
+        if asked is not None and self._port.offer(Input(u, gripper=asked.ask), asked.nonce, asked.seq):
+            self._note(given)
+            self._used(given.source)
+        if self._port.offer(Input(u), given.nonce, given.seq):
             self._note(given)
 
     def _note(self, given: Given) -> None:
         self.deflected = math.hypot(*given.u) > self._dead_zone
-        if self.deflected and given.source:
-            self.devices.add(given.source)
+        if self.deflected:
+            self._used(given.source)
         if not (given.latched and self.deflected):
             self._latched_since_s = math.inf
         elif self._latched_since_s == math.inf:
             self._latched_since_s = self._clock.now_s()
+
+    def _used(self, device: str) -> None:
+        if device:
+            self.devices.add(device)

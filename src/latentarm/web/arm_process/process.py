@@ -19,7 +19,7 @@ from typing import Final, TypeVar, final
 
 from threadpoolctl import threadpool_limits
 
-from latentarm.arms.catalogue import make_arm
+from latentarm.arms.catalogue import make_arm, make_scene_arm
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.errors import UserError
@@ -110,7 +110,11 @@ def _ask_for_priority() -> None:
 
 
 def _arm(setup: DriveSetup, clock: Clock) -> Arm:
-    arm = make_arm(setup.spec.arm, setup.task.robot, setup.start, clock.now_s)
+    name, robot, scene = setup.spec.arm, setup.task.robot, setup.scene
+    if scene is None:
+        arm = make_arm(name, robot, setup.start, clock.now_s)
+    else:
+        arm = make_scene_arm(name, robot, setup.start, clock.now_s, scene)
     arm.connect()
     return arm
 

@@ -10,13 +10,14 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter, ValidationError
 
+from latentarm.types import GripperAsk
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.shared_memory import Flag, LatestSlot
 
 ORDER_LIMIT: Final = 4096
 """The longest order, bytes; short enough that the pipe takes it whole or not at all."""
 
-_REPORT_LIMIT: Final = 65536
+_REPORT_LIMIT: Final = 262144
 _GIVEN_LIMIT: Final = 1024
 _REASON_LIMIT: Final = 512
 
@@ -24,6 +25,26 @@ ModeName = Literal["latent", "assisted", "end_effector"]
 HeldBack = Literal["clearance", "freshness", "workspace", "joint_position"]
 Phase = Literal["disengaged", "neutral_needed", "ready", "moving", "stopping"]
 Point = tuple[float, float, float]
+PoseRow = tuple[float, float, float, float, float, float, float]
+"""x, y, z (m) and a quaternion w, x, y, z."""
+
+
+@final
+class AskedGripper(Message):
+    """What the driver last asked of the gripper, with the stamps of the input that it came with.
+
+    It goes with every later input too, because only the newest input is kept. The stamps make it count once,
+    and not at all where its own input came too late.
+
+    Attributes:
+        ask: what is asked.
+        seq: of that input.
+        nonce: that it echoed.
+    """
+
+    ask: GripperAsk
+    seq: int
+    nonce: str
 
 
 @final
@@ -37,6 +58,7 @@ class Given(Message):
         u: entries in [-1, 1].
         latched: continues without being held, for a limited time.
         source: with what kind of device.
+        gripper: the newest thing that this driver has asked of the gripper; None before the first.
     """
 
     driver: int
@@ -45,6 +67,7 @@ class Given(Message):
     u: tuple[float, ...]
     latched: bool
     source: str = ""
+    gripper: AskedGripper | None = None
 
 
 @final
@@ -137,6 +160,34 @@ class Recording(Message):
 
 
 @final
+class GripperState(Message):
+    """The gripper.
+
+    Attributes:
+        width_m: opening between the fingers, m.
+        holding: whether something is held between them.
+        closing: whether it was last told to close; None if it was told nothing yet.
+    """
+
+    width_m: float
+    holding: bool
+    closing: bool | None
+
+
+@final
+class Things(Message):
+    """Where things and grains are, in the order of ``/scene.json``.
+
+    Attributes:
+        poses: of the things.
+        grains: for each kind, x, y, z of one grain after the other, m.
+    """
+
+    poses: tuple[PoseRow, ...]
+    grains: tuple[tuple[float, ...], ...]
+
+
+@final
 class Report(Message):
     """Report of the control process in every tick.
 
@@ -158,6 +209,8 @@ class Report(Message):
         q: (n,), joint positions as they were last read, rad.
         speed: the fastest joint's, rad/s.
         tool: the tool's position, m.
+        gripper: as it was last read; None without one.
+        things: where they are, in every few reports; None in the others, and where there are none.
         ghosts: what each direction would do now.
         belief: over the goals; empty where there are none.
         alpha: how much the robot helps.
@@ -183,6 +236,8 @@ class Report(Message):
     q: tuple[float, ...]
     speed: float
     tool: Point
+    gripper: GripperState | None
+    things: Things | None
     ghosts: Ghosts | None
     belief: tuple[float, ...]
     alpha: float

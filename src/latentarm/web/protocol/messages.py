@@ -9,7 +9,8 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter
 
-from latentarm.web.protocol.channel import Ghosts, HeldBack, ModeName, Phase, Point
+from latentarm.types import GripperAsk
+from latentarm.web.protocol.channel import Ghosts, GripperState, HeldBack, ModeName, Phase, Point, Things
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
@@ -42,6 +43,7 @@ class DriverInput(Message):
         u: entries in [-1, 1], right and up positive; axes that are not named are zero.
         source: with what.
         latched: continues without being held, for at most `Limits.latch_max_s`.
+        gripper: what is asked of the gripper with this input; only in the one input that asks.
     """
 
     type: Literal["input"]
@@ -50,6 +52,7 @@ class DriverInput(Message):
     u: Annotated[tuple[Deflection, ...], Field(min_length=1, max_length=8)]
     source: Literal["pointer", "keyboard", "dpad", "gamepad", "switch"]
     latched: bool
+    gripper: GripperAsk | None = None
 
 
 @final
@@ -181,6 +184,7 @@ class Welcome(Message):
         goals: in the order of the belief.
         end_effector_modes: names of the pairs of axes.
         limits: see `Limits`.
+        gripper_width_m: how wide its gripper opens, m, or null where it has none that can be driven.
     """
 
     type: Literal["welcome"] = "welcome"
@@ -195,6 +199,7 @@ class Welcome(Message):
     goals: tuple[NamedGoal, ...]
     end_effector_modes: tuple[str, ...]
     limits: Limits
+    gripper_width_m: float | None
 
 
 @final
@@ -223,6 +228,8 @@ class State(Message):
         profile: whose alignment.
         bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
         tool: m.
+        gripper: null where it has none, or before it was read.
+        things: where they are; null where there are none, or they have not moved since the last.
         ghosts: where each direction would take the tool; null if nothing has moved by 1 mm since the last.
         belief: over the goals, or null where there are none.
         alpha: how much the robot helps, in [0, 1].
@@ -250,6 +257,8 @@ class State(Message):
     profile: str | None
     bodies: tuple[tuple[float, ...], ...]
     tool: Point
+    gripper: GripperState | None
+    things: Things | None
     ghosts: Ghosts | None
     belief: tuple[float, ...] | None
     alpha: float

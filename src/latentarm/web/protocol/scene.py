@@ -1,6 +1,7 @@
 """What a page draws: the shapes of the robot's MuJoCo model, and of its surroundings."""
 
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -9,9 +10,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
-from latentarm.kinematics.reader import ModelChain, read
-from latentarm.tasks.task import Task
+from latentarm.kinematics.reader import ModelChain, read, reference_positions
+from latentarm.scene.scene import Scene
+from latentarm.tasks.place import Place
 from latentarm.types import FloatArray
+from latentarm.web.protocol.things import described
 
 _TYPES: Final = {
     int(mujoco.mjtGeom.mjGEOM_SPHERE): "sphere",
@@ -28,16 +31,21 @@ _VISIBLE_GROUPS: Final = 3
 
 _MESH_HEADER: Final = struct.Struct("<II")
 
+_UNMOVED: Final = np.zeros(3)
+
 
 @final
 @dataclass(frozen=True)
-class Scene:
+class Drawable:
     """What a page draws.
 
     Attributes:
         description: ``/scene.json``. ``bodies`` are the base frame and the links, in the order of a state's
             poses, each with its ``geoms``; a geom's ``pos`` and ``quat`` (w, x, y, z) are in its body's
-            frame, its ``size`` is MuJoCo's.
+            frame, its ``size`` is MuJoCo's. ``fingers`` are those of a gripper, closed, each with its
+            ``geoms``, the index of the ``body`` that it slides on, the direction in which it ``opens`` there,
+            and how far it is open ``at`` first, m.
+            For ``things`` and ``grains`` see `latentarm.web.protocol.things.described`.
         meshes: ``/mesh/ID``: uint32 vertices, uint32 faces, float32 vertices, uint32 faces, little-endian.
     """
 
@@ -45,18 +53,20 @@ class Scene:
     meshes: dict[int, bytes]
 
 
-def scene_of(task: Task) -> Scene:
-    """What a page draws of a task: its robot, its goals, its obstacles, and from where to look.
+def drawable(place: Place, scene: Scene | None) -> Drawable:
+    """What a page draws: the robot, its goals, its obstacles, what stands about it, and from where to look.
 
     Args:
-        task: the task.
+        place: where the robot is driven.
+        scene: what stands about it; None where nothing does.
     """
-    robot = task.robot
+    robot = place.robot
     model = robot.model()
     reading = read(model, [tool.name for tool in robot.chain.tools])
     geoms = _visible(model)
-    positions = [goal.pose.position for goal in task.goals]
-    return Scene(
+    fingers = _finger_of(model, () if robot.gripper is None else robot.gripper.joints)
+    positions = [goal.pose.position for goal in place.goals]
+    return Drawable(
         description={
             "version": 1,
             "robot": robot.name,
@@ -66,13 +76,18 @@ def scene_of(task: Task) -> Scene:
                     "geoms": [
                         _geom(model, reading, geom)
                         for geom in geoms
-                        if reading.body_link[model.geom_bodyid[geom]] + 1 == body
+                        if (at := int(model.geom_bodyid[geom])) not in fingers
+                        and reading.body_link[at] + 1 == body
                     ],
                 }
                 for body, name in enumerate(("base", *robot.joint_names))
             ],
-            "goals": [{"name": goal.name, "position": _rounded(goal.pose.position)} for goal in task.goals],
-            "obstacles": [_obstacle(one) for one in task.obstacles],
+            "fingers": [
+                _finger(model, reading, joint, geoms, fingers) for joint in sorted(set(fingers.values()))
+            ],
+            "goals": [{"name": goal.name, "position": _rounded(goal.pose.position)} for goal in place.goals],
+            "obstacles": [_obstacle(one) for one in place.obstacles],
+            **described(scene or Scene()),
             "cameras": _cameras(robot.chain.link_transforms(robot.home)[:, :3, 3], positions),
         },
         meshes={
@@ -94,11 +109,46 @@ def _visible(model: mujoco.MjModel) -> list[int]:
     return [geom for geom in drawn if model.geom_group[geom] < _VISIBLE_GROUPS] or drawn
 
 
-def _geom(model: mujoco.MjModel, reading: ModelChain, geom: int) -> dict[str, object]:
+def _finger_of(model: mujoco.MjModel, joints: Sequence[str]) -> dict[int, int]:
+    """The sliding joint of each body of a finger, by the body's id."""
+    found: dict[int, int] = {}
+    ids = [int(model.joint(name).id) for name in joints]
+    of = {int(model.jnt_bodyid[joint]): joint for joint in ids}
+    for body in range(1, model.nbody):
+        joint = of.get(body, found.get(int(model.body_parentid[body])))
+        if joint is not None:
+            found[body] = joint
+    return found
+
+
+def _finger(
+    model: mujoco.MjModel, reading: ModelChain, joint: int, geoms: list[int], fingers: dict[int, int]
+) -> dict[str, object]:
+    """A finger as it is where its joint is at zero."""
+    body = int(model.jnt_bodyid[joint])
+    opens = reading.body_transform[body][:3, :3] @ model.jnt_axis[joint]
+    here = float(reference_positions(model)[model.jnt_qposadr[joint]])
+    return {
+        "body": int(reading.body_link[body]) + 1,
+        "opens": _rounded(opens),
+        "at": round(here, 5),
+        "geoms": [
+            _geom(model, reading, geom, -here * opens)
+            for geom in geoms
+            if fingers.get(int(model.geom_bodyid[geom])) == joint
+        ],
+    }
+
+
+def _geom(
+    model: mujoco.MjModel, reading: ModelChain, geom: int, shift: FloatArray = _UNMOVED
+) -> dict[str, object]:
+    """A geom in the frame of its link, ``shift`` (3,) from where the model has it, m."""
     body = int(model.geom_bodyid[geom])
     rotation = np.empty(9)
     mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
     in_link = reading.body_transform[body] @ _frame(model.geom_pos[geom], rotation.reshape(3, 3))
+    in_link[:3, 3] += shift
     mesh = int(model.geom_dataid[geom])
     pose = _rounded(pose_of(in_link[None])[0])
     return {

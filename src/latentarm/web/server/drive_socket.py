@@ -7,7 +7,15 @@ from typing import Final, final
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from latentarm.web.arm_process.process import ControlProcess
-from latentarm.web.protocol.channel import ChooseMode, ChooseProfile, Enable, Given, Record, Reset
+from latentarm.web.protocol.channel import (
+    AskedGripper,
+    ChooseMode,
+    ChooseProfile,
+    Enable,
+    Given,
+    Record,
+    Reset,
+)
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.messages import (
     FRAME_LIMIT,
@@ -33,7 +41,7 @@ from latentarm.web.server.frames import TOO_MANY
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
 from latentarm.web.server.sessions import MOST, Page, Sessions
-from latentarm.web.server.states import GhostMemory, States
+from latentarm.web.server.states import PageMemory, States
 
 HELLO_WITHIN_S: Final = 5.0
 HANG_UP_WITHIN_S: Final = 1.0
@@ -82,6 +90,7 @@ class DriveSocket:
         self._sessions = sessions
         self._learning = learning
         self._open = 0
+        self._asked: AskedGripper | None = None
 
     async def __call__(self, socket: WebSocket) -> None:
         """Serve one page until it goes."""
@@ -133,14 +142,14 @@ class DriveSocket:
 
         They are preceded by what is driven and the state of learning, and again when those change.
         """
-        ghosts = GhostMemory()
+        shown = PageMemory()
         loaded = None
         tick = learning = -1
         with suppress(RuntimeError, WebSocketDisconnect):
             while True:
                 if loaded is not self._states.loaded:
                     loaded = self._states.loaded
-                    ghosts = GhostMemory()
+                    shown = PageMemory()
                     await socket.send_text(loaded.welcome(page.id).model_dump_json())
                 if learning != self._learning.number:
                     learning = self._learning.number
@@ -148,7 +157,7 @@ class DriveSocket:
                 tick = await self._states.after(tick)
                 if loaded is not self._states.loaded:
                     continue
-                await socket.send_text(self._states.text(page, ghosts))
+                await socket.send_text(self._states.text(page, shown))
                 drives = self._sessions.drives(page)
                 await self._states.pause(DRIVER_PERIOD_S if drives else WATCHER_PERIOD_S)
 
@@ -207,11 +216,14 @@ class DriveSocket:
 
     def _driver_changed(self, why: NoticeCode) -> None:
         """The arm stops for it, and an episode is one driver's."""
+        self._asked = None
         self._control.stop(Notice(code=why))
         self._control.order(Record(on=False, task=""))
 
     def _give(self, message: DriverInput) -> None:
         padded = message.u + (0.0,) * (self._states.loaded.input_dim - len(message.u))
+        if message.gripper is not None:
+            self._asked = AskedGripper(ask=message.gripper, seq=message.seq, nonce=message.nonce)
         self._control.give(
             Given(
                 driver=self._sessions.turn,
@@ -220,6 +232,7 @@ class DriveSocket:
                 u=padded,
                 latched=message.latched,
                 source=message.source,
+                gripper=self._asked,
             )
         )
 

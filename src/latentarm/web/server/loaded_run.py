@@ -11,7 +11,7 @@ from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.channel import Report
 from latentarm.web.protocol.messages import Limits, NamedGoal, Welcome
-from latentarm.web.protocol.scene import scene_of
+from latentarm.web.protocol.scene import drawable
 
 
 @final
@@ -26,7 +26,7 @@ class LoadedRun:
     def __init__(self, setup: DriveSetup, name: str | None) -> None:
         self.name = name
         self.spec = setup.spec
-        self.scene = scene_of(setup.task)
+        self.scene = drawable(setup.task, setup.scene)
         self.chain = setup.task.robot.chain
         self.input_dim = setup.controller.input_dim
         self.latent_dim = setup.latent_dim
@@ -52,6 +52,7 @@ class LoadedRun:
             page: its id.
         """
         setup = self._setup
+        gripper = setup.task.robot.gripper
         return Welcome(
             id=page,
             dof=setup.task.robot.dof,
@@ -66,6 +67,7 @@ class LoadedRun:
             ),
             end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),
+            gripper_width_m=None if gripper is None else gripper.width_m,
         )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
 from latentarm.web.arm_process.process import ControlProcess
-from latentarm.web.protocol.channel import Ghosts, Report
+from latentarm.web.protocol.channel import Ghosts, GripperState, Report, Things
 from latentarm.web.protocol.messages import RecordingState, State
 from latentarm.web.protocol.notice import Notice, notice_of, sentence
 from latentarm.web.protocol.scene import pose_of
@@ -36,19 +36,25 @@ _SAME_M: Final = 1e-3
 
 
 @final
-class GhostMemory:
-    """The ghosts that a page was last sent, so that it is sent only changes."""
+class PageMemory:
+    """The ghosts and things that a page was last sent, so that it is sent only changes."""
 
     def __init__(self) -> None:
-        self._shown: FloatArray | None = None
+        self._ghosts: FloatArray | None = None
+        self._things: Things | None = None
 
-    def differs(self, ghosts: Ghosts) -> bool:
+    def new_ghosts(self, ghosts: Ghosts) -> bool:
         """Whether any point has moved by more than 1 mm; if so it is remembered as shown."""
         points = np.array([ghosts.up, ghosts.down, ghosts.left, ghosts.right])
-        if self._shown is not None and np.abs(points - self._shown).max() < _SAME_M:
+        if self._ghosts is not None and np.abs(points - self._ghosts).max() < _SAME_M:
             return False
-        self._shown = points
+        self._ghosts = points
         return True
+
+    def new_things(self, things: Things) -> bool:
+        """Whether any has moved; if so it is remembered as shown."""
+        before, self._things = self._things, things
+        return things is not before and things != before
 
 
 @final
@@ -85,7 +91,8 @@ class States:
         self._note_until_s = -math.inf
         self._moves = False
         self._number = 0
-        self._cache: tuple[int, dict[bool, str]] = (-1, {})
+        self._things: Things | None = None
+        self._cache: tuple[int, dict[tuple[bool, bool], str]] = (-1, {})
 
     async def follow(self) -> None:
         """Read new reports until cancelled, and wake the callers of `after`."""
@@ -149,20 +156,23 @@ class States:
         """Whether something else to drive is being loaded, here or in the control process."""
         return self._loading
 
-    def text(self, page: Page, shown: GhostMemory) -> str:
+    def text(self, page: Page, shown: PageMemory) -> str:
         """The newest state as JSON, for a page."""
         report = self._report
         if report is None:
             raise RuntimeError("there is no report yet")
-        ghosts = report.ghosts is not None and shown.differs(report.ghosts)
+        ghosts = report.ghosts is not None and shown.new_ghosts(report.ghosts)
+        things = self._things is not None and shown.new_things(self._things)
         drives = self._sessions.drives(page)
         number, texts = self._cache
         if number != self._number:
             texts = {}
             self._cache = (self._number, texts)
-        if ghosts not in texts:
-            texts[ghosts] = self._state(report, ghosts=ghosts).model_dump_json(exclude={"you"})[:-1]
-        return f'{texts[ghosts]},"you":{json.dumps(drives)}}}'
+        new = ghosts, things
+        if new not in texts:
+            state = self._state(report, ghosts=ghosts, things=things)
+            texts[new] = state.model_dump_json(exclude={"you"})[:-1]
+        return f'{texts[new]},"you":{json.dumps(drives)}}}'
 
     def _take(self, report: Report) -> None:
         """Keep a report; if it is about another run, load that run here first."""
@@ -173,6 +183,7 @@ class States:
                 self._set_off.clear()
             self._moves = moved
             self._report = report
+            self._things = report.things or self._things
             self._loading = report.loading
             self._failed = None
         elif self._changing is None and (self._failed is None or self._failed[0] != report.run):
@@ -185,6 +196,7 @@ class States:
         try:
             self._loaded = await asyncio.to_thread(load_reported_run, self._loaded.spec, report, name)
             self._report = report
+            self._things = None
         except UserError as error:
             self._failed = report.run, notice_of(error)
         except Exception as error:  # noqa: BLE001 - otherwise pages would wait for ever
@@ -200,7 +212,7 @@ class States:
         self._changed.set()
         self._changed.clear()
 
-    def _state(self, report: Report, *, ghosts: bool) -> State:
+    def _state(self, report: Report, *, ghosts: bool, things: bool) -> State:
         driver, asking = self._sessions.driver, self._sessions.asking
         recording = report.recording
         away = self._loading or time.monotonic() - self._heard_s > SILENT_S
@@ -216,6 +228,8 @@ class States:
             profile=report.profile,
             bodies=self._bodies(report),
             tool=_rounded(report.tool),
+            gripper=report.gripper and _shown_gripper(report.gripper),
+            things=self._things if things else None,
             ghosts=report.ghosts if ghosts else None,
             belief=tuple(round(share, 4) for share in report.belief) or None,
             alpha=round(report.alpha, 3),
@@ -267,3 +281,8 @@ class States:
 def _rounded(point: tuple[float, float, float]) -> tuple[float, float, float]:
     x, y, z = point
     return round(x, 4), round(y, 4), round(z, 4)
+
+
+def _shown_gripper(gripper: GripperState) -> GripperState:
+    """With its width in tenths of a millimetre."""
+    return gripper.model_copy(update={"width_m": round(gripper.width_m, 4)})

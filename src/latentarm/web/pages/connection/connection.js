@@ -63,11 +63,13 @@ export class Connection extends EventTarget {
    * @param {number[]} u in [-1, 1]
    * @param {import("../inputs/deflection.js").Source} source
    * @param {boolean} latched
+   * @param {"open" | "close" | "toggle" | null} [gripper] what is asked of the gripper
+   * @returns {boolean} whether it went out.
    */
-  sendInput(u, source, latched) {
-    if (!this.fresh || !this.state) return;
+  sendInput(u, source, latched, gripper = null) {
+    if (!this.fresh || !this.state) return false;
     this._sequence += 1;
-    this.send({ type: "input", seq: this._sequence, nonce: this.state.nonce, u, source, latched });
+    return this.send({ type: "input", seq: this._sequence, nonce: this.state.nonce, u, source, latched, gripper });
   }
 
   /** Another person sits here now: another page to the server. @param {string} name */
@@ -106,8 +108,12 @@ export class Connection extends EventTarget {
         this.learning = message;
         break;
       case "state":
-        // Ghosts are left out while they have not changed.
-        this.state = { ...message, ghosts: message.ghosts ?? this.state?.ghosts ?? null };
+        // Ghosts and things are left out while they have not changed.
+        this.state = {
+          ...message,
+          ghosts: message.ghosts ?? this.state?.ghosts ?? null,
+          things: message.things ?? this.state?.things ?? null,
+        };
         break;
       default:
     }

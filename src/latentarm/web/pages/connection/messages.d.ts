@@ -35,6 +35,7 @@ export interface DriverInput {
   u: number[];
   source: "pointer" | "keyboard" | "dpad" | "gamepad" | "switch";
   latched: boolean;
+  gripper?: "open" | "close" | "toggle" | null;
 }
 
 export interface Ghosts {
@@ -42,6 +43,12 @@ export interface Ghosts {
   down: [number, number, number][];
   left: [number, number, number][];
   right: [number, number, number][];
+}
+
+export interface GripperState {
+  width_m: number;
+  holding: boolean;
+  closing: boolean | null;
 }
 
 export interface HandOver {
@@ -183,6 +190,8 @@ export interface State {
   profile: string | null;
   bodies: number[][];
   tool: [number, number, number];
+  gripper: GripperState | null;
+  things: Things | null;
   ghosts: Ghosts | null;
   belief: number[] | null;
   alpha: number;
@@ -196,6 +205,11 @@ export interface State {
   trail: number;
   late_share: number;
   you: boolean;
+}
+
+export interface Things {
+  poses: [number, number, number, number, number, number, number][];
+  grains: number[][];
 }
 
 export interface TrailClear {
@@ -237,6 +251,7 @@ export interface Welcome {
   goals: NamedGoal[];
   end_effector_modes: string[];
   limits: Limits;
+  gripper_width_m: number | null;
 }
 
 export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ResetArm | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment;

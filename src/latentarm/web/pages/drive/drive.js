@@ -3,6 +3,7 @@
 import { attachDpad } from "../inputs/dpad.js";
 import { DriveInput } from "../inputs/drive_input.js";
 import { attachGamepad } from "../inputs/gamepad.js";
+import { attachGripper } from "../inputs/gripper.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
@@ -54,6 +55,12 @@ attachRecording({
   teach: byId("record-teach"),
 }, connection);
 
+const gripper = attachGripper({
+  panel: byId("gripper"),
+  open: byId("gripper-open", HTMLButtonElement),
+  close: byId("gripper-close", HTMLButtonElement),
+  state: byId("gripper-state"),
+}, connection, input, () => status.halted("not_enabled"));
 attachStick(byId("stick"), byId("stick-value"), input, settings);
 attachDpad(byId("dpad"), byId("dpad-help"), input, settings, () => status.halted("not_enabled"));
 const scanner = attachScanning({
@@ -63,11 +70,13 @@ const scanner = attachScanning({
   help: byId("scan-help"),
 }, input, settings, () => {
   const mode = { id: "mode", label: say("scanning.other_mode"), act: modes.next };
-  return input.live ? [...directionChoices(), mode, { id: "stop", label: say("layout.stop"), act: stop }]
+  return input.live ? [...directionChoices(), ...gripper.choices(), mode, { id: "stop", label: say("layout.stop"), act: stop }]
     : [{ id: "enable", label: say("layout.enable"), act: enable }, mode];
 });
-attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes });
-attachGamepad(input, settings, { enable, stop, press: (number, down) => scanner.press(number, down) });
+attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
+attachGamepad(input, settings, {
+  enable, stop, gripper: () => gripper.toggle("gamepad"), press: (number, down) => scanner.press(number, down),
+});
 attachInputChoice(input, settings);
 
 const belief = attachBelief({

@@ -77,6 +77,18 @@ export class DriveInput extends Deflection {
     this._say(why);
   }
 
+  /**
+   * Ask the gripper for something, once, with the deflection as it is.
+   *
+   * @param {"open" | "close" | "toggle"} gripper
+   * @param {Source} source
+   * @returns {boolean} whether it was sent: not before the arm is enabled.
+   */
+  ask(gripper, source) {
+    if (!this.live) return false;
+    return this._connection.sendInput(this._shaped(this.x, this.y), this.source ?? source, this.latched, gripper);
+  }
+
   /** Let go of everything, and send no more until the person enables again. */
   drop() {
     this.neutral();

@@ -1,9 +1,11 @@
-/** A gamepad, or any stick that the browser takes for one: its first two axes drive, its buttons stop and enable. */
+/** A gamepad, or any stick that the browser takes for one: its first two axes drive, its buttons stop, enable and move the gripper. */
 
 /** @import {PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
 const ENABLE_BUTTON = 0;
+/** The first of these that does not stop moves the gripper. */
+const GRIPPER_BUTTONS = [2, 3];
 /** A stick that rests a little off its middle is at rest. */
 const REST = 0.08;
 const IDLE_MS = 100;
@@ -11,7 +13,7 @@ const IDLE_MS = 100;
 /**
  * @param {PersonInput} input
  * @param {Settings} settings
- * @param {{enable: () => void, stop: () => void, press: (number: number, down: boolean) => boolean}} actions
+ * @param {{enable: () => void, stop: () => void, gripper: () => void, press: (number: number, down: boolean) => boolean}} actions
  *   `press` takes a button as a switch, where scanning is on, and says whether it did.
  */
 export function attachGamepad(input, settings, actions) {
@@ -48,6 +50,7 @@ export function attachGamepad(input, settings, actions) {
     if (actions.press(number, isDown) || !isDown) return;
     if (stops === "any" || Number(stops) === number) actions.stop();
     else if (number === ENABLE_BUTTON) actions.enable();
+    else if (number === GRIPPER_BUTTONS.find((one) => one !== Number(stops))) actions.gripper();
   };
 
   window.addEventListener("gamepaddisconnected", (event) => {

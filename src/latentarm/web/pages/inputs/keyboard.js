@@ -1,4 +1,4 @@
-/** Arrows or W A S D drive while they are held; Enter enables; letters and digits can be turned off. */
+/** Arrows or W A S D drive while they are held; Enter enables; G opens and closes the gripper; letters and digits can be turned off. */
 
 import { DIRECTIONS } from "./deflection.js";
 
@@ -14,7 +14,7 @@ const LETTERS = { KeyW: up, KeyS: down, KeyA: left, KeyD: right };
 /**
  * @param {PersonInput} input
  * @param {Settings} settings
- * @param {{enable: () => void, nextMode: () => void, axes: (index: number) => void}} actions
+ * @param {{enable: () => void, nextMode: () => void, axes: (index: number) => void, gripper: () => void}} actions
  */
 export function attachKeyboard(input, settings, actions) {
   /** @type {Map<string, [number, number]>} */
@@ -54,6 +54,7 @@ export function attachKeyboard(input, settings, actions) {
     if (event.code === "Enter" && !isInteractive(event.target)) actions.enable();
     if (!settings.values.shortcuts) return;
     if (event.code === "KeyM") actions.nextMode();
+    if (event.code === "KeyG") actions.gripper();
     const digit = /^Digit([1-9])$/.exec(event.code);
     if (digit) actions.axes(Number(digit[1]) - 1);
   };

@@ -45,10 +45,15 @@ export class Scanner extends EventTarget {
     return this._settings.values.panel === "switch";
   }
 
-  /** @param {Choice[]} choices what there is to choose from now; the light starts again where they are others */
+  /** @param {Choice[]} choices what there is to choose from now; the light starts again where they are others, not where one is only called otherwise */
   offer(choices) {
-    if (choices.map(({ id }) => id).join() === this.choices.map(({ id }) => id).join()) return;
+    const [ids, before] = [choices, this.choices].map((all) => all.map(({ id }) => id).join());
+    const renamed = choices.some(({ label }, index) => label !== this.choices[index]?.label);
     this.choices = choices;
+    if (ids === before) {
+      if (renamed) this._changed();
+      return;
+    }
     this.lit = 0;
     this._changed();
     this._restart();

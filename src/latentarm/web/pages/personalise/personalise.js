@@ -51,8 +51,8 @@ const scanner = attachScanning({
   next: byId("switch-next", HTMLButtonElement),
   help: byId("scan-help"),
 }, input, settings, offered);
-attachKeyboard(input, settings, { enable: answer, nextMode: () => {}, axes: () => {} });
-attachGamepad(input, settings, { enable: answer, stop, press: (number, down) => scanner.press(number, down) });
+attachKeyboard(input, settings, { enable: answer, nextMode: () => {}, axes: () => {}, gripper: () => {} });
+attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, press: (number, down) => scanner.press(number, down) });
 attachInputChoice(input, settings);
 
 /** @returns {Choice[]} */

@@ -27,6 +27,8 @@ export class Drawing {
     this._still = matchMedia("(prefers-reduced-motion: reduce)");
     this._tick = -1;
     this._pose = this._around = "";
+    /** @type {State["things"]} */
+    this._things = null;
     this._first = true;
     // For scripts that measure how long an input takes to be seen.
     this._views.afterFrame.push(() => {
@@ -51,11 +53,12 @@ export class Drawing {
    */
   show(state, paths, pressed, wanted) {
     // An arm at rest needs no new frame; a press or a new belief none that would be in the way of its motion.
-    const pose = JSON.stringify(state.bodies);
+    const pose = JSON.stringify([state.bodies, state.gripper?.width_m]);
     const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted]);
-    const moved = pose !== this._pose;
+    const moved = pose !== this._pose || state.things !== this._things;
     if (!moved && around === this._around) return;
     this._pose = pose;
+    this._things = state.things;
     this._around = around;
     this._tick = state.tick;
     this._scene.take(state, this._views.smooth && !this._still.matches);

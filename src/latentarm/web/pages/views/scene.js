@@ -1,13 +1,15 @@
-/** The arm, its goals, the tool and the trail as one three.js scene; poses glide from one state to the next. */
+/** The arm, what stands about it, its goals, the tool and the trail as one three.js scene; poses glide from one state to the next. */
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
 import { GoalMarkers } from "./goal_markers.js";
-import { meshGeometry, place, shapeOf } from "./shapes.js";
+import { groupOf, meshGeometry, place } from "./shapes.js";
 import { Table } from "./table.js";
+import { Things } from "./things.js";
 import { ToolMarker } from "./tool_marker.js";
 import { Trail } from "./trail.js";
 
+/** @import {State} from "../connection/messages.js" */
 /** @import {SceneDescription} from "./scene_description.js" */
 /** @import {Meshes} from "./shapes.js" */
 
@@ -26,14 +28,14 @@ export class ArmScene {
     this.markers = new GoalMarkers(description.goals);
     this._table = new Table(description.obstacles);
     this._marker = new ToolMarker(this._table.height);
-    this._bodies = description.bodies.map((body) => {
-      const group = new THREE.Group();
-      for (const geom of body.geoms) {
-        const shape = shapeOf(geom, meshes);
-        if (shape) group.add(shape);
-      }
-      return group;
+    this._bodies = description.bodies.map(({ geoms }) => groupOf(geoms, meshes));
+    this._fingers = description.fingers.map(({ body, opens, at, geoms }) => {
+      const finger = { group: groupOf(geoms, meshes), opens: new THREE.Vector3(...opens) };
+      finger.group.position.copy(finger.opens).multiplyScalar(at);
+      this._bodies[body].add(finger.group);
+      return finger;
     });
+    this._things = new Things(description.things, description.grains, meshes);
     this._shadowMaterial = new THREE.MeshLambertMaterial({
       // Behind what it coincides with.
       transparent: true, opacity: 0.4, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
@@ -52,7 +54,7 @@ export class ArmScene {
     const sun = new THREE.DirectionalLight(0xffffff, 1.7);
     sun.position.set(0.6, -0.8, 1.6);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8a98a0, 2.1), sun);
-    this.scene.add(...this._bodies, ...this._table.objects, this._marker.object, ...this.markers.objects, this.trail.object);
+    this.scene.add(...this._bodies, ...this._things.objects, ...this._table.objects, this._marker.object, ...this.markers.objects, this.trail.object);
     this.repaint();
   }
 
@@ -71,9 +73,9 @@ export class ArmScene {
   }
 
   /**
-   * A new state: where the bodies and the tool go from what is shown now.
+   * A new state: where the bodies, the things and the tool go from what is shown now. Fingers are there at once.
    *
-   * @param {{bodies: number[][], tool: [number, number, number]}} state
+   * @param {Pick<State, "bodies" | "tool"> & Partial<Pick<State, "gripper" | "things">>} state
    * @param {boolean} gliding
    */
   take(state, gliding) {
@@ -87,6 +89,8 @@ export class ArmScene {
     // The next frame is seen a little later than it is begun: it already shows some of the motion.
     this._began = now - FRAME_MS;
     this._to = state.bodies;
+    if (state.gripper) this._spread(state.gripper.width_m);
+    this._things.take(state.things ?? null);
     this.trail.extend(this._toolTo);
   }
 
@@ -103,9 +107,15 @@ export class ArmScene {
       body.position.lerpVectors(from.position, body.position, share);
       body.quaternion.slerpQuaternions(from.quaternion, body.quaternion.clone(), share);
     });
+    this._things.advance(share);
     this.tool.lerpVectors(this._toolFrom, this._toolTo, share);
     this._marker.moveTo(this.tool);
     return share < 1;
+  }
+
+  /** Both fingers, with this opening between them. @param {number} width m */
+  _spread(width) {
+    for (const { group, opens } of this._fingers) group.position.copy(opens).multiplyScalar(width / 2);
   }
 
   /** A second arm that can be seen through, or none. @param {number[][] | null} bodies */
@@ -144,6 +154,6 @@ export class ArmScene {
   /** Points that a view must hold. */
   extent() {
     const goals = this.goals.map((goal) => new THREE.Vector3(...goal.position));
-    return [...this._bodies.map((body) => body.position.clone()), ...goals, this.tool.clone()];
+    return [...this._bodies.map((body) => body.position.clone()), ...this._things.extent, ...goals, this.tool.clone()];
   }
 }

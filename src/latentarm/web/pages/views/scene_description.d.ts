@@ -24,8 +24,36 @@ export interface Goal {
   position: Vector;
 }
 
+/** One finger of a gripper, closed; it slides along `opens` on the body of that number. */
+export interface Finger {
+  body: number;
+  opens: Vector;
+  /** How far it is open at first. */
+  at: number;
+  geoms: Geom[];
+}
+
+export interface Thing {
+  name: string;
+  /** At first: x, y, z and a quaternion. */
+  pose: [number, number, number, number, number, number, number];
+  geoms: Geom[];
+}
+
+/** Equal round grains. */
+export interface Grains {
+  name: string;
+  radius: number;
+  rgba: [number, number, number, number];
+  /** At first: x, y, z of one after the other. */
+  positions: number[];
+}
+
 export interface SceneDescription {
   bodies: { name: string; geoms: Geom[] }[];
+  fingers: Finger[];
+  things: Thing[];
+  grains: Grains[];
   goals: Goal[];
   obstacles: Obstacle[];
 }

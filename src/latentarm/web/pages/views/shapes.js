@@ -6,24 +6,42 @@ import { THREE } from "../three/index.js";
 /** @typedef {Map<number, THREE.BufferGeometry>} Meshes geometries by number */
 
 /**
+ * A body: all its geoms together.
+ *
+ * @param {Geom[]} geoms
+ * @param {Meshes} meshes
+ */
+export function groupOf(geoms, meshes) {
+  const group = new THREE.Group();
+  for (const geom of geoms) {
+    const shape = shapeOf(geom, meshes);
+    if (shape) group.add(shape);
+  }
+  return group;
+}
+
+/**
  * One geom, placed in its body.
  *
  * @param {Geom} geom
  * @param {Meshes} meshes
  * @returns {THREE.Mesh | null} null for a kind that is not drawn
  */
-export function shapeOf(geom, meshes) {
+function shapeOf(geom, meshes) {
   const geometry = geometryOf(geom, meshes);
   if (geometry === null) return null;
-  const [red, green, blue, alpha] = geom.rgba;
-  const material = new THREE.MeshLambertMaterial({
+  const mesh = new THREE.Mesh(geometry, materialOf(geom.rgba));
+  place(mesh, [...geom.pos, ...geom.quat]);
+  return mesh;
+}
+
+/** @param {Geom["rgba"]} rgba each in [0, 1] */
+export function materialOf([red, green, blue, alpha]) {
+  return new THREE.MeshLambertMaterial({
     color: new THREE.Color().setRGB(red, green, blue, THREE.SRGBColorSpace),
     transparent: alpha < 1,
     opacity: alpha,
   });
-  const mesh = new THREE.Mesh(geometry, material);
-  place(mesh, [...geom.pos, ...geom.quat]);
-  return mesh;
 }
 
 /**

@@ -1,0 +1,82 @@
+"""Draw ``docs/figures/tasks/<task>.png``: each task with things by latent actions, as a strip of 8 pictures.
+
+``python scripts/film_strips.py dessert`` draws that of one task. Demonstrations and models are those of
+``latentarm reproduce tasks``; the strip shows the first of its runs that succeeds, and says which that is.
+"""
+
+import argparse
+import os
+from dataclasses import replace
+from pathlib import Path
+
+os.environ.setdefault("MUJOCO_GL", "egl")  # before MuJoCo is imported
+
+from latentarm.errors import UserError
+from latentarm.metrics.looks import look_of
+from latentarm.operators.catalogue import PEOPLE
+from latentarm.parallel.grid import run_grid
+from latentarm.simulation.film import Camera, Film, strip
+from latentarm.simulation.task_drive import TaskSetup, drive_task
+from latentarm.studies.streams import generator
+from latentarm.studies.tasks.cell import ShownCell, Trained, TrainingCell, blocks, show, train, training_set
+from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
+from latentarm.studies.tasks.runs import Driver, choice_of
+from latentarm.style import save_figure
+from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
+
+FIGURES = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tasks"
+
+COUNTER = Camera(look_at=(0.45, 0.0, 0.33), distance_m=0.95, azimuth_deg=165.0, elevation_deg=-42.0)
+"""For what stands on the counter, higher and farther apart than plates."""
+
+CAMERAS: dict[str, Camera] = dict.fromkeys(("avoid", "pour", "reach_and_pour", "apple_pie"), COUNTER)
+"""Of tasks that the usual one does not show well."""
+
+
+def learned(task: str, model: str, preset: Preset, seed: int, jobs: int) -> Trained:
+    """The models of the study."""
+    cells = [
+        ShownCell(task, Stream.DEMONSTRATIONS, numbers, seed)
+        for numbers in blocks(preset.demonstrations, preset.block)
+    ]
+    shown = run_grid(show, cells, jobs=jobs, backend="joblib", label=lambda cell: task, bars=True)
+    return train(TrainingCell(task, model, preset.contexts[0], training_set(task, shown), preset, seed))
+
+
+def film(task: str, model: str, preset: Preset, seed: int, jobs: int) -> None:
+    """Drive until one run succeeds, and write its strip.
+
+    Raises:
+        UserError: none succeeds, or nothing can be rendered here.
+    """
+    trained = learned(task, model, preset, seed, jobs)
+    driver, made = Driver(trained.condition, trained.decoders), make_scene_task(task)
+    for number in range(preset.runs):
+        watched = Film()
+        setup = TaskSetup(made, driver.controller(made.robot, number), PEOPLE[preset.person])
+        rng = generator(seed, task, Stream.RUNS, number)
+        trace = drive_task(setup, choice_of(made, number), rng, watched.sees)
+        print(f"{task}, run {number}: {trace.why} after {trace.figures.time_s:.1f} s {trace.ended_in}")
+        if trace.figures.success:
+            times, pictures = watched.frames(CAMERAS.get(task, Camera()))
+            heading = (
+                f"{look_of(task).label} by latent actions ({look_of(model).label}); run {number} of seed"
+                f" {seed}; person, arm and things simulated"
+            )
+            FIGURES.mkdir(parents=True, exist_ok=True)
+            save_figure(strip(heading, times, pictures, trace), FIGURES / f"{task}.png")
+            return
+    raise UserError(f"None of {preset.runs} runs of {task} succeeded: there is no strip of it.")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("tasks", nargs="*", default=[*SCENE_TASKS], help="all where none is named")
+    parser.add_argument("--model", default="homogeneous")
+    parser.add_argument("--demonstrations", type=int, default=PRESETS["paper"].demonstrations)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=-1)
+    given = parser.parse_args()
+    sizes = replace(PRESETS["paper"], demonstrations=given.demonstrations)
+    for chosen in given.tasks:
+        film(chosen, given.model, sizes, given.seed, given.jobs)

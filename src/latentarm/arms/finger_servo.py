@@ -1,0 +1,140 @@
+"""A gripper in MuJoCo: a position servo for each finger, as slow and as weak as it is told to be."""
+
+from collections import deque
+from typing import Final, final
+
+import mujoco
+import numpy as np
+
+from latentarm.arms.simulated_gripper import SimulatedGripper
+from latentarm.robots.gripper import Gripper
+from latentarm.types import FloatArray, GripperReading
+
+FREQUENCY_RAD_S: Final = 300.0
+"""Natural frequency of a finger that only its servo moves, rad/s; it is critically damped."""
+
+_STILL_M_S: Final = 0.002
+"""Fingers slower than this count as stalled, m/s of the opening."""
+
+_STALLED_M: Final = 3e-4
+"""Fingers that stand this far before where their servo pulls them press on something, m each."""
+
+_STALLED_S: Final = 0.05
+"""Fingers that have stalled for so long hold something, s."""
+
+_LEAST_N: Final = 0.2
+"""Fingers that may not press this hard hold nothing, N."""
+
+
+@final
+class FingerServo(SimulatedGripper):
+    """Runs the servos that `add_finger_servos` has added.
+
+    The target of the servo goes to the commanded width at the commanded speed. Where the fingers meet
+    something it waits for them, as far ahead of them as presses them together with the commanded force: each
+    finger with that force, and never with more. What is held this way stays held when commands end, when the
+    arm stops, and when it is disabled.
+
+    A stalled gripper holds something: one that has stood still before the commanded width for 50 ms, while
+    both servos press. This is what it measures, not what is there. Fingers that meet have nothing between
+    them.
+
+    Args:
+        gripper: what its manufacturer states.
+        model: compiled with the servos.
+        data: what moves.
+        first_actuator: id of the first finger's servo; those of the others follow.
+        delay_s: how old every measurement is, s.
+    """
+
+    def __init__(
+        self,
+        gripper: Gripper,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        first_actuator: int,
+        delay_s: float,
+    ) -> None:
+        super().__init__(gripper)
+        self._model, self._data, self._delay_s = model, data, delay_s
+        joints = np.array([model.joint(name).id for name in gripper.joints])
+        self._positions, self._speeds = model.jnt_qposadr[joints], model.jnt_dofadr[joints]
+        self._servos = slice(first_actuator, first_actuator + len(joints))
+        self._stiffness = float(model.actuator_gainprm[first_actuator, 0])
+        self._goal = self._target = gripper.width_m / 2.0
+        self._per_step = 0.0
+        data.qpos[self._positions] = self._target
+        data.ctrl[self._servos] = self._target
+        self._lead = self._moved_s = 0.0
+        self._press(gripper.force_n)
+        self._measured: deque[tuple[float, GripperReading]] = deque()
+        self.note()
+
+    def prepare(self) -> bool:
+        """Set the servos for the next time step; whether those after it need to be set anew."""
+        if not self._stalled():
+            self._moved_s = float(self._data.time)
+        if self._target == self._goal:
+            return False
+        way = np.clip(self._goal - self._target, -self._per_step, self._per_step)
+        width = self._data.qpos[self._positions]
+        # Fingers that are held must not wind their servos up, or they would leap once they are free.
+        self._target = float(np.clip(self._target + way, width.max() - self._lead, width.min() + self._lead))
+        self._data.ctrl[self._servos] = self._target
+        return True
+
+    def note(self) -> None:
+        """Keep what is measured now for as long as readings are delayed."""
+        time_s = float(self._data.time)
+        self._measured.append((time_s, self._reading()))
+        while len(self._measured) > 1 and time_s - self._measured[1][0] >= self._delay_s - 1e-9:
+            self._measured.popleft()
+
+    def measure(self) -> GripperReading:
+        """See the base class."""
+        return self._measured[0][1]
+
+    def halt(self) -> None:
+        """See the base class."""
+        self._goal = self._target
+
+    def _aim(self, width_m: float, speed_m_s: float, force_n: float) -> None:
+        self._goal, self._per_step = width_m / 2.0, speed_m_s / 2.0 * float(self._model.opt.timestep)
+        self._press(force_n)
+
+    def _press(self, force_n: float) -> None:
+        self._lead = force_n / self._stiffness
+        self._model.actuator_forcerange[self._servos] = -force_n, force_n
+
+    def _reading(self) -> GripperReading:
+        holding = self._stalled() and float(self._data.time) - self._moved_s >= _STALLED_S
+        return GripperReading(float(self._data.qpos[self._positions].sum()), holding)
+
+    def _stalled(self) -> bool:
+        """Whether the fingers stand still although their servos press."""
+        pulled = float((self._data.qpos[self._positions] - self._target).min())
+        speed = abs(float(self._data.qvel[self._speeds].sum()))
+        enough = max(min(_STALLED_M, 0.5 * self._lead), 0.5 * _LEAST_N / self._stiffness)
+        return pulled > enough and speed < _STILL_M_S
+
+
+def add_finger_servos(spec: mujoco.MjSpec, gripper: Gripper, moved_kg: FloatArray) -> None:
+    """Add a position servo to each finger.
+
+    Args:
+        spec: gets the servos.
+        gripper: whose fingers these are.
+        moved_kg: what each of its joints moves, kg.
+    """
+    for name, mass in zip(gripper.joints, moved_kg, strict=True):
+        stiffness = FREQUENCY_RAD_S**2 * mass
+        servo = spec.add_actuator(
+            name=f"{name} position",
+            target=name,
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            forcelimited=True,
+            forcerange=[-gripper.force_n, gripper.force_n],
+        )
+        servo.gaintype, servo.biastype = mujoco.mjtGain.mjGAIN_FIXED, mujoco.mjtBias.mjBIAS_AFFINE
+        servo.gainprm[0] = stiffness
+        servo.biasprm[1], servo.biasprm[2] = -stiffness, -2.0 * FREQUENCY_RAD_S * mass

@@ -1,0 +1,1 @@
+"""Tasks with things, in physics: a scripted demonstrator, and simulated people who drive."""

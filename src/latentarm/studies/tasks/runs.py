@@ -1,0 +1,158 @@
+"""One run of a task with things, by the scripted demonstrator or by a simulated person who drives."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from math import isfinite
+from typing import Final, final
+
+from latentarm.control.controller import Controller
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.latent import LatentController
+from latentarm.metrics.looks import look_of
+from latentarm.metrics.task_drives import TaskDrive
+from latentarm.models.kind import Decoder
+from latentarm.robots.robot import Robot
+from latentarm.simulation.demonstrate import Demonstration
+from latentarm.simulation.task_drive import TaskTrace
+from latentarm.tasks.scene_task import SceneTask
+from latentarm.tasks.steps import TaskStep
+
+DEMONSTRATOR: Final = "demonstrator"
+SWITCHING: Final = "end_effector"
+
+
+@final
+@dataclass(frozen=True)
+class Condition:
+    """Who or what moves the arm.
+
+    Attributes:
+        name: `DEMONSTRATOR`, `SWITCHING`, or for a model what its decoder sees, a name of `CONTEXTS`.
+        model: a name of `latentarm.models.catalogue.KINDS`, or None.
+    """
+
+    name: str
+    model: str | None = None
+
+    @property
+    def label(self) -> str:
+        """How tables and figures call it."""
+        return look_of(self.name).label if self.model is None else f"{look_of(self.model).label}, {self.name}"
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Driver:
+    """What a simulated person steers with.
+
+    Attributes:
+        condition: what it is called.
+        decoders: of the models, which take turns; empty for mode switching.
+    """
+
+    condition: Condition
+    decoders: tuple[Decoder, ...] = ()
+
+    def controller(self, robot: Robot, number: int) -> Controller:
+        """The controller of one run.
+
+        Args:
+            robot: the arm.
+            number: of the run.
+        """
+        if not self.decoders:
+            return EndEffectorController(robot)
+        return LatentController(self.decoders[number % len(self.decoders)])
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Run:
+    """How one run went.
+
+    Attributes:
+        number: of the run; the same number is the same scene and the same start in every condition.
+        choice: what was to be done, in the task's words.
+        steps: kinds of the task's steps, in order.
+        done: how many of them were done.
+        success: all of them, and nothing went wrong.
+        ended_in: the step that was not done, in words; "" where all were.
+        why: why the run ended, in a few words.
+        time_s: how long it took, s.
+        figures: what is measured of a drive; None for the demonstrator, who has no stick.
+    """
+
+    number: int
+    choice: str
+    steps: tuple[str, ...]
+    done: int
+    success: bool
+    ended_in: str
+    why: str
+    time_s: float
+    figures: TaskDrive | None = None
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping; what has no value is None."""
+        entries = asdict(self)
+        figures = entries.pop("figures") or {}
+        return {
+            name: None if isinstance(value, float) and not isfinite(value) else value
+            for name, value in (figures | entries).items()
+        }
+
+
+def choice_of(task: SceneTask, number: int) -> int:
+    """What a run is for: the task's choices in turn."""
+    return number % len(task.choices)
+
+
+def shown_run(task: SceneTask, number: int, shown: Demonstration) -> Run:
+    """A run of the scripted demonstrator."""
+    progress = shown.progress
+    return Run(
+        number=number,
+        choice=task.choices[choice_of(task, number)],
+        steps=_kinds(progress.steps),
+        done=progress.done,
+        success=progress.succeeded,
+        ended_in="" if progress.step is None else progress.step.name,
+        why=progress.failure or ("done" if progress.succeeded else "out of time"),
+        time_s=shown.seconds,
+    )
+
+
+def driven_run(task: SceneTask, number: int, trace: TaskTrace) -> Run:
+    """A run in which a simulated person drove."""
+    return Run(
+        number=number,
+        choice=task.choices[trace.choice],
+        steps=_kinds(trace.steps),
+        done=len(trace.done_s),
+        success=trace.figures.success,
+        ended_in=trace.ended_in,
+        why=trace.why,
+        time_s=trace.figures.time_s,
+        figures=trace.figures,
+    )
+
+
+def through(runs: Sequence[Run]) -> list[float]:
+    """Share of the runs that did the first k steps, for k = 0, 1, ... up to all steps."""
+    most = max(len(run.steps) for run in runs)
+    return [
+        sum(run.done >= min(count, len(run.steps)) for run in runs) / len(runs) for count in range(most + 1)
+    ]
+
+
+def step_names(runs: Sequence[Run]) -> list[str]:
+    """The kind of each step, in order; several where they differ from run to run."""
+    most = max(len(run.steps) for run in runs)
+    return [
+        " or ".join(dict.fromkeys(run.steps[index] for run in runs if index < len(run.steps)))
+        for index in range(most)
+    ]
+
+
+def _kinds(steps: Sequence[TaskStep]) -> tuple[str, ...]:
+    return tuple(step.kind for step in steps)

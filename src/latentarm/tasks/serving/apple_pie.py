@@ -1,0 +1,272 @@
+"""Eggs, flour and an apple for a pie: the paper's second user study, in physics."""
+
+from collections.abc import Mapping
+from functools import cached_property, partial
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.scene.containers import bowl, cup
+from latentarm.scene.scene import Scene, SceneState
+from latentarm.scene.thing import Interior, Part, Thing
+from latentarm.tasks.eating.table import at
+from latentarm.tasks.predicates import CarriedOver, Dropped, KnockedOver, Placed, Spilled, Stirred, Within
+from latentarm.tasks.region import Region, anywhere
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.serving.counter import (
+    BOWL_HEIGHT_M,
+    FLOUR,
+    GRAIN_KG,
+    GRAIN_RADIUS_M,
+    GRIP_M,
+    TOP_M,
+    counter,
+    counter_bowl,
+    counter_cup,
+    filled,
+)
+from latentarm.tasks.serving.cup_steps import LIFT_M, at_place, over, pour, take
+from latentarm.tasks.serving.reach_and_pour import start
+from latentarm.tasks.steps import TaskStep, Waypoint
+from latentarm.types import FloatArray, Pose
+
+SHELF_AT_M: Final[Region] = ((0.57, 0.61), (-0.27, -0.23))
+"""Where the middle of the shelf is, x and y."""
+
+BOWL_AT_M: Final[Region] = ((0.55, 0.60), (0.05, 0.09))
+"""Where the bowl stands."""
+
+MIXING_RADIUS_M: Final = 0.075
+"""Of the bowl's floor: an apple and a spoon fit side by side."""
+
+BIN_AT_M: Final[Region] = ((0.50, 0.54), (0.34, 0.38))
+"""Where the recycling bin stands."""
+
+SPOON_AT_M: Final = (0.72, -0.08)
+"""Where the spoon stands in its holder."""
+
+SHELF_M: Final = 0.02
+"""Height of the shelf over the counter."""
+
+APART_M: Final = 0.16
+"""From one thing on the shelf to the next."""
+
+CHOICES: Final = ("eggs", "flour", "apple")
+
+EGGS: Final = 6
+EGG_RADIUS_M: Final = 0.008
+EGG_KG: Final = 0.004
+GRAINS: Final = 30
+
+POURED: Final = 0.8
+"""Share of the eggs or the flour that must end in the bowl."""
+
+SPILLED: Final = 0.25
+"""Share that may be spilled."""
+
+APPLE_RADIUS_M: Final = 0.028
+
+STAND_M: Final = 0.05
+"""How high the apple stands over the shelf: the hand that takes it stays over the cups."""
+
+SPOON_M: Final = 0.17
+"""Length of the spoon."""
+
+STIR_TURNS: Final = 2.0
+STIR_RADIUS_M: Final = 0.05
+STIR_POINTS: Final = 8
+"""Places on the circle that the spoon is led round."""
+
+
+@final
+class ApplePie(SceneTask):
+    """Pour eggs into a bowl and drop their cup into the bin; flour, and put it back; an apple, and stir."""
+
+    @property
+    def name(self) -> str:
+        """``apple_pie``."""
+        return "apple_pie"
+
+    @property
+    def robot(self) -> Robot:
+        """A Panda with its hand."""
+        return self._robot
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """The three parts of the recipe; between them the arm goes back to its start, as in the paper."""
+        return CHOICES
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table."""
+        return (Scene().table,)
+
+    @property
+    def time_limit_s(self) -> float:
+        """Three minutes."""
+        return 180.0
+
+    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
+        """Shelf, bowl and bin anywhere in their regions."""
+        shelf = np.append(anywhere(SHELF_AT_M, rng), TOP_M + SHELF_M)
+        things = _things(shelf, anywhere(BOWL_AT_M, rng), anywhere(BIN_AT_M, rng))
+        grains = (
+            filled("eggs", things["egg cup"], EGGS, EGG_RADIUS_M, EGG_KG, _YOLK),
+            filled("flour", things["flour cup"], GRAINS, GRAIN_RADIUS_M, GRAIN_KG, FLOUR),
+        )
+        rooms = {name: things[name].room for name in ("bowl", "bin", "egg cup", "flour cup")}
+        what = CHOICES[choice]
+        return Beginning(
+            state=start(self.robot, rng),
+            scene=Scene(tuple(things.values()), grains),
+            steps=_STEPS[what](things, rooms),
+            failures=(
+                *(Dropped(name, TOP_M - 0.05) for name in ("egg cup", "flour cup", "apple", "spoon")),
+                *(KnockedOver(name) for name in ("egg cup", "flour cup") if not name.startswith(what[:3])),
+                *(Spilled(name, TOP_M - 0.02, (("bowl", rooms["bowl"]),), SPILLED) for name in CHOICES[:2]),
+            ),
+            goals=(),
+            objects=("egg cup", "flour cup", "apple", "bowl", "bin", "shelf"),
+            text=f"the {what} of the pie",
+        )
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("panda")
+
+
+_YOLK: Final = (0.95, 0.75, 0.3, 1.0)
+
+
+def _things(shelf: FloatArray, bowl_at: FloatArray, bin_at: FloatArray) -> dict[str, Thing]:
+    half = (0.05, APART_M + 0.05, SHELF_M / 2)
+    board = Part("box", half, (0.0, 0.0, -SHELF_M / 2), colour=(0.8, 0.7, 0.55, 1.0))
+    stand = Part("cylinder", (0.02, STAND_M / 2), (0.0, -APART_M, STAND_M / 2), colour=(0.8, 0.7, 0.55, 1.0))
+    cups = {
+        "egg cup": (APART_M, (0.85, 0.85, 0.88, 1.0)),
+        "flour cup": (0.0, (0.45, 0.35, 0.6, 1.0)),
+    }
+    things = [
+        counter(),
+        Thing("shelf", (board, stand), 2.0, at(*shelf), fixed=True),
+        counter_bowl("bowl", *bowl_at, radius_m=MIXING_RADIUS_M),
+        _bin(*bin_at),
+        *_spoon(*SPOON_AT_M),
+        _apple(shelf + np.array([0.0, -APART_M, STAND_M])),
+    ]
+    things += [
+        counter_cup(name, shelf[0], shelf[1] + aside, colour, SHELF_M)
+        for name, (aside, colour) in cups.items()
+    ]
+    return {thing.name: thing for thing in things}
+
+
+def _bin(x: float, y: float) -> Thing:
+    """The recycling bin, which stays where it stands."""
+    made = bowl(0.06, 0.09, (0.25, 0.45, 0.3, 1.0))
+    return Thing("bin", made.parts, 0.5, at(x, y, TOP_M), fixed=True, interior=made.interior)
+
+
+def _apple(place: FloatArray) -> Thing:
+    """An apple that stands on its flat end, its frame in the middle of that."""
+    flesh = Part("sphere", (APPLE_RADIUS_M,), (0.0, 0.0, APPLE_RADIUS_M), colour=(0.8, 0.15, 0.15, 1.0))
+    end = Part("cylinder", (0.014, 0.004), (0.0, 0.0, 0.004), colour=(0.8, 0.15, 0.15, 1.0))
+    return Thing("apple", (flesh, end), 0.10, Pose(place, np.eye(3)), friction=0.9)
+
+
+def _spoon(x: float, y: float) -> tuple[Thing, Thing]:
+    """A spoon that stands in a holder; its frame is in the middle of its lower end."""
+    made = cup(0.016, 0.06, (0.5, 0.5, 0.52, 1.0))
+    holder = Thing("holder", made.parts, 0.3, at(x, y, TOP_M), fixed=True)
+    steel = (0.7, 0.7, 0.72, 1.0)
+    handle = Part("box", (0.008, 0.008, SPOON_M / 2 - 0.008), (0.0, 0.0, SPOON_M / 2 + 0.008), colour=steel)
+    end = Part("sphere", (0.012,), (0.0, 0.0, 0.012), colour=steel)
+    # Its handle is flat to the fingers of a hand that comes from the base.
+    pose = at(x, y, TOP_M + 0.003, float(np.arctan2(y, x)))
+    return holder, Thing("spoon", (handle, end), 0.05, pose, friction=1.0)
+
+
+def _eggs(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> tuple[TaskStep, ...]:
+    return (
+        *take("egg cup", TOP_M + SHELF_M),
+        *pour("egg cup", "eggs", "bowl", rooms["bowl"], POURED, side=1.0),
+        _away("egg cup", rooms["bin"]),
+    )
+
+
+def _flour(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> tuple[TaskStep, ...]:
+    back = things["flour cup"].pose.position
+    return (
+        *take("flour cup", TOP_M + SHELF_M),
+        *pour("flour cup", "flour", "bowl", rooms["bowl"], POURED, side=1.0),
+        _back("flour cup", back),
+    )
+
+
+def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> tuple[TaskStep, ...]:
+    carry = Waypoint(partial(over, thing="bowl", height_m=0.22))
+    drop = Waypoint(partial(over, thing="bowl", height_m=0.10), gripper="open", wait_s=0.8)
+    spoon_up = 0.115
+    circle = _Circle(spoon_up + 0.012)
+    enter = Waypoint(partial(circle.pose, index=0, up_m=BOWL_HEIGHT_M + 0.03))
+    round_it = [Waypoint(partial(circle.pose, index=index)) for index in range(STIR_POINTS)]
+    above = Waypoint(partial(over, thing="bowl", height_m=spoon_up + 0.10))
+    stirred = Stirred("spoon", "bowl", rooms["bowl"], STIR_TURNS)
+    return (
+        *take("apple", TOP_M + SHELF_M + STAND_M, APPLE_RADIUS_M),
+        TaskStep("above", "the apple over the bowl", CarriedOver("apple", "bowl", 0.04), (carry,)),
+        TaskStep("placed", "the apple in the bowl", Within("apple", "bowl", rooms["bowl"]), (carry, drop)),
+        *take("spoon", TOP_M, spoon_up),
+        TaskStep("above", "the spoon over the bowl", CarriedOver("spoon", "bowl", 0.04), (above,)),
+        TaskStep("stirred", "stirred", stirred, (enter, *round_it)),
+    )
+
+
+def _away(cup: str, room: Interior) -> TaskStep:
+    """Drop a cup into the bin."""
+    upright = Waypoint(partial(over, thing="bowl", height_m=0.20), within_rad=0.5)
+    above = Waypoint(partial(over, thing="bin", height_m=0.22))
+    let_go = Waypoint(partial(over, thing="bin", height_m=0.17), gripper="open", wait_s=0.8)
+    return TaskStep("placed", f"the {cup} in the bin", Within(cup, "bin", room), (upright, above, let_go))
+
+
+def _back(cup: str, place: FloatArray) -> TaskStep:
+    """Put a cup back where it came from."""
+    grip = place + np.array([0.0, 0.0, GRIP_M + 0.004])
+    lift = np.array([0.0, 0.0, LIFT_M])
+    upright = Waypoint(partial(over, thing="bowl", height_m=0.20), within_rad=0.5)
+    above = Waypoint(partial(at_place, place=grip + lift))
+    down = Waypoint(partial(at_place, place=grip), within_m=0.012, gripper="open", wait_s=0.8, speed=0.5)
+    clear = Waypoint(partial(at_place, place=grip, back_m=0.08), speed=0.6)
+    done = Placed(cup, place, np.array([0.05, 0.05, 0.015]), let_go=True)
+    return TaskStep("placed", f"the {cup} back on the shelf", done, (upright, above, down, clear))
+
+
+@final
+class _Circle:
+    """Where the hand leads the spoon, from opposite the apple once round the bowl.
+
+    Args:
+        up_m: height of the hand over the bowl's underside, m.
+    """
+
+    def __init__(self, up_m: float) -> None:
+        self._up_m = up_m
+        self._entered_rad = 0.0
+
+    def pose(self, state: SceneState, index: int, up_m: float = 0.0) -> Pose:
+        """A place on or over the circle; where it begins is settled while the spoon is over the bowl."""
+        middle = state.poses["bowl"].position
+        if state.poses["spoon"].position[2] > middle[2] + BOWL_HEIGHT_M:
+            apple = state.poses["apple"].position - middle
+            self._entered_rad = float(np.arctan2(apple[1], apple[0])) + np.pi
+        angle = self._entered_rad + 2.0 * np.pi * index / STIR_POINTS
+        circle = STIR_RADIUS_M * np.array([np.cos(angle), np.sin(angle), 0.0])
+        return at_place(state, middle + circle + np.array([0.0, 0.0, self._up_m + up_m]))
+
+
+_STEPS: Final = {"eggs": _eggs, "flour": _flour, "apple": _apple_steps}

@@ -1,0 +1,121 @@
+"""A hand that goes round a bottle: *Avoid* of the paper's fourth user study, in physics."""
+
+from functools import cached_property, partial
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.scene.scene import Scene, SceneState
+from latentarm.scene.thing import Part, Thing
+from latentarm.tasks.eating.table import at
+from latentarm.tasks.inverse_kinematics import solve
+from latentarm.tasks.predicates import KnockedOver, Pressed
+from latentarm.tasks.region import Region, anywhere
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.serving.counter import POSTURE_RAD, TOP_M, bearing_of, counter, hand
+from latentarm.tasks.steps import TaskStep, Waypoint
+from latentarm.types import FloatArray, Goal, Pose
+
+BOTTLE_AT_M: Final[Region] = ((0.60, 0.66), (-0.05, 0.05))
+"""Where the bottle stands, x and y."""
+
+GOAL_AT_M: Final[Region] = ((0.56, 0.62), (0.24, 0.30))
+"""Where the hand is to go."""
+
+START_AT_M: Final[Region] = ((0.56, 0.62), (-0.30, -0.24))
+"""Where it begins."""
+
+PLANE_M: Final = TOP_M + 0.12
+"""Height of the plane in which the hand moves."""
+
+ROUND_M: Final = 0.16
+"""How far before the bottle's middle the hand goes round."""
+
+TOUCHED_N: Final = 0.5
+"""A touch harder than this has failed."""
+
+_HALF_M: Final = 0.11
+_RADIUS_M: Final = 0.03
+
+
+@final
+class Avoid(SceneTask):
+    """Guide the hand in a plane past a bottle to a place behind it."""
+
+    @property
+    def name(self) -> str:
+        """``avoid``."""
+        return "avoid"
+
+    @property
+    def robot(self) -> Robot:
+        """A Panda with its hand."""
+        return self._robot
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """One place."""
+        return ("place",)
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table; to keep clear of the bottle is the task."""
+        return (Scene().table,)
+
+    @property
+    def time_limit_s(self) -> float:
+        """A minute."""
+        return 60.0
+
+    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
+        """Bottle, start and goal anywhere in their regions."""
+        bottle = _bottle(*anywhere(BOTTLE_AT_M, rng))
+        goal = np.append(anywhere(GOAL_AT_M, rng), PLANE_M)
+        place = np.append(anywhere(START_AT_M, rng), PLANE_M)
+        past = Waypoint(_before_bottle, within_m=0.03, within_rad=0.35)
+        there = Waypoint(partial(_there, place=goal), within_m=0.03, within_rad=0.35)
+        posture = np.array(POSTURE_RAD)
+        wanted = hand(goal, bearing_of(goal))
+        configuration = solve(self.robot, wanted, posture)
+        return Beginning(
+            state=solve(self.robot, hand(place, bearing_of(place)), posture),
+            scene=Scene((counter(), bottle)),
+            steps=(
+                TaskStep("reached", "past the bottle", _past, (past, there)),
+                TaskStep("reached", "at the place", there.reached, (there,)),
+            ),
+            failures=(Pressed("bottle", TOUCHED_N), KnockedOver("bottle")),
+            goals=(Goal("place", configuration, wanted),),
+            objects=("bottle",),
+            text="go round the bottle",
+        )
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("panda")
+
+
+def _bottle(x: float, y: float) -> Thing:
+    """A bottle on the counter, its frame in the middle of its underside."""
+    glass = Part("cylinder", (_RADIUS_M, _HALF_M), (0.0, 0.0, _HALF_M), colour=(0.25, 0.5, 0.35, 1.0))
+    return Thing("bottle", (glass,), mass_kg=0.4, pose=at(x, y, TOP_M))
+
+
+def _past(state: SceneState) -> bool:
+    """Whether the hand is on the far side of the bottle."""
+    return bool(state.tool.position[1] > state.poses["bottle"].position[1])
+
+
+def _before_bottle(state: SceneState) -> Pose:
+    place: FloatArray = state.poses["bottle"].position.copy()
+    bearing = bearing_of(place)
+    place -= ROUND_M * np.array([np.cos(bearing), np.sin(bearing), 0.0])
+    place[2] = PLANE_M
+    return hand(place, bearing)
+
+
+def _there(state: SceneState, place: FloatArray) -> Pose:
+    return hand(place, bearing_of(place))

@@ -1,0 +1,114 @@
+"""The steps that tasks with cups have in common: to take one, to pour it out, to put it down."""
+
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from latentarm.scene.scene import SceneState
+from latentarm.scene.thing import Interior
+from latentarm.tasks.predicates import CarriedOver, Holding, Poured
+from latentarm.tasks.serving.counter import GRIP_M, TOP_M, bearing_of, hand, pouring
+from latentarm.tasks.steps import TaskStep, Waypoint
+from latentarm.types import FloatArray, Pose
+
+BEFORE_M: Final = 0.08
+"""How far before a cup the hand stops first."""
+
+LIFT_M: Final = 0.14
+"""How far a cup is lifted."""
+
+LIFTED_M: Final = 0.10
+"""So far over where it stood it counts as held: over whatever stands next to it."""
+
+POURING_M: Final = 0.14
+"""How far over a bowl's rim the fingers are while they pour."""
+
+POUR_RAD: Final = 1.8
+"""How far a cup is tilted to be emptied."""
+
+
+def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[TaskStep, ...]:
+    """Reach for a cup, close the fingers about it, lift it.
+
+    Args:
+        cup: its name.
+        stands_m: height of its underside, m.
+        grip_m: height over its underside at which it is taken, m.
+    """
+    before = Waypoint(partial(_at, cup=cup, back_m=BEFORE_M, up_m=grip_m), gripper="open")
+    about = Waypoint(
+        partial(_at, cup=cup, back_m=0.0, up_m=grip_m), within_m=0.007, gripper="close", wait_s=1.2, speed=0.6
+    )
+    lifted = Waypoint(partial(_lifted, cup=cup, height_m=stands_m + grip_m + LIFT_M))
+    return (
+        TaskStep("reached", f"at the {cup}", before.reached, (before,)),
+        TaskStep("holding", f"holding the {cup}", Holding(cup, stands_m + LIFTED_M), (before, about, lifted)),
+    )
+
+
+def pour(
+    cup: str,
+    grains: str,
+    bowl: str,
+    interior: Interior,
+    share: float,
+    side: float,
+    tip_speed: float = 0.5,
+    leaving: tuple[str, float] | None = None,
+) -> tuple[TaskStep, ...]:
+    """Carry a cup over a bowl, and pour it out.
+
+    Args:
+        cup: its name.
+        grains: what is in it.
+        bowl: where that goes.
+        interior: the room in the bowl.
+        share: of the grains that must be in the bowl, in (0, 1].
+        side: 1 to pour to the left, -1 to the right.
+        tip_speed: how fast the cup is tipped at last, as a share of the person's usual speed.
+        leaving: bowl and side that were poured to before: first the cup is set upright there.
+    """
+    upright = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.05 * side))
+    half = Waypoint(partial(_over, bowl=bowl, tilt_rad=0.6 * POUR_RAD * side), speed=0.7)
+    tilted = Waypoint(partial(_over, bowl=bowl, tilt_rad=POUR_RAD * side), wait_s=1.0, speed=tip_speed)
+    before = ()
+    if leaving is not None:
+        before = (Waypoint(partial(_over, bowl=leaving[0], tilt_rad=0.05 * leaving[1])),)
+    enough = Poured(grains, bowl, interior, share)
+    return (
+        TaskStep("above", f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (*before, upright)),
+        TaskStep("poured", f"{grains} in the {bowl}", enough, (upright, half, tilted)),
+    )
+
+
+def _at(state: SceneState, cup: str, back_m: float, up_m: float) -> Pose:
+    """The hand at a cup, or a little before it."""
+    place = state.poses[cup].position
+    bearing = bearing_of(place)
+    out = np.array([np.cos(bearing), np.sin(bearing), 0.0])
+    return hand(place - back_m * out + np.array([0.0, 0.0, up_m + 0.5 * back_m]), bearing)
+
+
+def _lifted(state: SceneState, cup: str, height_m: float) -> Pose:
+    """The hand at a height over the base, wherever the cup is."""
+    place = state.poses[cup].position.copy()
+    place[2] = height_m
+    return hand(place, bearing_of(place))
+
+
+def _over(state: SceneState, bowl: str, tilt_rad: float) -> Pose:
+    return pouring(state.poses[bowl].position, tilt_rad, POURING_M)
+
+
+def over(state: SceneState, thing: str, height_m: float) -> Pose:
+    """The hand upright over a thing that stands on the counter."""
+    place = state.poses[thing].position + np.array([0.0, 0.0, height_m])
+    return hand(place, bearing_of(place))
+
+
+def at_place(state: SceneState, place: FloatArray, back_m: float = 0.0) -> Pose:
+    """The hand over a place of the counter, or a little before it."""
+    bearing = bearing_of(place)
+    out = np.array([np.cos(bearing), np.sin(bearing), 0.0])
+    return hand(place - back_m * out + np.array([0.0, 0.0, 0.5 * back_m]), bearing)

@@ -1,0 +1,105 @@
+"""A cup that is shared between two bowls: *Pour* of the paper's fourth user study, in physics."""
+
+from functools import cached_property
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.scene.scene import Scene
+from latentarm.tasks.predicates import Dropped, Spilled
+from latentarm.tasks.region import Region, anywhere
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.serving.counter import (
+    FLOUR,
+    GRAIN_KG,
+    TOP_M,
+    counter,
+    counter_bowl,
+    counter_cup,
+    filled,
+)
+from latentarm.tasks.serving.cup_steps import pour, take
+from latentarm.tasks.serving.reach_and_pour import start
+
+CUP_AT_M: Final[Region] = ((0.54, 0.58), (-0.02, 0.02))
+"""Where the cup stands, x and y."""
+
+LEFT_AT_M: Final[Region] = ((0.54, 0.58), (0.20, 0.24))
+"""Where the left bowl stands."""
+
+RIGHT_AT_M: Final[Region] = ((0.54, 0.58), (-0.24, -0.20))
+"""Where the right bowl stands."""
+
+GRAINS: Final = 24
+
+LARGE_M: Final = 0.0065
+"""Radius of a grain: they fill the cup, or all of them would leave it at once."""
+
+SHARE: Final = 0.25
+"""Share of the grains that must end in each bowl."""
+
+SPILLED: Final = 0.25
+"""Share that may be spilled."""
+
+TIP_SPEED: Final = 0.2
+"""How fast the cup is tipped, as a share of the person's usual speed: some must stay in it."""
+
+
+@final
+class Pour(SceneTask):
+    """Take a cup, pour some of it into the left bowl and some into the right one."""
+
+    @property
+    def name(self) -> str:
+        """``pour``."""
+        return "pour"
+
+    @property
+    def robot(self) -> Robot:
+        """A Panda with its hand."""
+        return self._robot
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """One cup."""
+        return ("cup",)
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table; the counter and what stands on it may be touched."""
+        return (Scene().table,)
+
+    @property
+    def time_limit_s(self) -> float:
+        """Two minutes."""
+        return 120.0
+
+    def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
+        """Cup and bowls anywhere in their regions of the counter."""
+        cup = counter_cup("cup", *anywhere(CUP_AT_M, rng), colour=(0.36, 0.55, 0.75, 1.0))
+        left = counter_bowl("left bowl", *anywhere(LEFT_AT_M, rng))
+        right = counter_bowl("right bowl", *anywhere(RIGHT_AT_M, rng))
+        rooms = tuple((bowl.name, bowl.room) for bowl in (left, right))
+        grains = filled("grains", cup, GRAINS, LARGE_M, GRAIN_KG, FLOUR)
+        return Beginning(
+            state=start(self.robot, rng),
+            scene=Scene((counter(), cup, left, right), (grains,)),
+            steps=(
+                *take("cup"),
+                *pour("cup", "grains", "left bowl", left.room, SHARE, side=1.0, tip_speed=TIP_SPEED),
+                *pour(
+                    "cup", "grains", "right bowl", right.room, SHARE, side=-1.0, leaving=("left bowl", 1.0)
+                ),
+            ),
+            failures=(Dropped("cup", TOP_M - 0.05), Spilled("grains", TOP_M - 0.02, rooms, SPILLED)),
+            goals=(),
+            objects=("cup", "left bowl", "right bowl"),
+            text="share the cup between the bowls",
+        )
+
+    @cached_property
+    def _robot(self) -> Robot:
+        return load_robot("panda")

@@ -1,0 +1,35 @@
+"""Where the things about a simulated arm are, for pages."""
+
+from typing import Final, final
+
+from latentarm.arms.contract import Arm, SceneArm
+from latentarm.scene.scene import Scene
+from latentarm.web.protocol.channel import Things
+from latentarm.web.protocol.things import whereabouts
+
+_EVERY: Final = 4
+"""Ticks from one look to the next: 25 looks a second, and what moves is drawn gliding in between."""
+
+
+@final
+class Whereabouts:
+    """Looks at the things about an arm every few ticks.
+
+    Args:
+        scene: what stands about it; None where nothing does.
+        arm: nothing is seen where it does not know of things.
+    """
+
+    def __init__(self, scene: Scene | None, arm: Arm) -> None:
+        self._scene = scene
+        self._arm = arm if isinstance(arm, SceneArm) else None
+
+    def look(self, tick: int) -> Things | None:
+        """Where everything is, or None where this is not a tick to look in.
+
+        Args:
+            tick: counts the ticks.
+        """
+        if self._scene is None or self._arm is None or tick % _EVERY:
+            return None
+        return whereabouts(self._scene, self._arm.scene_state())

@@ -1,0 +1,95 @@
+/** The gripper: two buttons, what every other way of driving asks of it, and its state in words. */
+
+import { setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {GripperState} from "../connection/messages.js" */
+/** @import {Source} from "./deflection.js" */
+/** @import {DriveInput} from "./drive_input.js" */
+/** @import {Choice} from "./scanner.js" */
+
+/** Narrower than this share of its opening it is closed, and wider than the rest of it, open. */
+const END_SHARE = 0.03;
+/** The state is said once it has not changed for this long, ms: screen readers would announce every millimetre. */
+const SETTLE_MS = 250;
+
+/**
+ * Whether the gripper is closed or on its way: then the next thing to do is to open it.
+ *
+ * @param {GripperState} gripper
+ * @param {number} widest m
+ */
+export function isClosed({ width_m, holding, closing }, widest) {
+  return closing ?? (holding || width_m < widest / 2);
+}
+
+/**
+ * Open, closed or holding something, and how wide.
+ *
+ * @param {GripperState | null} gripper
+ * @param {number} widest m
+ */
+export function gripperWords(gripper, widest) {
+  if (gripper === null) return say("gripper.unknown");
+  const width = { millimetres: Math.round(1000 * gripper.width_m) };
+  if (gripper.holding) return say("gripper.holding", width);
+  if (gripper.width_m >= (1 - END_SHARE) * widest) return say("gripper.is_open", width);
+  return say(gripper.width_m <= END_SHARE * widest ? "gripper.is_closed" : "gripper.is_between", width);
+}
+
+/**
+ * @param {{panel: HTMLElement, open: HTMLButtonElement, close: HTMLButtonElement, state: HTMLElement}} parts
+ * @param {Connection} connection
+ * @param {DriveInput} input
+ * @param {() => void} refused said when the gripper cannot be moved yet
+ */
+export function attachGripper(parts, connection, input, refused) {
+  let wanted = "";
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+
+  /** How wide it opens, m, or null where there is no gripper. */
+  const widest = () => connection.welcome?.gripper_width_m ?? null;
+  const ask = (/** @type {"open" | "close" | "toggle"} */ what, /** @type {Source} */ source) => {
+    if (widest() !== null && !input.ask(what, source)) refused();
+  };
+  for (const what of /** @type {("open" | "close")[]} */ (["open", "close"])) {
+    const button = parts[what];
+    button.addEventListener("click", () => ask(what, "pointer"));
+    // A second finger, while the first holds the stick, makes no click.
+    button.addEventListener("pointerup", ({ isPrimary, clientX, clientY }) => {
+      if (!isPrimary && button.contains(document.elementFromPoint(clientX, clientY))) ask(what, "pointer");
+    });
+  }
+  connection.addEventListener("welcome", () => {
+    parts.panel.hidden = widest() === null;
+  });
+  connection.addEventListener("state", () => {
+    const [{ state }, most] = [connection, widest()];
+    if (!state || most === null) return;
+    const words = gripperWords(state.gripper, most);
+    if (words === wanted) return;
+    wanted = words;
+    clearTimeout(timer);
+    timer = setTimeout(() => setText(parts.state, wanted), SETTLE_MS);
+  });
+
+  return {
+    /** The other way than it was last told, by a key or a gamepad's button. @param {Source} source */
+    toggle(source) {
+      ask("toggle", source);
+    },
+    /** Its place among the choices of a switch, which says what it will do. @returns {Choice[]} */
+    choices() {
+      const [{ state }, most] = [connection, widest()];
+      if (!state?.gripper || most === null) return [];
+      const closed = isClosed(state.gripper, most);
+      return [{
+        id: "gripper",
+        label: say(closed ? "gripper.open" : "gripper.close"),
+        act: () => ask(closed ? "open" : "close", "switch"),
+      }];
+    },
+  };
+}

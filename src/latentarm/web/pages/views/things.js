@@ -1,0 +1,62 @@
+/** What stands about the arm: things, which glide from one state to the next, and grains. */
+
+import { THREE } from "../three/index.js";
+import { groupOf, materialOf, place } from "./shapes.js";
+
+/** @import {State} from "../connection/messages.js" */
+/** @import {Grains, Thing} from "./scene_description.js" */
+/** @import {Meshes} from "./shapes.js" */
+
+export class Things {
+  /** @param {Thing[]} things @param {Grains[]} grains @param {Meshes} meshes */
+  constructor(things, grains, meshes) {
+    this._things = things.map(({ pose, geoms }) => {
+      const group = groupOf(geoms, meshes);
+      place(group, pose);
+      return group;
+    });
+    this._grains = grains.map(({ radius, rgba, positions }) => {
+      const balls = new THREE.InstancedMesh(new THREE.SphereGeometry(radius, 8, 6), materialOf(rgba), positions.length / 3);
+      // They may go anywhere from where they are at first.
+      balls.frustumCulled = false;
+      scatter(balls, positions);
+      return balls;
+    });
+    this.objects = [...this._things, ...this._grains];
+    const boxes = this._things.map((thing) => new THREE.Box3().setFromObject(thing));
+    /** Corners of what there is at first: a thing that falls off the table does not take the view along. */
+    this.extent = boxes.flatMap(({ min, max }) => [min, max]);
+    /** @type {{position: THREE.Vector3, quaternion: THREE.Quaternion}[]} */
+    this._from = [];
+    /** @type {State["things"]} */
+    this._to = null;
+  }
+
+  /** Where things go from what is shown now; null for no news. @param {State["things"]} things */
+  take(things) {
+    if (things === null) return;
+    this._from = this._things.map(({ position, quaternion }) => ({ position: position.clone(), quaternion: quaternion.clone() }));
+    if (things !== this._to) this._grains.forEach((balls, index) => scatter(balls, things.grains[index]));
+    this._to = things;
+  }
+
+  /** Show them so far on their way. @param {number} share in [0, 1] */
+  advance(share) {
+    this._to?.poses.forEach((pose, index) => {
+      const [thing, from] = [this._things[index], this._from[index]];
+      place(thing, pose);
+      if (share === 1) return;
+      thing.position.lerpVectors(from.position, thing.position, share);
+      thing.quaternion.slerpQuaternions(from.quaternion, thing.quaternion.clone(), share);
+    });
+  }
+}
+
+/** @param {THREE.InstancedMesh} balls @param {number[]} positions x, y, z of one after the other, m */
+function scatter(balls, positions) {
+  const at = new THREE.Matrix4();
+  for (let grain = 0; grain < balls.count; grain += 1) {
+    balls.setMatrixAt(grain, at.makeTranslation(positions[3 * grain], positions[3 * grain + 1], positions[3 * grain + 2]));
+  }
+  balls.instanceMatrix.needsUpdate = true;
+}

@@ -1,0 +1,83 @@
+"""What stands about the arm, as pages draw it: the shapes once, and where they are again and again."""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from latentarm.scene.scene import Scene, SceneState
+from latentarm.scene.thing import Grains, Part
+from latentarm.types import FloatArray, Pose
+from latentarm.web.protocol.channel import PoseRow, Things
+
+_DIGITS: Final = 4
+"""Places are sent to a tenth of a millimetre, so that what rests need not be sent again."""
+
+_SIZES: Final = 3
+"""Numbers in the size of a geom, as MuJoCo has them."""
+
+
+def described(scene: Scene) -> dict[str, object]:
+    """The part of ``/scene.json`` that is about things.
+
+    Args:
+        scene: what stands about the arm when it begins.
+
+    Returns:
+        ``things``, each with its name, its ``pose`` at first, and ``geoms`` like those of the robot's bodies;
+        and ``grains``, each kind with its name, ``radius`` (m), ``rgba`` and first ``positions`` (m).
+    """
+    first = _rows([thing.pose for thing in scene.things])
+    return {
+        "things": [
+            {"name": thing.name, "pose": pose, "geoms": [_geom(part) for part in thing.parts]}
+            for thing, pose in zip(scene.things, first, strict=True)
+        ],
+        "grains": [_grains(one) for one in scene.grains],
+    }
+
+
+def whereabouts(scene: Scene, state: SceneState) -> Things:
+    """Where everything is, in the order of the scene.
+
+    Args:
+        scene: says the order.
+        state: of this moment.
+    """
+    return Things(
+        poses=tuple(_rows([state.poses[thing.name] for thing in scene.things])),
+        grains=tuple(tuple(_rounded(state.grains[one.name].ravel())) for one in scene.grains),
+    )
+
+
+def _geom(part: Part) -> dict[str, object]:
+    return {
+        "type": part.shape,
+        "size": [*part.size, *([0.0] * (_SIZES - len(part.size)))],
+        "pos": list(part.position),
+        "quat": list(part.quaternion),
+        "rgba": list(part.colour),
+        "mesh": None,
+    }
+
+
+def _grains(grains: Grains) -> dict[str, object]:
+    return {
+        "name": grains.name,
+        "radius": grains.radius_m,
+        "rgba": list(grains.colour),
+        "positions": _rounded(grains.positions.ravel()),
+    }
+
+
+def _rows(poses: Sequence[Pose]) -> list[PoseRow]:
+    if not poses:
+        return []
+    turned = Rotation.from_matrix(np.array([pose.rotation for pose in poses])).as_quat(scalar_first=True)
+    placed = np.concatenate([[pose.position for pose in poses], turned], axis=1)
+    return [(x, y, z, w, i, j, k) for x, y, z, w, i, j, k in np.round(placed, _DIGITS).tolist()]
+
+
+def _rounded(values: FloatArray) -> list[float]:
+    return np.round(values, _DIGITS).tolist()

@@ -1,0 +1,118 @@
+"""Steps of a task with things: they tick off in order, are tried again, and end with a failure."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from latentarm.tasks.steps import RETRY_S, Progress, TaskStep, Waypoint
+from scene_states import at, standing
+
+TURN_30 = np.array(
+    [[np.cos(np.pi / 6), -np.sin(np.pi / 6), 0], [np.sin(np.pi / 6), np.cos(np.pi / 6), 0], [0, 0, 1]]
+)
+
+
+def point(x, **changes):
+    return Waypoint(lambda state: at(x=x), **changes)
+
+
+def done_when_gripped(name, *waypoints):
+    """A step that is done where the state's gripped things name it."""
+    return TaskStep("holding", name, lambda state: name in state.gripped, waypoints or (point(0.0),))
+
+
+def now(time_s=0.0, x=99.0, *gripped, **changes):
+    return standing(time_s, at(x=x), gripped=frozenset(gripped), **changes)
+
+
+def test_a_waypoint_is_reached_near_it_and_turned_nearly_alike():
+    waypoint = point(0.0, within_m=0.02, within_rad=np.deg2rad(15.0))
+    assert waypoint.reached(standing(tool=at(x=0.019)))
+    assert not waypoint.reached(standing(tool=at(x=0.021)))
+    assert not waypoint.reached(standing(tool=at(rotation=TURN_30)))
+    assert waypoint.missed_by(standing(tool=at(rotation=TURN_30))) == pytest.approx(2.0)
+    assert waypoint.missed_by(standing(tool=at(x=0.06, rotation=TURN_30))) == pytest.approx(3.0)
+
+
+def test_a_step_counts_only_in_its_turn():
+    progress = Progress([done_when_gripped("lid"), done_when_gripped("cup")])
+    progress.update(now(0.0, 99.0, "cup"))
+    assert (progress.done, progress.step.name) == (0, "lid")
+    progress.update(now(0.1, 99.0, "lid"))
+    assert (progress.done, progress.share, progress.step.name) == (1, 0.5, "cup")
+    progress.update(now(0.2, 99.0, "cup"))
+    assert progress.succeeded
+    assert progress.step is None
+    assert progress.waypoint is None
+    assert progress.asks is None
+
+
+def test_steps_that_are_done_at_once_tick_off_at_once():
+    progress = Progress([done_when_gripped("lid"), done_when_gripped("cup"), done_when_gripped("jar")])
+    progress.update(now(0.0, 99.0, "lid", "cup"))
+    assert progress.done == 2
+
+
+def test_waypoints_follow_each_other_and_the_person_waits_where_they_are_told_to():
+    first, second = point(0.0, wait_s=0.5, gripper="close"), point(1.0)
+    progress = Progress([done_when_gripped("cup", first, second)])
+    progress.update(now(0.0))
+    assert (progress.waypoint, progress.waits, progress.asks) == (first, False, None)
+    progress.update(now(1.0, 0.0))
+    assert (progress.waypoint, progress.waits, progress.asks) == (first, True, "close")
+    progress.update(now(1.4, 99.0))
+    assert (progress.waypoint, progress.waits) == (first, True), "a push does not end the wait"
+    progress.update(now(1.5, 99.0))
+    assert (progress.waypoint, progress.waits, progress.asks) == (second, False, None)
+
+
+@pytest.mark.parametrize("wait_s", [0.0, 3.0])
+def test_a_step_that_is_not_done_after_its_last_waypoint_is_tried_again(wait_s):
+    first, last = point(0.0), point(1.0, wait_s=wait_s)
+    progress = Progress([done_when_gripped("cup", first, last)])
+    progress.update(now(0.0, 0.0))
+    progress.update(now(1.0, 1.0))
+    patience_s = max(wait_s, RETRY_S)
+    progress.update(now(1.0 + 0.9 * patience_s, 1.0))
+    assert (progress.waypoint, progress.tries) == (last, 0)
+    progress.update(now(1.0 + patience_s, 1.0))
+    assert (progress.waypoint, progress.waits, progress.tries) == (first, False, 1)
+
+
+def test_a_wait_is_over_when_the_step_is_done():
+    progress = Progress(
+        [done_when_gripped("lid", point(0.0, wait_s=9.0)), done_when_gripped("cup", point(1.0))]
+    )
+    progress.update(now(0.0, 0.0))
+    assert progress.waits
+    progress.update(now(0.1, 0.0, "lid"))
+    assert (progress.step.name, progress.waits) == ("cup", False)
+
+
+def test_what_goes_wrong_is_said_and_stays():
+    def fallen(state):
+        return "knocked over the cup" if state.tool.position[0] > 5.0 else None
+
+    progress = Progress([done_when_gripped("cup")], [lambda state: None, fallen])
+    progress.update(now(0.0, 0.0))
+    assert progress.failure is None
+    progress.update(now(0.1, 9.0))
+    progress.update(now(0.2, 0.0, "cup"))
+    assert progress.failure == "knocked over the cup"
+    assert (progress.done, progress.succeeded) == (1, False)
+
+
+@given(st.lists(st.tuples(st.sets(st.sampled_from("abc")), st.sampled_from([0.0, 1.0, 99.0])), max_size=30))
+def test_steps_are_never_undone_and_success_is_all_of_them_in_order(course):
+    names = "abc"
+    progress = Progress([done_when_gripped(name, point(0.0), point(1.0)) for name in names])
+    expected = 0
+    for tick, (gripped, x) in enumerate(course):
+        before = progress.done
+        progress.update(now(0.5 * tick, x, *gripped))
+        while expected < len(names) and names[expected] in gripped:
+            expected += 1
+        assert before <= progress.done == expected
+        assert progress.succeeded == (expected == len(names))
+        assert (progress.waypoint is None) == progress.succeeded

@@ -1,0 +1,112 @@
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+
+import { attachGripper, gripperWords } from "#pages/inputs/gripper.js";
+import { event, FakeElement, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
+
+const WIDE = 0.08;
+
+let fakes;
+let parts;
+let connection;
+let asked;
+let refused;
+let live;
+let gripper;
+
+/** What the server says: whether there is a gripper, and how it is. */
+function hears(state, widest = WIDE) {
+  connection.welcome = welcomeOf({ gripper_width_m: widest });
+  connection.dispatchEvent(new Event("welcome"));
+  connection.state = stateOf({ gripper: state });
+  connection.dispatchEvent(new Event("state"));
+}
+
+const at = (width_m, fields = {}) => ({ width_m, holding: false, closing: null, ...fields });
+
+beforeEach(() => {
+  fakes = newBrowser();
+  parts = { panel: new FakeElement(), open: new FakeElement(), close: new FakeElement(), state: new FakeElement() };
+  parts.panel.hidden = true;
+  connection = Object.assign(new EventTarget(), { welcome: null, state: null });
+  asked = [];
+  refused = 0;
+  live = true;
+  const input = { ask: (what, source) => live && asked.push([what, source]) > 0 };
+  gripper = attachGripper(parts, connection, input, () => (refused += 1));
+});
+
+test("without a gripper nothing is shown, offered or asked", () => {
+  hears(null, null);
+  gripper.toggle("keyboard");
+  assert.ok(parts.panel.hidden);
+  assert.deepEqual(gripper.choices(), []);
+  assert.deepEqual([asked, refused], [[], 0]);
+});
+
+test("buttons say what they ask, keys ask for the other way", () => {
+  hears(at(WIDE));
+  assert.ok(!parts.panel.hidden);
+  parts.close.dispatchEvent(event("click"));
+  parts.open.dispatchEvent(event("click"));
+  gripper.toggle("gamepad");
+  assert.deepEqual(asked, [["close", "pointer"], ["open", "pointer"], ["toggle", "gamepad"]]);
+});
+
+test("a second finger presses a button too, unless it slides off it; the first one clicks", () => {
+  hears(at(WIDE));
+  parts.close.contains = (element) => element === parts.close;
+  const lift = (under, isPrimary) => {
+    fakes.document.elementFromPoint = () => under;
+    parts.close.dispatchEvent(event("pointerup", { isPrimary, clientX: 1, clientY: 1 }));
+  };
+  lift(parts.close, true);
+  lift(parts.open, false);
+  assert.deepEqual(asked, []);
+  lift(parts.close, false);
+  assert.deepEqual(asked, [["close", "pointer"]]);
+});
+
+test("the person hears why it does not move before the arm is enabled", () => {
+  hears(at(WIDE));
+  live = false;
+  gripper.toggle("keyboard");
+  assert.deepEqual([asked, refused], [[], 1]);
+});
+
+for (const [state, label, ask] of [
+  [at(WIDE), "Close gripper", "close"],
+  [at(0), "Open gripper", "open"],
+  [at(0.06, { holding: true }), "Open gripper", "open"],
+  [at(WIDE, { closing: true }), "Open gripper", "open"],
+  [at(0, { closing: false }), "Close gripper", "close"],
+]) {
+  test(`a switch is offered what comes next: ${JSON.stringify(state)}`, () => {
+    hears(state);
+    const [choice, ...more] = gripper.choices();
+    assert.deepEqual([choice.label, more], [label, []]);
+    choice.act();
+    assert.deepEqual(asked, [[ask, "switch"]]);
+  });
+}
+
+for (const [state, words] of [
+  [at(0.0799), "Open, 80 mm."],
+  [at(0.05), "Partly open, 50 mm."],
+  [at(0.0005), "Closed, 1 mm."],
+  [at(0.0621, { holding: true }), "Holding something, 62 mm."],
+  [null, "The opening is not known."],
+]) {
+  test(`its state in words: ${words}`, () => assert.equal(gripperWords(state, WIDE), words));
+}
+
+test("the state is said when it has settled, and not at every millimetre", () => {
+  const said = [];
+  Object.defineProperty(parts.state, "textContent", { set: (text) => said.push(text), get: () => said.at(-1) ?? "" });
+  for (let width = WIDE; width > 0.05; width -= 0.002) {
+    hears(at(width));
+    pass(20);
+  }
+  pass(300);
+  assert.deepEqual(said, ["Partly open, 52 mm."]);
+});

@@ -1,0 +1,108 @@
+"""Things about the arm reach the pages: their shapes once, their places while they move."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from latentarm.arms.catalogue import make_scene_arm
+from latentarm.arms.kinematic import KinematicArm
+from latentarm.errors import UserError
+from latentarm.robots.catalogue import load_robot
+from latentarm.scene.scene import Scene, SceneState
+from latentarm.scene.thing import Grains, Part, Thing
+from latentarm.tasks.place import ScenePlace
+from latentarm.types import Pose
+from latentarm.web.arm_process.drive_setup import Spec, load_setup
+from latentarm.web.arm_process.whereabouts import Whereabouts
+from latentarm.web.protocol.channel import Things
+from latentarm.web.protocol.scene import drawable
+from latentarm.web.protocol.things import described, whereabouts
+from latentarm.web.server.states import PageMemory
+
+UPRIGHT = np.eye(3)
+ON_ITS_SIDE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+CUP = Thing(
+    "cup",
+    (Part("cylinder", (0.03, 0.05)), Part("box", (0.01, 0.01, 0.02), (0.04, 0.0, 0.0))),
+    0.1,
+    Pose(np.zeros(3), UPRIGHT),
+)
+RICE = Grains("rice", 0.004, 1e-4, np.array([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]]))
+SCENE = Scene((CUP, replace(CUP, name="bowl")), (RICE,))
+
+
+def state(cup: Pose) -> SceneState:
+    return SceneState(
+        time_s=0.0,
+        tool=cup,
+        poses={"bowl": Pose(np.ones(3), UPRIGHT), "cup": cup},
+        speed_m_s={},
+        stabbed=frozenset(),
+        gripped=frozenset(),
+        bonds=frozenset(),
+        grains={"rice": RICE.positions + 1.0},
+        force_n={},
+    )
+
+
+def test_a_thing_is_described_by_its_parts_as_a_body_by_its_geoms():
+    about = json.loads(json.dumps(described(SCENE)))
+    cup, bowl = about["things"]
+    assert (cup["name"], bowl["name"]) == ("cup", "bowl")
+    assert [geom["type"] for geom in cup["geoms"]] == ["cylinder", "box"]
+    assert [geom["size"] for geom in cup["geoms"]] == [[0.03, 0.05, 0.0], [0.01, 0.01, 0.02]]
+    assert cup["pose"] == [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+    (rice,) = about["grains"]
+    assert rice["positions"] == [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+
+
+def test_places_are_in_the_order_of_the_scene():
+    found = whereabouts(SCENE, state(Pose(np.array([0.12347, 0.0, 0.5]), ON_ITS_SIDE)))
+    cup, bowl = found.poses
+    assert cup == pytest.approx((0.1235, 0.0, 0.5, np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0), abs=1e-4)
+    assert bowl[:3] == (1.0, 1.0, 1.0)
+    assert found.grains == ((1.1, 1.2, 1.3, 1.4, 1.5, 1.6),)
+
+
+def test_a_page_is_sent_what_has_moved_since_it_was_last_sent_something():
+    first, second = PageMemory(), PageMemory()
+    here = whereabouts(SCENE, state(CUP.pose))
+    there = whereabouts(SCENE, state(Pose(np.array([0.0, 0.0, 0.1]), UPRIGHT)))
+    assert [first.new_things(one) for one in (here, here, Things(**dict(here)), there, here)] == [
+        True,
+        False,
+        False,
+        True,
+        True,
+    ]
+    assert second.new_things(here)
+
+
+def test_the_fingers_of_a_gripper_open_away_from_each_other():
+    robot = load_robot("panda")
+    scene = drawable(ScenePlace(robot, (), ()), None).description
+    first, second = scene["fingers"]
+    np.testing.assert_allclose(np.add(first["opens"], second["opens"]), 0.0, atol=1e-5)
+    assert first["body"] == second["body"] == robot.dof
+    # Closed, their pads meet: no geom of one is farther on the other's side than it is thick.
+    middles = [np.mean([geom["pos"] for geom in one["geoms"]], axis=0) for one in (first, second)]
+    assert 0.0 < np.dot(middles[0] - middles[1], first["opens"]) < 0.03
+    assert first["at"] == pytest.approx(robot.gripper.width_m / 2.0)
+
+
+def test_things_are_looked_at_25_times_a_second_where_the_arm_knows_of_them():
+    setup = load_setup(Spec(task="marshmallows", arm="mujoco"))
+    arm = make_scene_arm("mujoco", setup.task.robot, setup.start, lambda: 0.0, setup.scene)
+    seen = [Whereabouts(setup.scene, arm).look(tick) for tick in range(100)]
+    assert sum(one is not None for one in seen) == 25
+    first = [thing["pose"] for thing in described(setup.scene)["things"]]
+    np.testing.assert_allclose(seen[0].poses, first, atol=1e-3)
+    ghost = KinematicArm(setup.task.robot, setup.start, lambda: 0.0)
+    assert Whereabouts(setup.scene, ghost).look(0) is None
+
+
+def test_a_task_with_things_needs_an_arm_that_can_touch_them():
+    with pytest.raises(UserError, match="--arm kinematic has no things about it"):
+        load_setup(Spec(task="marshmallows"))
