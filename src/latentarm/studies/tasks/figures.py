@@ -20,6 +20,9 @@ ACROSS: Final = 3
 ROW_MM: Final = 62.0
 FRAME_MM: Final = 16.0
 
+UNAWARE: Final = "joints"
+"""The context that knows nothing of things: its markers are hollow."""
+
 NUDGE: Final = 0.09
 """How far conditions stand from each other, in steps, so that no line hides another."""
 
@@ -58,6 +61,7 @@ def _draw(axes: "Axes", runs: Mapping[Condition, Sequence[Run]]) -> None:
             shares,
             color=look.colour,
             marker=look.marker,
+            markerfacecolor="white" if condition.name == UNAWARE else look.colour,
             linestyle=look.dash,
             markersize=3.4,
             linewidth=1.1,
