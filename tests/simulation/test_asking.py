@@ -2,6 +2,7 @@
 
 import os
 import pty
+import select
 import sys
 import termios
 import threading
@@ -76,6 +77,9 @@ class Terminal:
     def type(self, keys):
         """Press keys once the terminal listens key by key: what was typed before is no answer."""
         os.write(self.keyboard, b"1 1\n")
+        assert select.select([self.stdin], [], [], 10.0)[0], (
+            "a terminal hands over what is typed a little later"
+        )
         self.typing = threading.Thread(target=self._wait_and_type, args=(keys,))
         self.typing.start()
 
