@@ -150,6 +150,7 @@ def test_everything_of_theirs_drives_together(place: Path, trained: Path) -> Non
     assert about["task"] == "two_buttons"
 
 
+@pytest.mark.slow
 def test_their_model_is_compared_with_ours(place: Path, trained: Path) -> None:
     asked = ("--demonstrations", "buttons", "--models", "straight", "scl", "--ours", "scl")
     run(place, "-m", "latentarm", "compare", *asked, "--preset", "smoke", "--jobs", 1, "--out", "compared")
@@ -172,6 +173,7 @@ def page(place: Path, *words: object) -> Iterator[str]:
             server.communicate(timeout=30)
 
 
+@pytest.mark.slow
 def test_their_model_is_on_the_page_and_drives_their_arm_there(place: Path, trained: Path) -> None:
     with page(place, trained, "--arm", "counting") as address:
         with urllib.request.urlopen(f"{address}/teach", timeout=30) as answer:  # noqa: S310 - our own server
