@@ -21,7 +21,7 @@ class JoinedController(Controller):
         controllers: at least one.
 
     Raises:
-        UserError: there are none, or two of them look at different things.
+        UserError: no controllers were given, or two of them use different objects.
     """
 
     def __init__(self, controllers: Sequence[Controller]) -> None:

@@ -59,7 +59,7 @@ class Scene:
         """The thing of that name.
 
         Raises:
-            UserError: there is none.
+            UserError: the scene has no thing of that name.
         """
         for thing in self.things:
             if thing.name == name:

@@ -12,10 +12,10 @@ def surroundings_of(place: Place, objects: Sequence[str]) -> Callable[[], FloatA
 
     Args:
         place: its goals are the things.
-        objects: names of those that a controller looks at; where there are none, nothing is told.
+        objects: names of those that a controller uses; if empty, the result is None.
 
     Raises:
-        UserError: a thing is none of the place's goals.
+        UserError: an object is not among the place's goals.
     """
     if not objects:
         return None
@@ -31,7 +31,7 @@ def watched(
 
     Args:
         poses: where things are now, by name.
-        objects: names of those that a controller looks at; where there are none, nothing is told.
+        objects: names of those that a controller uses; if empty, the result is None.
 
     Raises:
         UserError: there is no thing of a name.

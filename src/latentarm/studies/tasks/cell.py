@@ -191,7 +191,7 @@ def drive(cell: DriveCell) -> Driven:
         for number in cell.numbers:
             choice = choice_of(task, number)
             setup = TaskSetup(task, cell.driver.controller(task.robot, number), PEOPLE[cell.person])
-            # As of the demonstrator: the same scene and start for the same number, whoever moves the arm.
+            # The same number gives the same scene and start to the demonstrator and in every condition.
             trace = drive_task(setup, choice, generator(cell.seed, cell.task, Stream.RUNS, number))
             runs.append(driven_run(task, number, trace))
         return Driven(cell.task, cell.driver.condition, tuple(runs), perf_counter() - began)

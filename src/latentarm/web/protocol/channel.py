@@ -210,7 +210,7 @@ class Report(Message):
         speed: the fastest joint's, rad/s.
         tool: the tool's position, m.
         gripper: as it was last read; None without one.
-        things: where they are, in every few reports; None in the others, and where there are none.
+        things: where they are, sent in every few reports; None in the others and in an empty scene.
         ghosts: what each direction would do now.
         belief: over the goals; empty where there are none.
         alpha: how much the robot helps.

@@ -229,7 +229,7 @@ class State(Message):
         bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
         tool: m.
         gripper: null where it has none, or before it was read.
-        things: where they are; null where there are none, or they have not moved since the last.
+        things: where they are; null if the scene has no things, or nothing has moved since the last.
         ghosts: where each direction would take the tool; null if nothing has moved by 1 mm since the last.
         belief: over the goals, or null where there are none.
         alpha: how much the robot helps, in [0, 1].
