@@ -14,7 +14,7 @@ from latentarm.control.step import Step
 from latentarm.controllers.latent import LatentController
 from latentarm.demonstrations.contexts import context_layout, episode_contexts
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
-from latentarm.demonstrations.gripper import GRIPPER_WIDTH
+from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_WIDTH, told_by
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
@@ -212,5 +212,31 @@ def test_a_model_that_learned_from_toggles_is_not_driven():
         for one in shown.episodes
     )
     model = PCA(context=("joints", "gripper")).fit(replace(shown, episodes=toggled, objects=()))
-    with pytest.raises(UserError, match="measure its opening in m"):
+    with pytest.raises(UserError, match="which no arm tells: import the recordings again"):
         LatentController(model.decoder())
+
+
+def test_a_decoder_sees_what_the_gripper_was_told_and_an_earlier_one_what_it_measures():
+    """What is held keeps the fingers apart; told to close they are the same for every thing."""
+    shown = demonstrations(4)
+    told = tuple(
+        replace(
+            one, extras={**one.extras, ACTION_GRIPPER: np.where(one.extras[GRIPPER_WIDTH] > 0.04, 0.08, 0.0)}
+        )
+        for one in shown.episodes
+    )
+    with_commands = replace(shown, episodes=told)
+    here = replace(moment(told[0], 3), gripper=np.array([0.05]), gripper_target=np.array([0.0]))
+    features = ("joints", "gripper")
+    for dataset, source, opening in (
+        (with_commands, ACTION_GRIPPER, 0.0),
+        (shown, GRIPPER_WIDTH, 0.05),
+        (told_by(with_commands, GRIPPER_WIDTH), GRIPPER_WIDTH, 0.05),
+    ):
+        decoder = MODELS["cae"](**SMALL, context=features).fit(dataset).decoder()
+        assert decoder.layout.gripper == source
+        contexts = episode_contexts(dataset.episodes[0], features)
+        np.testing.assert_array_equal(contexts[:, -1:], dataset.episodes[0].extras[source])
+        u = np.array([0.5, -0.5])
+        expected = decoder.decode(u, np.append(here.state, opening))
+        np.testing.assert_array_equal(LatentController(decoder).action(u, here, 0), expected)

@@ -22,8 +22,8 @@ OBJECTS: Final = "objects"
 OBJECTS_IN_TOOL: Final = "objects_in_tool"
 
 FEATURES: Final[tuple[FeatureName, ...]] = ("joints", "belief", "gripper", "objects", "objects_in_tool")
-"""Joint positions; belief over goals; the gripper's opening; poses of things in the base frame, and in that
-of the arm's first tool."""
+"""Joint positions; belief over goals; the gripper's opening, see `ContextLayout.gripper`; poses of things in
+the base frame, and in that of the arm's first tool."""
 
 OBJECT: Final = 9
 """Numbers that tell a decoder where a thing is: its position and the first two columns of its rotation. No
@@ -103,7 +103,8 @@ class ContextLayout:
         joints: n.
         goals: G, entries of the belief; 0 where it is not seen.
         objects: names of the things whose poses are seen, in order.
-        gripper: the feature of the dataset that told the gripper's opening; "" where it is not seen.
+        gripper: the feature of the dataset that told the gripper's opening: ``action.gripper`` is the one
+            that it was told to go to, ``observation.gripper_width`` the measured one; "" if it is not seen.
     """
 
     features: tuple[str, ...]

@@ -22,7 +22,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 NO_GRIPPER: FloatArray = np.zeros(0)
-"""`Context.gripper` where it is not known."""
+"""`Context.gripper` and `Context.gripper_target` where they are not known."""
 
 NO_OBJECTS: FloatArray = np.zeros((0, 9))
 """`Context.objects` where they are not known."""
@@ -204,12 +204,15 @@ class Context:
         gripper: (1,), opening of the gripper, m; empty where it is not known.
         objects: (K, 9), poses in the base frame of the things that matter: position, m, and the first two
             columns of the rotation matrix (`latentarm.kinematics.pose_rows`); empty where they are not known.
+        gripper_target: (1,), opening that the gripper was told to go to, m; until it was told anything, its
+            own, and 0 where it holds something. Empty where that is not known.
     """
 
     state: FloatArray
     belief: FloatArray
     gripper: FloatArray = field(default_factory=lambda: NO_GRIPPER)
     objects: FloatArray = field(default_factory=lambda: NO_OBJECTS)
+    gripper_target: FloatArray = field(default_factory=lambda: NO_GRIPPER)
 
 
 GripperAsk = Literal["open", "close", "toggle"]

@@ -10,6 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.control.export import demonstrations_of
+from latentarm.control.journal import JournalEpisode
+from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.gripper import GripperFilter
 from latentarm.control.step import Step
@@ -70,6 +73,34 @@ def test_close_sends_width_speed_and_force_within_the_limits_until_it_is_asked_a
     opening = driven.tick("open").command.gripper
     assert opening is not None
     assert opening.width_m == WIDE
+
+
+@given(
+    ticks=st.lists(
+        st.tuples(
+            st.sampled_from((None, "open", "close", "toggle")),
+            st.floats(0, WIDE),
+            st.booleans(),
+            st.booleans(),
+        ),
+        min_size=2,
+        max_size=12,
+    )
+)
+def test_controllers_see_what_a_dataset_of_the_drive_says_the_gripper_was_told(
+    ticks: list[tuple[GripperAsk | None, float, bool, bool]],
+) -> None:
+    driven = Driven()
+    records: list[StepRecord] = []
+    seen: list[float] = []
+    for asked, width_m, holding, stops in ticks:
+        if stops:
+            driven.step.stop("The person stops it.")
+        records.append(driven.tick(asked, GripperReading(width_m, holding)))
+        seen += driven.step.context(driven.q).gripper_target.tolist()
+    header = EpisodeHeader("panda", tuple(f"joint{joint}" for joint in range(1, 8)), 100.0)
+    found = demonstrations_of([JournalEpisode(header, tuple(records), True)], source="here").episodes[0]
+    np.testing.assert_allclose(found.extras["action.gripper"].ravel(), seen, atol=1e-12)
 
 
 def test_a_held_button_toggles_once() -> None:

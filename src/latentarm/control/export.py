@@ -40,7 +40,7 @@ def demonstrations_of(
     (rad; -1 where nothing helps) and ``observation.environment_state`` (poses of the goals, which are the
     dataset's objects). An arm with a gripper adds ``observation.gripper_width`` (m; a reading below zero
     counts as zero), ``observation.gripper_holding`` (0 or 1) and ``action.gripper`` (m): the width that was
-    commanded last, or the one that it has until something is commanded.
+    commanded last, or until something is commanded the one that it has (0 where it holds something).
     Time starts at each episode's first sample. Incomplete episodes are skipped unless asked for. An episode
     is cut before its first impossible sample (see `first_implausible`).
 
@@ -147,12 +147,13 @@ def _gripper(records: Sequence[StepRecord]) -> dict[str, FloatArray]:
     if not measured:
         return {}
     width_m = np.array([max(one.width_m, 0.0) for one in measured])
+    holding = np.array([one.holding for one in measured])
     commands = [one.command.gripper for one in records]
     commanded = np.array([np.nan if one is None else one.width_m for one in commands])
     return {
         GRIPPER_WIDTH: width_m[:, None],
-        GRIPPER_HOLDING: np.array([[float(one.holding)] for one in measured]),
-        ACTION_GRIPPER: going_to(commanded, width_m)[:, None],
+        GRIPPER_HOLDING: holding[:, None].astype(np.float64),
+        ACTION_GRIPPER: going_to(commanded, width_m, holding)[:, None],
     }
 
 

@@ -179,10 +179,11 @@ class Step:
 
     def context(self, state: FloatArray) -> Context:
         """What controllers are told in a state (n,), rad, with the belief that the next step will use."""
-        measured = self._gripper.reading
+        measured, target_m = self._gripper.reading, self._gripper.target_m
         gripper = NO_GRIPPER if measured is None else np.array([measured.width_m])
+        target = NO_GRIPPER if target_m is None else np.array([target_m])
         objects = NO_OBJECTS if self._surroundings is None else self._surroundings()
-        return Context(state, self._shared.belief, gripper, objects)
+        return Context(state, self._shared.belief, gripper, objects, target)
 
     def reset(self, state: FloatArray) -> None:
         """Begin a new episode from an arm that stands still: disengaged, first mode, first belief.

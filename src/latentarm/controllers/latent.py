@@ -1,5 +1,6 @@
 """Steering by learned latent actions."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import final
 
@@ -7,7 +8,7 @@ from latentarm.alignment.contract import Alignment, identity
 from latentarm.alignment.profile import load_profile
 from latentarm.context import BELIEF, GRIPPER, ContextLayout, context_vector
 from latentarm.control.controller import Controller
-from latentarm.demonstrations.gripper import GRIPPER_WIDTH
+from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_WIDTH
 from latentarm.errors import UserError
 from latentarm.models.kind import Decoder
 from latentarm.models.saving import load_decoder
@@ -28,11 +29,13 @@ class LatentController(Controller):
     """
 
     def __init__(self, decoder: Decoder, alignment: Alignment = identity) -> None:
-        if decoder.layout.gripper not in ("", GRIPPER_WIDTH):
+        source = decoder.layout.gripper
+        if source not in ("", GRIPPER_WIDTH, ACTION_GRIPPER):
             raise UserError(
-                f"The model learned the gripper from {decoder.layout.gripper}, and arms measure its opening"
-                f" in m: train it with {GRIPPER_WIDTH}, or leave {GRIPPER} out of the context."
+                f"The model learned the gripper from {source}, which no arm tells: import the recordings"
+                f" again, with --robot, and train on that, or leave {GRIPPER} out of the context."
             )
+        self._sees_target = source == ACTION_GRIPPER
         self._decoder = decoder
         self._features = decoder.layout.features
         self._alignment = alignment
@@ -77,6 +80,8 @@ class LatentController(Controller):
 
     def _vector(self, context: Context) -> FloatArray:
         """The context as the decoder was trained on it, (..., c)."""
+        if self._sees_target:
+            context = replace(context, gripper=context.gripper_target)
         vector = context_vector(context, self._features)
         if vector.shape[-1] != self._decoder.context_dim:
             raise UserError(_misfit(self._decoder.layout, context))

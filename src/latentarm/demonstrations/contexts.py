@@ -1,6 +1,5 @@
 """Contexts of demonstrated samples: what a decoder would have seen at each."""
 
-from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -15,14 +14,14 @@ from latentarm.context import (
     context_vector,
     feature_names,
 )
-from latentarm.demonstrations.gripper import GRIPPER_TOGGLED, GRIPPER_WIDTH
+from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_TOGGLED, GRIPPER_WIDTH, opening_source
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
 from latentarm.kinematics.pose_rows import STORED, seen_rows
 from latentarm.types import NO_GRIPPER, NO_OBJECTS, Context, Demonstrations, Episode, FloatArray
 
-GRIPPER_SOURCES: Final = (GRIPPER_WIDTH, GRIPPER_TOGGLED)
-"""Features of a dataset that tell how far the gripper is open, the best first."""
+GRIPPER_SOURCES: Final = (ACTION_GRIPPER, GRIPPER_WIDTH, GRIPPER_TOGGLED)
+"""Features of a dataset that tell how far the gripper is open, see `opening_source`."""
 
 
 def episode_contexts(episode: Episode, context: Named, index: int | None = None) -> FloatArray:
@@ -40,11 +39,12 @@ def episode_contexts(episode: Episode, context: Named, index: int | None = None)
     where = "An episode" if index is None else f"Episode {index}"
     belief, gripper, objects = np.zeros(0), NO_GRIPPER, NO_OBJECTS
     if BELIEF in names:
-        belief = _taken(episode, ("belief",), where, BELIEF, "annotate the demonstrations")
+        belief = _taken(episode, "belief", where, BELIEF, "annotate the demonstrations")
     if GRIPPER in names:
-        gripper = _taken(episode, GRIPPER_SOURCES, where, GRIPPER, "record the gripper's opening")
+        source = opening_source(episode.extras) or GRIPPER_WIDTH
+        gripper = _taken(episode, source, where, GRIPPER, "record the gripper's opening")
     if OBJECTS in names or OBJECTS_IN_TOOL in names:
-        stored = _taken(episode, (ENVIRONMENT,), where, OBJECTS, "record the poses of things")
+        stored = _taken(episode, ENVIRONMENT, where, OBJECTS, "record the poses of things")
         if stored.shape[1] % STORED:
             raise UserError(_nameless(where, stored.shape[1]))
         objects = seen_rows(stored.reshape(len(stored), -1, STORED))
@@ -68,21 +68,20 @@ def context_layout(demonstrations: Demonstrations, context: Named) -> ContextLay
         joints=demonstrations.dof,
         goals=first.extras["belief"].shape[1] if BELIEF in names else 0,
         objects=demonstrations.objects if sees_objects else (),
-        gripper=next(one for one in GRIPPER_SOURCES if one in first.extras) if GRIPPER in names else "",
+        gripper=opening_source(first.extras) if GRIPPER in names else "",
     )
     if layout.width != width:
         raise UserError(f"The contexts of these demonstrations have {width} entries, not {layout.width}.")
     return layout
 
 
-def _taken(episode: Episode, sources: Sequence[str], where: str, feature: str, remedy: str) -> FloatArray:
-    """The first of some features of the dataset that an episode has."""
-    for name in sources:
-        if name in episode.extras:
-            return episode.extras[name]
+def _taken(episode: Episode, source: str, where: str, feature: str, remedy: str) -> FloatArray:
+    """A feature of the dataset that a feature of the context needs."""
+    if source in episode.extras:
+        return episode.extras[source]
     there = ", ".join(sorted(episode.extras)) or "nothing besides the joints"
     raise UserError(
-        f"{where} has no {' and no '.join(sources)}, which the context {feature} needs; it has {there}:"
+        f"{where} has no {source}, which the context {feature} needs; it has {there}:"
         f" {remedy}, or leave {feature} out of the context."
     )
 

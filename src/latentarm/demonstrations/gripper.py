@@ -1,7 +1,8 @@
 """What a dataset says of a gripper: its features, what is checked of them, and how they are counted."""
 
-from dataclasses import dataclass
-from typing import Final, final
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Final, Literal, final
 
 import numpy as np
 
@@ -10,7 +11,8 @@ from latentarm.robots.gripper import Gripper
 from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray
 
 GRIPPER_WIDTH: Final = "observation.gripper_width"
-"""Opening between the fingers, m."""
+"""Opening between the fingers, m: as measured, or as commanded where only that is known; the record of the
+import then says so."""
 
 GRIPPER_HOLDING: Final = "observation.gripper_holding"
 """Whether something is held between them: 0 or 1."""
@@ -29,6 +31,9 @@ ACTION_GRIPPER: Final = "action.gripper"
 
 OBSERVED: Final = (GRIPPER_WIDTH, GRIPPER_HOLDING, GRIPPER_TOGGLED, GRIPPER_OPENING, GRIPPER)
 """What a gripper is at a moment, rather than what is done with it then."""
+
+GripperStart = Literal["open", "closed"]
+"""How a gripper is when an episode begins."""
 
 _WIDEST_M: Final = 1.0
 """No gripper opens further: a width beyond it is in another unit, m."""
@@ -133,19 +138,51 @@ def check_gripper(episode: Episode, where: str) -> None:
             _refuse(name, episode, (values != 0.0) & (values != 1.0), "it must be 0 or 1", where)
 
 
-def going_to(commanded: FloatArray, width_m: FloatArray) -> FloatArray:
+def going_to(commanded: FloatArray, width_m: FloatArray, holding: BoolArray) -> FloatArray:
     """Where a gripper is going at each sample: a command counts until the next one.
+
+    Until the first one, it stays where it is; where it holds something it goes on pressing, as if told to
+    close. This is what `Context.gripper_target` is in a drive.
 
     Args:
         commanded: (T,), m; NaN where nothing new is commanded.
-        width_m: (T,), as measured, which counts until something is commanded, m.
+        width_m: (T,), as measured, m; not below zero.
+        holding: (T,), whether something is held.
 
     Returns:
         (T,), m.
     """
     samples = np.arange(len(commanded))
     newest = np.maximum.accumulate(np.where(np.isnan(commanded), -1, samples))
-    return np.where(newest < 0, width_m, commanded[newest])
+    return np.where(newest < 0, np.where(holding, 0.0, width_m), commanded[newest])
+
+
+def opening_source(extras: Mapping[str, FloatArray]) -> str:
+    """The feature that tells a decoder the gripper's opening: the best of those that are there, or "".
+
+    Where it was told to go is better than where it measures to be: that is one number for every thing that
+    is held, wide or narrow, and the only one that toggles tell.
+    """
+    if GRIPPER_WIDTH in extras:
+        told = extras.get(ACTION_GRIPPER)
+        return GRIPPER_WIDTH if told is None or told.shape != extras[GRIPPER_WIDTH].shape else ACTION_GRIPPER
+    return GRIPPER_TOGGLED if GRIPPER_TOGGLED in extras else ""
+
+
+def told_by(demonstrations: Demonstrations, source: str) -> Demonstrations:
+    """Demonstrations whose gripper is told by a feature, for a model that was trained when it was.
+
+    Args:
+        demonstrations: with all their features.
+        source: what `opening_source` shall find; "" changes nothing.
+    """
+    if source != GRIPPER_WIDTH:
+        return demonstrations
+    episodes = (
+        replace(one, extras={name: one.extras[name] for name in one.extras if name != ACTION_GRIPPER})
+        for one in demonstrations.episodes
+    )
+    return replace(demonstrations, episodes=tuple(episodes))
 
 
 def _refuse(name: str, episode: Episode, wrong: BoolArray, why: str, where: str) -> None:

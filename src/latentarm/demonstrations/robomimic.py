@@ -192,7 +192,9 @@ def _gripper(demo: h5py.Group, panda: bool, source: Path) -> dict[str, FloatArra
         return {GRIPPER_WIDTH: width_m[:, None]}
     asked = recorded[:, -1]
     commanded = np.select([asked > 0.0, asked < 0.0], [0.0, _PANDA_OPEN_M], np.nan)
-    return {GRIPPER_WIDTH: width_m[:, None], ACTION_GRIPPER: going_to(commanded, width_m)[:, None]}
+    # These files do not say whether something is held.
+    target_m = going_to(commanded, width_m, np.zeros(len(width_m), dtype=np.bool_))
+    return {GRIPPER_WIDTH: width_m[:, None], ACTION_GRIPPER: target_m[:, None]}
 
 
 def _episode(

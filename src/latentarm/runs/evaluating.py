@@ -12,6 +12,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.annotation import prepared
+from latentarm.demonstrations.gripper import told_by
 from latentarm.demonstrations.split import make_folds, select_episodes
 from latentarm.errors import UserError
 from latentarm.metrics.effects import axis_effects, axis_grid
@@ -134,6 +135,7 @@ def evaluate_run(
         take = partial(_measure_kept, model, probe, robot)
     else:
         demonstrations = prepared(run.dataset(dataset), run.context)
+        demonstrations = told_by(demonstrations, model.decoder(0).layout.gripper)
         take = partial(_measure_all, run, model, demonstrations, robot, seed)
     dof = model.decoder(0).action_dim if demonstrations is None else demonstrations.dof
     if dof != robot.dof:

@@ -48,6 +48,17 @@ class GripperFilter:
         """What the gripper measured in this tick; None without a gripper, or where that cannot be used."""
         return self._reading if self._fresh else None
 
+    @property
+    def target_m(self) -> float | None:
+        """Where it was told to go, m; until it was told, where it is, and 0 where it holds something.
+
+        None where there is no `reading`.
+        """
+        reading = self.reading
+        if reading is None or self._target_m is not None:
+            return None if reading is None else self._target_m
+        return 0.0 if reading.holding else max(reading.width_m, 0.0)
+
     def tick(self) -> None:
         """A new period begins: what was read before counts only for where to stand still."""
         self._fresh = False
