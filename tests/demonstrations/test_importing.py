@@ -19,6 +19,9 @@ from latentarm.types import Demonstrations, Episode
 
 Equal = Callable[[Demonstrations, Demonstrations], bool]
 
+WIDE = 0.08
+"""Largest opening of the Panda's hand, m."""
+
 FILES = {"panda_pick_banana": 5938, "panda_pick_cereal": 4689, "panda_pour_coffee": 4252}
 
 
@@ -38,16 +41,20 @@ def test_the_real_recordings_import_whole(real: Path, tmp_path: Path, name: str)
         ):
             np.testing.assert_array_equal(np.concatenate(values), arrays[key].astype(np.float32))
             assert len(np.concatenate(values)) == FILES[name]
-        toggles = [episode.extras.get("observation.gripper_toggled") for episode in demonstrations.episodes]
-        if arrays["gripper_toggles"].size:
-            state = np.concatenate(toggles).ravel()
-            assert set(state) == {0.0, 1.0}
-            # It changes after every toggle, and goes back to 0 at the start of an episode.
-            changes = np.flatnonzero(np.diff(state))
-            inside = set(changes) - {end - 1 for end in arrays["episode_ends"]}
-            assert inside == set(arrays["gripper_toggles"]) - {end - 1 for end in arrays["episode_ends"]}
-        else:
-            assert toggles == [None] * 15
+        toggles, first = arrays["gripper_toggles"], 0
+    for episode in demonstrations.episodes:
+        width, told = (episode.extras[key][:, 0] for key in ("observation.gripper_width", "action.gripper"))
+        inside = toggles[(toggles >= first) & (toggles < first + len(width))] - first
+        # Open at first, and the other way after each toggle, where it is told so.
+        np.testing.assert_array_equal(np.flatnonzero(np.diff(width)), inside)
+        np.testing.assert_array_equal(told[:-1], width[1:])
+        assert set(width) == {np.float32(0.08)} | ({0.0} if len(inside) else set())
+        assert (width[0], "observation.gripper_toggled" in episode.extras) == (np.float32(0.08), False)
+        first += len(width)
+    said = demonstrations.import_record["gripper"]
+    assert f"opened or closed {len(toggles)} times" in said if len(toggles) else "never toggled" in said
+    assert "assumed" in said
+    assert "commanded, not measured" in said
     assert all(episode.action is None for episode in demonstrations.episodes)
 
 
@@ -81,6 +88,25 @@ def test_toggles_of_a_gripper_become_its_state(tmp_path: Path, toggles: list[int
     episodes = read_npz(tmp_path / "a.npz").episodes
     found = np.concatenate([episode.extras["observation.gripper_toggled"] for episode in episodes])
     assert found.ravel().tolist() == state
+
+
+def test_a_gripper_starts_as_it_is_said_to(tmp_path: Path) -> None:
+    q = np.linspace(0.0, 0.1, 70).reshape(10, 7) + panda().home
+    arrays = {"q": q, "episode_ends": [6, 10], "rate_hz": 10.0}
+    np.savez(tmp_path / "a.npz", **arrays, gripper_toggles=[3])
+    closed = import_demonstrations(tmp_path / "a.npz", panda(), gripper_starts="closed")
+    widths = np.concatenate([one.extras["observation.gripper_width"] for one in closed.episodes])
+    np.testing.assert_array_equal(widths.ravel(), [0, 0, 0, 0, 0.08, 0.08, 0, 0, 0, 0])
+    assert "closed when an episode begins (as told)" in closed.import_record["gripper"]
+    # A dataset from before, with toggles, becomes one with widths when it is imported again.
+    import_to(tmp_path / "a.npz", tmp_path / "old")
+    again = import_demonstrations(tmp_path / "old", panda(), recorded_on="")
+    assert again.episodes[0].extras["action.gripper"].ravel().tolist() == [WIDE] * 3 + [0.0] * 3
+    with pytest.raises(UserError, match="the robot has no gripper: leave it out"):
+        import_demonstrations(tmp_path / "a.npz", planar(7), gripper_starts="open")
+    np.savez(tmp_path / "b.npz", **arrays)
+    with pytest.raises(UserError, match=r"b.npz does not say when it was toggled"):
+        import_demonstrations(tmp_path / "b.npz", panda(), gripper_starts="open")
 
 
 def test_npz_actions_and_times_are_kept(tmp_path: Path) -> None:

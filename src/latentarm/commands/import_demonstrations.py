@@ -41,6 +41,10 @@ def import_demonstrations(
     gripper: Annotated[
         str | None, arg(metavar="COLUMN", help="The gripper's column; found by name by default.")
     ] = None,
+    gripper_starts: Annotated[
+        Literal["open", "closed"] | None,
+        arg(help="How the gripper begins, if the file only says when it was toggled; open by default."),
+    ] = None,
     recorded_on: Annotated[
         str | None,
         arg(metavar="NAME", help="What the file calls the robot, if that is another name for --robot."),
@@ -72,6 +76,7 @@ def import_demonstrations(
         units=units,
         joints=joints,
         gripper=gripper,
+        gripper_starts=gripper_starts,
         recorded_on=recorded_on,
         clip_rad=clip_rad,
     )

@@ -10,6 +10,7 @@ from latentarm.demonstrations.bounds import MAX_FILE_BYTES
 from latentarm.demonstrations.csv_file import read_csv
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.folders import check_vacant
+from latentarm.demonstrations.gripper import GripperStart
 from latentarm.demonstrations.lerobot import read_lerobot
 from latentarm.demonstrations.npz_file import read_npz
 from latentarm.demonstrations.plausibility import check_rate, speed_warning
@@ -43,6 +44,8 @@ class ImportOptions(TypedDict, total=False):
         units: ``rad``, ``deg`` or ``normalized`` (-100 to 100), or ``JOINT=deg`` for single joints.
         joints: the column of each joint, see `find_columns`.
         gripper: the gripper's column.
+        gripper_starts: how the gripper is when an episode begins, for files that say only when it was
+            toggled; open by default.
         recorded_on: the file's word for the robot, where that is another than the robot's name.
         clip_rad: positions that lie up to this far outside a joint's limits are moved to the limit.
     """
@@ -53,6 +56,7 @@ class ImportOptions(TypedDict, total=False):
     units: Sequence[str]
     joints: Sequence[str]
     gripper: str | None
+    gripper_starts: GripperStart | None
     recorded_on: str | None
     clip_rad: float
 
@@ -90,6 +94,7 @@ def import_demonstrations(
         units=options.get("units", ()),
         joints=options.get("joints", ()),
         gripper=options.get("gripper"),
+        gripper_starts=options.get("gripper_starts"),
         recorded_on=options.get("recorded_on"),
         actions=actions,
         clip_rad=options.get("clip_rad", 0.0),

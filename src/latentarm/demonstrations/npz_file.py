@@ -66,7 +66,7 @@ def read_npz(source: Path, rate_hz: float | None = None, task: str | None = None
                 f"with this 'q' it must be {expected}."
             )
     extras = {feature: by_sample[key] for key, feature in FEATURES.items() if key in by_sample}
-    if arrays.get("gripper_toggles", np.empty(0)).size:
+    if "gripper_toggles" in arrays:
         extras[GRIPPER_TOGGLED] = _gripper(arrays["gripper_toggles"], ends, source)
     episodes = tuple(
         Episode(
@@ -186,7 +186,8 @@ def _gripper(toggles: NDArray[np.generic], ends: list[int], source: Path) -> Flo
     """
     samples = ends[-1]
     index: IntArray = toggles.astype(np.int64)
-    if toggles.ndim != 1 or toggles.dtype.kind not in "iu" or index.min() < 0 or index.max() >= samples:
+    whole = toggles.dtype.kind in "iu" or not toggles.size  # NumPy calls an empty row a row of floats
+    if toggles.ndim != 1 or not whole or (toggles.size and not 0 <= index.min() <= index.max() < samples):
         raise UserError(f"{source}: 'gripper_toggles' must be indices of its {samples} samples.")
     toggled = np.bincount(index, minlength=samples)
     # A toggle counts from the sample after it on.

@@ -8,9 +8,17 @@ from typing import Final, Literal, final
 import numpy as np
 
 from latentarm.demonstrations.columns import Columns, find_columns, is_width
-from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_OPENING, GRIPPER_WIDTH, OBSERVED
+from latentarm.demonstrations.gripper import (
+    ACTION_GRIPPER,
+    GRIPPER,
+    GRIPPER_OPENING,
+    GRIPPER_WIDTH,
+    OBSERVED,
+    GripperStart,
+)
 from latentarm.demonstrations.robot_names import is_so_arm, may_be
 from latentarm.demonstrations.source import SourceData
+from latentarm.demonstrations.toggles import widths_from_toggles
 from latentarm.demonstrations.units import Conversion, Unit, conversion, parse_units
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
@@ -42,6 +50,7 @@ class Translation:
         units: see `parse_units`.
         joints: see `find_columns`.
         gripper: the gripper's column.
+        gripper_starts: how the gripper is when an episode begins, for files that say when it was toggled.
         recorded_on: the file's word for the robot, to take its robot for the one that is meant.
         actions: what the file's actions are.
         clip_rad: positions that lie up to this far outside a joint's limits are moved to the limit, rad.
@@ -50,6 +59,7 @@ class Translation:
     units: Sequence[str] = ()
     joints: Sequence[str] = ()
     gripper: str | None = None
+    gripper_starts: GripperStart | None = None
     recorded_on: str | None = None
     actions: ActionChoice = "known"
     clip_rad: float = 0.0
@@ -93,12 +103,13 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
     gripper = "" if columns.gripper is None else _gripper_feature(names[columns.gripper], motors)
     episodes = tuple(_episode(one, columns, turned, kind, gripper) for one in given.episodes)
     episodes, clipped = _clipped(episodes, robot, told.clip_rad)
+    episodes, opening = widths_from_toggles(episodes, robot.gripper, told.gripper_starts, source)
     record = {
         "source": f"{Path(source).name}, {data.layout}",
         "recorded on": given.robot or "not said",
         "joints": f"{_pairs(robot, names, columns)} ({columns.how})",
         "units": how,
-        "gripper": _gripper_text(given, columns, gripper),
+        "gripper": opening or _gripper_text(given, columns, gripper),
         "columns left out": ", ".join(names[index] for index in columns.dropped) or "none",
         "actions": _action_text(given.episodes[0], kind) if given.episodes else "none",
     }
