@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from latentarm.cli import main
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
 from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.errors import UserError
@@ -315,14 +316,32 @@ def test_lerobot_and_we_append_to_the_same_dataset(
 
 
 @pytest.mark.parametrize("name", ["panda_pick_banana", "panda_pick_cereal", "panda_pour_coffee"])
-def test_the_real_recordings_reach_lerobot(
-    tmp_path: Path, lerobot: Callable[..., str], real: Path, name: str
+def test_the_real_recordings_and_a_drive_learned_from_them_reach_lerobot(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lerobot: Callable[..., str], real: Path, name: str
 ) -> None:
-    import_to(real / f"{name}.npz", tmp_path / "data")
+    monkeypatch.chdir(tmp_path)
+    assert main(["import", str(real / f"{name}.npz"), "data"]) == 0
     seen = json.loads(lerobot(READ, tmp_path / "data", 1234))
     with np.load(real / f"{name}.npz", allow_pickle=False) as arrays:
         assert seen["frames"] == len(arrays["q"])
         assert seen["episodes"] == 15
         assert seen["item"]["observation.state"] == arrays["q"][1234].astype(np.float32).tolist()
-        assert ("observation.gripper_toggled" in seen["item"]) == (arrays["gripper_toggles"].size > 0)
         np.testing.assert_allclose(seen["mean"], arrays["q"].mean(axis=0), atol=1e-6)
+        start = max(end for end in (0, *arrays["episode_ends"]) if end <= 1234)
+        toggles = arrays["gripper_toggles"]
+        count = np.count_nonzero((toggles >= start) & (toggles < 1234))
+    wide = float(np.float32(0.08))
+    assert seen["item"]["observation.gripper_width"] == (0.0 if count % 2 else wide)
+
+    train = ["train", "--demonstrations", "data", "--model", "scl", "--seeds", "1", "--epochs", "20"]
+    assert main([*train, "--context", "joints", "gripper", "--out", "run"]) == 0
+    assert main(["drive", "run", "--drives", "1", "--time-limit-s", "60", "--record", "driven"]) in (0, 1)
+    driven = read_dataset("driven").episodes
+    closed = np.concatenate([one.extras["action.gripper"][:, 0] for one in driven]) == 0.0
+    assert closed.any() == (len(toggles) > 0)
+    # Where it was told to be closed, if it ever was, and else the last sample.
+    index = int(closed.argmax()) or len(closed) - 1
+    seen = json.loads(lerobot(READ, tmp_path / "driven", index))
+    assert seen["frames"] == len(closed)
+    assert seen["item"]["action.gripper"] == (0.0 if len(toggles) else wide)
+    assert seen["shapes"]["observation.gripper_holding"] in ([], [1])

@@ -6,6 +6,7 @@ the dataset that it names is opened for what it does not keep.
 
 import hashlib
 import subprocess
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -56,6 +57,8 @@ class Run:
         goals: of the dataset.
         routes: the ways of the held-out episodes, see `latentarm.tasks.replay.routes_of`; None where the run
             does not keep them.
+        open_at: what the gripper does along them, see `latentarm.tasks.replay.GripperRoutes`; empty where the
+            model does not see it.
     """
 
     folder: Path
@@ -71,6 +74,7 @@ class Run:
     task: str | None = None
     goals: tuple[Goal, ...] = ()
     routes: tuple[FloatArray, ...] | None = None
+    open_at: tuple[FloatArray, ...] = ()
 
     def dataset(self, moved_to: Path | None = None, wanted: str = "", option: bool = True) -> Demonstrations:
         """The dataset that the model was trained on.
@@ -133,6 +137,7 @@ def run_facts(run: Run) -> dict[str, object]:
         "task": run.task,
         "goals": goals_document(run.goals),
         "routes": None if run.routes is None else [route.tolist() for route in run.routes],
+        "open_at": [one.tolist() for one in run.open_at],
     }
 
 
@@ -149,14 +154,17 @@ def read_run(folder: StrPath) -> Run:
     config = Section.of_file(path, CONFIG_LIMIT)
     plain = config.plain()
     limits = plain.get("limits")
-    # Runs of earlier versions lack the last four.
+    # Runs of earlier versions lack these.
     kept = {
-        key: plain[key] for key in ("robot_model", "task", "goals", "routes") if plain.get(key) is not None
+        key: plain[key]
+        for key in ("robot_model", "task", "goals", "routes", "open_at")
+        if plain.get(key) is not None
     }
     dof = config.section("model").section("dimensions").integer("action", 1) if kept else 0
     goals = parse_goals(kept.get("goals", []), str(path))
     for index, goal in enumerate(goals):
         check_goal(goal, index, dof, str(path))
+    routes = _routes(config, dof) if "routes" in kept else None
     return Run(
         folder=folder,
         demonstrations=Path(config.text("demonstrations")),
@@ -170,7 +178,8 @@ def read_run(folder: StrPath) -> Run:
         robot_model=config.choice("robot_model", COPIES) if "robot_model" in kept else None,
         task=config.choice("task", (*TASKS, HELD_OUT)) if "task" in kept else None,
         goals=goals,
-        routes=_routes(config, dof) if "routes" in kept else None,
+        routes=routes,
+        open_at=_open_at(config, routes or ()) if kept.get("open_at") else (),
     )
 
 
@@ -193,6 +202,17 @@ def _routes(config: Section, dof: int) -> tuple[FloatArray, ...]:
             raise UserError(f"{config.where}: route {number} has no waypoint: the run is damaged.")
         routes.append(one)
     return tuple(routes)
+
+
+def _open_at(config: Section, routes: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
+    """Whether the gripper is to be open, 1 or 0, from each state of the routes on."""
+    entries = config.entries("open_at")
+    if len(entries) != len(routes):
+        raise UserError(f"{config.where}: 'open_at' has {len(entries)} entries for {len(routes)} routes.")
+    return tuple(
+        Section(f"{config.where}, 'open_at'", {str(number): one}).array(str(number), (len(routes[number]),))
+        for number, one in enumerate(entries)
+    )
 
 
 def robot_of(run: Run) -> Robot:

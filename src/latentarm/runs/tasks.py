@@ -7,17 +7,18 @@ from typing import cast
 
 import numpy as np
 
-from latentarm.context import BELIEF
+from latentarm.context import BELIEF, GRIPPER, Named, feature_names
+from latentarm.demonstrations.gripper import ACTION_GRIPPER, opening_source
 from latentarm.demonstrations.split import select_episodes
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, robot_of
 from latentarm.tasks.catalogue import HELD_OUT, TASKS
-from latentarm.tasks.replay import Replay, routes_of
+from latentarm.tasks.replay import Replay, gripper_routes_of, routes_of
 from latentarm.tasks.table_top import ITEMS
 from latentarm.tasks.task import Task
-from latentarm.types import Goal, StatedLimits
+from latentarm.types import Demonstrations, FloatArray, Goal, StatedLimits
 
 
 def task_of_run(
@@ -58,11 +59,12 @@ def task_of_run(
     if chosen == HELD_OUT:
         arm = robot_of(stated) if robot is None else load_robot(robot, end_effector, limits)
         own = robot is None and end_effector in (None, run.end_effector)
-        routes = run.routes if own else None
+        routes, open_at = run.routes if own else None, run.open_at
         if routes is None:
             demonstrations = run.dataset(dataset, "its held-out episodes", option)
-            routes = routes_of(arm, select_episodes(demonstrations, run.held_out))
-        task: Task = Replay(arm, routes)
+            held_out = select_episodes(demonstrations, run.held_out)
+            routes, open_at = routes_seen(arm, held_out, run.context)
+        task: Task = Replay(arm, routes, open_at)
     else:
         task = make_task(chosen, robot, end_effector, limits, usual=lambda: robot_of(stated))
     if BELIEF in run.context:
@@ -131,6 +133,33 @@ def make_task(
             " --task reach."
         )
     return task
+
+
+def routes_seen(
+    robot: Robot, demonstrations: Demonstrations, context: Named
+) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]:
+    """The ways that demonstrations went, as a model is to be driven along them.
+
+    Args:
+        robot: the arm that was recorded.
+        demonstrations: the episodes to follow.
+        context: the features that the model sees. Only where it sees what the gripper was told, the gripper
+            opens and closes on the way.
+
+    Returns:
+        Routes, see `routes_of`, and what the gripper does along them, see `GripperRoutes`; empty for nothing.
+
+    Raises:
+        UserError: the tool goes nowhere in any of them.
+    """
+    told = all(opening_source(one.extras) == ACTION_GRIPPER for one in demonstrations.episodes)
+    if GRIPPER in feature_names(context) and told and robot.gripper is not None:
+        half_m = robot.gripper.width_m / 2.0
+        found = gripper_routes_of(
+            robot, demonstrations, lambda episode: episode.extras[ACTION_GRIPPER][:, 0] > half_m
+        )
+        return found.states, found.open_at
+    return routes_of(robot, demonstrations), ()
 
 
 def usual_task(goals: Sequence[Goal]) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 
 from latentarm.assistance.annotation import prepared
 from latentarm.assistance.entropy import GoalEntropy
-from latentarm.context import JOINTS, feature_names
+from latentarm.context import JOINTS, Named, feature_names
 from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.split import select_episodes, split_episodes
 from latentarm.errors import UserError
@@ -28,9 +28,8 @@ from latentarm.robots.robot import Robot
 from latentarm.runs.checks import check_seed
 from latentarm.runs.folder import ROBOT, Run, fingerprint, git_commit, run_facts
 from latentarm.runs.samples import ALIGN_STREAM, save_samples, take_samples
-from latentarm.runs.tasks import usual_task
-from latentarm.tasks.replay import routes_of
-from latentarm.types import Demonstrations, FloatArray, Row
+from latentarm.runs.tasks import routes_seen, usual_task
+from latentarm.types import Demonstrations, Row
 
 CHECKPOINT = "training.safetensors"
 
@@ -157,8 +156,8 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
         rng = np.random.default_rng([ALIGN_STREAM, config.seed])
         samples = take_samples(model, demonstrations, training, held_out, robot.chain, rng)
         facts["samples"] = save_samples(config.out, samples)
-        routes = _routes(robot, select_episodes(demonstrations, held_out))
-        run = replace(run, robot_model=_copy_of(robot, config.out), routes=routes)
+        routes = _routes(robot, select_episodes(demonstrations, held_out), config.context)
+        run = replace(run, robot_model=_copy_of(robot, config.out), **routes)
     facts |= run_facts(run)
     model.save(config.out, run={**facts, "warnings": said, "git_commit": git_commit()})
     checkpoint.unlink(missing_ok=True)
@@ -219,13 +218,16 @@ def _term(config: TrainConfig, demonstrations: Demonstrations, chain: Chain | No
     return GoalEntropy(goals, weight=config.goal_entropy, chain=chain)
 
 
-def _routes(robot: Robot, held_out: Demonstrations) -> tuple[FloatArray, ...] | None:
-    """Routes of the held-out episodes; None without held-out episodes or if they are too large to store."""
+def _routes(robot: Robot, held_out: Demonstrations, context: Named) -> dict[str, Any]:
+    """Routes of the held-out episodes, as a run keeps them.
+
+    None are kept without held-out episodes or if they are too large to store.
+    """
     try:
-        routes = routes_of(robot, held_out)
+        routes, open_at = routes_seen(robot, held_out, context)
     except UserError:
-        return None
-    return routes if sum(route.size for route in routes) <= MOST_NUMBERS else None
+        return {}
+    return {"routes": routes, "open_at": open_at} if sum(map(np.size, routes)) <= MOST_NUMBERS else {}
 
 
 def _copy_of(robot: Robot, run: Path) -> str | None:

@@ -1,7 +1,7 @@
 """One simulated drive: a simulated operator, a controller, Algorithm 1 with its safety filters, an arm."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from latentarm.metrics.ending import Ending, why_it_ended
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.person import Person, SimulatedPerson
 from latentarm.tasks.surroundings import surroundings_of
-from latentarm.tasks.task import Task, check_not_done
+from latentarm.tasks.task import GripperTask, Task, check_not_done
 from latentarm.types import FloatArray, Input, Pose, StepRecord
 
 RATE_HZ = 100.0
@@ -111,6 +111,7 @@ def simulate(
     step = _step(setup, dt_s)
     operator = SimulatedPerson(task.robot, setup.person, dt_s, LoopLimits(step.dead_zone, step.joint_speed))
     remaining = list(task.waypoints(goal, manner))
+    asks = task.asks(goal, manner) if isinstance(task, GripperTask) else ()
     since_s = 0.0
     check_not_done(task, start, remaining)
     with make_simulated_arm(setup.arm, task.robot, start, clock.now_s) as arm:
@@ -130,6 +131,8 @@ def simulate(
             if not remaining:
                 break
             given = operator.act(step.context(reading.q), controller, step.mode, remaining[0], rng)
+            if asks:
+                given = replace(given, gripper=asks[-1 - len(remaining)])
             records.append(step(given, 0.0, reading, clock.now_s()))
             if watch is not None:
                 watch(records[-1])

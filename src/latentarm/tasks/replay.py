@@ -1,6 +1,7 @@
 """Where demonstrations began and ended, as a task: to see whether a model can do what people did."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import final
 
 import numpy as np
@@ -10,14 +11,52 @@ from latentarm.kinematics.rotations import angle_between
 from latentarm.kinematics.stillness import moving_range
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
-from latentarm.tasks.task import Task, within
-from latentarm.types import Demonstrations, FloatArray, Goal, Pose
+from latentarm.tasks.task import GripperTask, within
+from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray, Goal, GripperAsk, IntArray, Pose
 
 WAYPOINT_SPACING = 0.25
 """Way of the tool between two waypoints, m, a radian of turning counted as `RADIAN`."""
 
 RADIAN = 0.2
 """What a radian of turning counts as way, m."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class GripperRoutes:
+    """Ways along which a gripper opens and closes.
+
+    Attributes:
+        states: as `routes_of` gives them, with a waypoint wherever the gripper is told something new.
+        open_at: (K + 1,) for each, 1 where the gripper is to be open from there on, and 0 where closed.
+    """
+
+    states: tuple[FloatArray, ...]
+    open_at: tuple[FloatArray, ...]
+
+
+def gripper_routes_of(
+    robot: Robot, demonstrations: Demonstrations, is_told_open: Callable[[Episode], BoolArray]
+) -> GripperRoutes:
+    """The ways that demonstrations went, and where they told the gripper to open and to close.
+
+    Args:
+        robot: the arm that was recorded.
+        demonstrations: see `routes_of`.
+        is_told_open: whether the gripper is told to be open, at each sample (T,) of an episode.
+
+    Raises:
+        UserError: the tool goes nowhere in any of them.
+    """
+    states: list[FloatArray] = []
+    open_at: list[FloatArray] = []
+    for episode in _leaving(robot, demonstrations):
+        is_open = is_told_open(episode)
+        told = np.flatnonzero(is_open[1:] != is_open[:-1]) + 1
+        at = np.union1d(_stops(robot, episode.state), told)
+        states.append(episode.state[at])
+        open_at.append(is_open[at].astype(np.float64))
+    return GripperRoutes(tuple(states), tuple(open_at))
 
 
 def routes_of(robot: Robot, demonstrations: Demonstrations) -> tuple[FloatArray, ...]:
@@ -33,19 +72,11 @@ def routes_of(robot: Robot, demonstrations: Demonstrations) -> tuple[FloatArray,
     Raises:
         UserError: the tool goes nowhere in any of them.
     """
-    moving = [one.state[slice(*moving_range(one.state, one.timestamp))] for one in demonstrations.episodes]
-    routes = tuple(_route(robot, path) for path in moving if len(path) and _leaves(robot, path))
-    if not routes:
-        tool = robot.chain.tools[0].name
-        raise UserError(
-            f"In none of these episodes does {tool} of {robot.name} go anywhere, so there is nothing to"
-            " follow: see whether it is the end-effector that was recorded."
-        )
-    return routes
+    return tuple(one.state[_stops(robot, one.state)] for one in _leaving(robot, demonstrations))
 
 
 @final
-class Replay(Task):
+class Replay(GripperTask):
     """Drive the way that demonstrations went, from where they began, through poses along them.
 
     A goal is where an episode ended. Episodes that training never saw make this the honest test of
@@ -54,11 +85,15 @@ class Replay(Task):
     Args:
         robot: the arm that was recorded.
         routes: one or more, see `routes_of`.
+        open_at: what the gripper does along them, see `GripperRoutes`; nothing where it is empty.
     """
 
-    def __init__(self, robot: Robot, routes: Sequence[FloatArray]) -> None:
+    def __init__(
+        self, robot: Robot, routes: Sequence[FloatArray], open_at: Sequence[FloatArray] = ()
+    ) -> None:
         self._robot = robot
         self._routes = tuple(routes)
+        self._open_at = tuple(open_at)
 
     @property
     def name(self) -> str:
@@ -99,10 +134,21 @@ class Replay(Task):
         Raises:
             UserError: there is no such goal or manner.
         """
-        if manner not in self.manners:
-            raise UserError(f"A demonstration can be followed, not {manner!r}.")
+        self._check(manner)
         poses = self._robot.chain.forward(self._route(goal)[1:])
         return tuple(Pose(*pose) for pose in zip(poses.position, poses.rotation, strict=True))
+
+    def asks(self, goal: int, manner: str) -> tuple[GripperAsk, ...]:
+        """What the person did with the gripper on the goal's way.
+
+        Raises:
+            UserError: there is no such goal or manner.
+        """
+        self._check(manner)
+        self._route(goal)
+        if not self._open_at:
+            return ()
+        return tuple("open" if is_open else "close" for is_open in self._open_at[goal])
 
     def reached(self, pose: Pose, waypoint: Pose) -> bool:
         """Within 0.03 m and 20 degrees."""
@@ -116,20 +162,46 @@ class Replay(Task):
         """
         return demonstrate_goals(self, lambda goal: self._route(goal)[1:], "follow", episodes, rng)
 
+    def _check(self, manner: str) -> None:
+        if manner not in self.manners:
+            raise UserError(f"A demonstration can be followed, not {manner!r}.")
+
     def _route(self, goal: int) -> FloatArray:
         if not 0 <= goal < len(self._routes):
             raise UserError(f"There are episodes 0 to {len(self._routes) - 1} to follow, not {goal}.")
         return self._routes[goal]
 
 
-def _route(robot: Robot, path: FloatArray) -> FloatArray:
-    """A start and waypoints (K + 1, n) out of the states (T, n) of an episode."""
+def _leaving(robot: Robot, demonstrations: Demonstrations) -> list[Episode]:
+    """The episodes in which the tool goes somewhere, without the still samples at their ends.
+
+    Raises:
+        UserError: there is no such episode.
+    """
+    found: list[Episode] = []
+    for one in demonstrations.episodes:
+        moving = slice(*moving_range(one.state, one.timestamp))
+        path = one.state[moving]
+        if len(path) and _leaves(robot, path):
+            extras = {name: values[moving] for name, values in one.extras.items()}
+            found.append(Episode(path, one.timestamp[moving], extras=extras))
+    if not found:
+        tool = robot.chain.tools[0].name
+        raise UserError(
+            f"In none of these episodes does {tool} of {robot.name} go anywhere, so there is nothing to"
+            " follow: see whether it is the end-effector that was recorded."
+        )
+    return found
+
+
+def _stops(robot: Robot, path: FloatArray) -> IntArray:
+    """Which of the states (T, n) of an episode are its start and its waypoints, (K + 1,)."""
     poses = robot.chain.forward(path)
     turned = angle_between(poses.rotation[1:], poses.rotation[:-1])
     way = np.cumsum(np.linalg.norm(np.diff(poses.position, axis=0), axis=1) + RADIAN * turned)
     count = max(1, round(way[-1] / WAYPOINT_SPACING))
     at = np.searchsorted(way, way[-1] * np.arange(1, count) / count - 1e-9) + 1
-    return path[[0, *at, -1]]
+    return np.array([0, *at, len(path) - 1])
 
 
 def _leaves(robot: Robot, path: FloatArray) -> bool:

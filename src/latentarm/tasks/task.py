@@ -10,7 +10,7 @@ from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.kinematics.rotations import angle_between
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, FloatArray, Goal, Pose
+from latentarm.types import Demonstrations, FloatArray, Goal, GripperAsk, Pose
 
 
 class Task(ABC):
@@ -83,6 +83,22 @@ class Task(ABC):
 
         Raises:
             UserError: fewer than one episode is asked for.
+        """
+
+
+class GripperTask(Task, ABC):
+    """A task in which a gripper may open and close on the way."""
+
+    @abstractmethod
+    def asks(self, goal: int, manner: str) -> tuple[GripperAsk, ...]:
+        """What is asked of the gripper at the start, and from each of the `waypoints` on; () for nothing.
+
+        Args:
+            goal: index into `goals`.
+            manner: one of `manners`.
+
+        Raises:
+            UserError: there is no such goal or manner.
         """
 
 
