@@ -27,7 +27,10 @@ NO_GRIPPER: FloatArray = np.zeros(0)
 NO_OBJECTS: FloatArray = np.zeros((0, 9))
 """`Context.objects` where they are not known."""
 
-NO_GRIPPER.flags.writeable = NO_OBJECTS.flags.writeable = False
+NO_THINGS: FloatArray = np.zeros((0, 7))
+"""`StepRecord.things` where nobody looks."""
+
+NO_GRIPPER.flags.writeable = NO_OBJECTS.flags.writeable = NO_THINGS.flags.writeable = False
 
 
 @dataclass(frozen=True)
@@ -335,6 +338,8 @@ class StepRecord:
         bound_rad: radius ``delta / b(g)`` of the ball about the likeliest goal that help towards the
             goals constrains the arm to (equation 14), rad; NaN without goals or help.
         gripper: what the gripper measured, or None without one.
+        things: (K, 7), where the things about the arm stand, in the order of the episode's header: position,
+            m, and quaternion (w, x, y, z), in the base frame; empty where nobody looks. `Step` does not.
     """
 
     time_s: float
@@ -349,6 +354,7 @@ class StepRecord:
     command: Command
     bound_rad: float = math.nan
     gripper: GripperReading | None = None
+    things: FloatArray = field(default_factory=lambda: NO_THINGS)
 
 
 @dataclass(frozen=True)

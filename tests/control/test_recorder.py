@@ -73,6 +73,7 @@ def same(one, other):
     assert one.command.stop == other.command.stop
     assert one.command.limited_by == other.command.limited_by
     assert (one.gripper, one.command.gripper) == (other.gripper, other.command.gripper)
+    np.testing.assert_array_equal(one.things, other.things)
 
 
 def write(path, episodes, *, end_last=True):
@@ -163,19 +164,37 @@ OF_VERSION_2 = bytes.fromhex(
 )
 """A sample as it was written before there were grippers."""
 
+OF_VERSION_3 = bytes.fromhex(
+    "030500020002800280020002400100020002000300000000000000f83f000000000000e03f000000000000f03f9a99999999"
+    "99993f0000000000000040000000000000d03f000000000000e0bf000000000000d03f000000000000e0bf000000000000f0"
+    "3f000000000000d03f000000000000e0bfb81e85eb51b8ae3f000000000000f03f00000000000000009a9999999999a93f00"
+    "00000000003440"
+)
+"""The same with a gripper, as it was written before there were things."""
 
-def test_a_journal_from_before_grippers_is_read_and_gone_on_with(tmp_path):
+
+@pytest.mark.parametrize(
+    ("version", "sample", "measured", "asked"),
+    [
+        (2, OF_VERSION_2, None, None),
+        (3, OF_VERSION_3, GripperReading(0.06, True), GripperCommand(0.0, 0.05, 20.0)),
+    ],
+)
+def test_an_older_journal_is_read_and_gone_on_with(tmp_path, version, sample, measured, asked):
     path = tmp_path / "drive.sqlite"
     write(path, [1])
     with sqlite3.connect(path) as database:
-        database.execute("UPDATE samples SET figures = ?", (OF_VERSION_2,))
-        database.execute("PRAGMA user_version = 2")
+        database.execute("UPDATE episodes SET about = json_remove(about, '$.things', '$.objects')")
+        database.execute("UPDATE samples SET figures = ?", (sample,))
+        database.execute(f"PRAGMA user_version = {version}")
     database.close()
     write(path, [2])
     old, new = read_journal(path)
     two, none = np.array([0.25, -0.5]), np.zeros(2)
-    command = Command(two, 0.025)
-    same(StepRecord(1.5, two, none, none, two, two, 0.5, np.ones(1), 1, command, 2.0), old.records[0])
+    command = Command(two, 0.025, gripper=asked)
+    same(
+        StepRecord(1.5, two, none, none, two, two, 0.5, np.ones(1), 1, command, 2.0, measured), old.records[0]
+    )
     same(record(0), new.records[0])
 
 
@@ -217,12 +236,81 @@ def test_a_gripper_that_is_not_finite_is_neither_written_nor_read(tmp_path, bad)
             recorder.record(gripped(1, *step))
     recorder.close()
     for parts in ([[bad, 0.0], []], [[0.04, 0.5], []], [[0.04], []], [[], [0.0, 0.1, bad]], [[], [0.0]]):
-        figures = packed([*figures_of(record(0))[:8], *(np.array(part, dtype=float) for part in parts)])
+        later = (np.array(part, dtype=float) for part in (*parts, []))
+        figures = packed([*figures_of(record(0))[:8], *later])
         with sqlite3.connect(path) as database:
             database.execute("UPDATE samples SET figures = ?", (figures,))
         database.close()
         with pytest.raises(UserError, match=r"drive\.sqlite is damaged.*gripper"):
             read_journal(path)
+
+
+THINGS = ("plate", "cup")
+
+
+def standing(tick, rows):
+    """The same step with things about the arm, (K, 7)."""
+    return dataclasses.replace(record(tick), things=np.array(rows, dtype=float))
+
+
+@settings(max_examples=15)
+@given(st.lists(arrays(np.float64, (2, 7), elements=FINITE), min_size=1, max_size=4), st.data())
+def test_things_are_read_back_exactly_whether_they_move_or_not(places, data):
+    where = data.draw(st.lists(st.sampled_from(places), min_size=1, max_size=20))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "drive.sqlite"
+        recorder = Recorder(path)
+        given = [standing(tick, rows) for tick, rows in enumerate(where)]
+        for _ in range(2):
+            recorder.begin_episode(header(things=THINGS, objects=("cup",)))
+            for one in given:
+                recorder.record(one)
+            recorder.end_episode()
+        recorder.close()
+        episodes = read_journal(path)
+    for episode in episodes:
+        assert (episode.header.things, episode.header.objects) == (THINGS, ("cup",))
+        for one, other in zip(given, episode.records, strict=True):
+            same(one, other)
+
+
+def test_what_stands_still_takes_no_room(tmp_path):
+    rows = np.arange(14.0).reshape(2, 7)
+    recorder = Recorder(tmp_path / "drive.sqlite")
+    recorder.begin_episode(header(things=THINGS))
+    for tick in range(3):
+        recorder.record(standing(tick, rows + (tick == 2)))
+    recorder.close()
+    with sqlite3.connect(tmp_path / "drive.sqlite") as database:
+        moved, still, moved_again = (
+            len(one) for (one,) in database.execute("SELECT figures FROM samples ORDER BY number")
+        )
+    database.close()
+    assert (moved - still, moved_again - still) == (14 * 8, 14 * 8)
+
+
+def test_things_that_are_missing_or_not_finite_are_neither_written_nor_read(tmp_path):
+    path = tmp_path / "drive.sqlite"
+    rows = np.ones((2, 7))
+    recorder = Recorder(path)
+    recorder.begin_episode(header(things=THINGS))
+    recorder.record(standing(0, rows))
+    for bad, said in ((rows[:1], "other shapes"), (rows * np.nan, "things whose figures are not finite")):
+        with pytest.raises(UserError, match=said):
+            recorder.record(standing(1, bad))
+    recorder.close()
+    for rows in ([], np.ones(7), np.ones(13), np.full(14, np.inf)):
+        figures = packed([*figures_of(record(0))[:10], np.array(rows, dtype=float)])
+        with sqlite3.connect(path) as database:
+            database.execute("UPDATE samples SET figures = ?", (figures,))
+        database.close()
+        with pytest.raises(UserError, match=r"drive\.sqlite is damaged .*things"):
+            read_journal(path)
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE episodes SET about = json_set(about, '$.objects', json('[\"spoon\"]'))")
+    database.close()
+    with pytest.raises(UserError, match="an object is not among the things"):
+        read_journal(path)
 
 
 @pytest.mark.parametrize("count", [3, 6])
@@ -243,15 +331,16 @@ FIVE = st.lists(arrays(np.float64, st.integers(0, 9), elements=ANY), min_size=5,
 @given(FIVE, FIVE | st.none())
 def test_a_sample_is_written_and_read_exactly(parts, others):
     parts = [part for part in parts for _ in range(2)] if others is None else [*parts, *others]
+    parts.append(parts[-1])
     found = unpacked(packed(parts))
     # Bit for bit, so that -0.0 and NaN count too.
     assert [part.tobytes() for part in found] == [part.tobytes() for part in parts]
 
 
-@given(st.sampled_from([b"", b"\x02", b"\x03"]), st.binary(max_size=120))
+@given(st.sampled_from([b"", b"\x02", b"\x03", b"\x04"]), st.binary(max_size=120))
 def test_bytes_that_are_no_sample_are_refused(start, rest):
     with suppress(ValueError):
-        assert len(unpacked(start + rest)) in (8, 10)
+        assert len(unpacked(start + rest)) in (8, 10, 11)
 
 
 def test_nothing_is_written_twice(tmp_path):

@@ -2,21 +2,30 @@
 
 import json
 from dataclasses import replace
+from multiprocessing import Pipe
 
 import numpy as np
 import pytest
 
 from latentarm.arms.catalogue import make_scene_arm
 from latentarm.arms.kinematic import KinematicArm
+from latentarm.control.clock import SimulatedClock
+from latentarm.control.export import export_journal
+from latentarm.control.journal import read_journal
+from latentarm.demonstrations.contexts import context_layout
+from latentarm.demonstrations.dataset import read_dataset
+from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Grains, Part, Thing
 from latentarm.tasks.place import ScenePlace
 from latentarm.types import Pose
+from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
+from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.whereabouts import Whereabouts
-from latentarm.web.protocol.channel import Things
+from latentarm.web.protocol.channel import Record, Things, new_channel
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.protocol.things import described, whereabouts
 from latentarm.web.server.states import PageMemory
@@ -101,6 +110,40 @@ def test_things_are_looked_at_25_times_a_second_where_the_arm_knows_of_them():
     np.testing.assert_allclose(seen[0].poses, first, atol=1e-3)
     ghost = KinematicArm(setup.task.robot, setup.start, lambda: 0.0)
     assert Whereabouts(setup.scene, ghost).look(0) is None
+
+
+def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
+    """A ball is let go above the table, and a cup stands on it: all are recorded, and the ball matters."""
+    ball = Thing("ball", (Part("sphere", (0.02,)),), 0.05, Pose(np.array([0.5, 0.2, 0.1]), UPRIGHT))
+    cup = replace(CUP, pose=Pose(np.array([0.5, -0.2, 0.05]), UPRIGHT))
+    begun = load_setup(Spec(task="marshmallows", arm="mujoco"))
+    assert begun.objects == ("left marshmallow", "middle marshmallow", "right marshmallow")
+    setup = replace(begun, scene=Scene((cup, ball)), objects=("ball",))
+    reading, orders = Pipe(duplex=False)
+    clock, writer = SimulatedClock(), EpisodeWriter(tmp_path / "teleop")
+    with make_scene_arm("mujoco", setup.task.robot, setup.start, clock.now_s, setup.scene) as arm:
+        orders.send_bytes(Record(on=True, task="watch", person="Ada").model_dump_json().encode())
+        steering = Steering("end_effector")
+        Drive(setup, arm, new_channel(reading), clock, writer, lambda: False, steering).run(40)
+    writer.end()
+    writer.close()
+    orders.close()
+    reading.close()
+
+    (journal,) = (tmp_path / "teleop").glob("*.sqlite")
+    first = read_journal(journal)[0]
+    assert first.header.things == ("cup", "ball")
+    height = np.array([record.things[1, 2] for record in first.records])
+    assert height[0] > 0.09
+    np.testing.assert_allclose(height[-1], 0.02, atol=2e-3)  # it lies on the table
+    np.testing.assert_allclose(first.records[-1].things[0, :3], cup.pose.position, atol=2e-3)
+
+    export_journal(journal, tmp_path / "driven")
+    driven = read_dataset(tmp_path / "driven")
+    assert driven.objects == ("ball",)
+    seen = driven.episodes[0].extras[ENVIRONMENT]
+    np.testing.assert_allclose(seen, [record.things[1] for record in first.records], atol=1e-6)
+    assert context_layout(driven, ("joints", "objects")).objects == ("ball",)
 
 
 def test_a_task_with_things_needs_an_arm_that_can_touch_them():

@@ -36,11 +36,12 @@ def demonstrations_of(
     """Recorded episodes as a dataset, with everything that a step decided as further features.
 
     The command is the action. Further features: ``input.u``, ``latent.z``, ``action.human``,
-    ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief``, ``assist.bound``
-    (rad; -1 where nothing helps) and ``observation.environment_state`` (poses of the goals, which are the
-    dataset's objects). An arm with a gripper adds ``observation.gripper_width`` (m; a reading below zero
-    counts as zero), ``observation.gripper_holding`` (0 or 1) and ``action.gripper`` (m): the width that was
-    commanded last, or until something is commanded the one that it has (0 where it holds something).
+    ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief`` and ``assist.bound``
+    (rad; -1 where nothing helps). ``observation.environment_state`` has the poses of the things that matter
+    or, where no things were seen, of the goals; these are the dataset's objects. An arm with a gripper adds
+    ``observation.gripper_width`` (m; a reading below zero counts as zero),
+    ``observation.gripper_holding`` (0 or 1) and ``action.gripper`` (m): the width that was commanded last,
+    or until something is commanded the one that it has (0 where it holds something).
     Time starts at each episode's first sample. Incomplete episodes are skipped unless asked for. An episode
     is cut before its first impossible sample (see `first_implausible`).
 
@@ -53,8 +54,8 @@ def demonstrations_of(
         ImplausibleWarning: an episode was cut, or skipped because too little of it remained.
 
     Raises:
-        UserError: no episode is complete and long enough, or the episodes are of different robots or goals,
-            or of an arm with a gripper and one without.
+        UserError: no episode is complete and long enough, or the episodes are of different robots, goals or
+            things, or of an arm with a gripper and one without.
     """
     usable = [_until_implausible(episode) for episode in episodes if incomplete or episode.complete]
     kept = [episode for episode in usable if len(episode.records) >= _SHORTEST]
@@ -62,11 +63,14 @@ def demonstrations_of(
         raise UserError(f"{source} holds no complete episode: end an episode while recording it.")
     first = kept[0].header
     names = [goal.name for goal in first.goals]
+    objects = _objects(first)
     for episode in kept:
         header = episode.header
-        if header.joint_names != first.joint_names or [goal.name for goal in header.goals] != names:
+        differ = header.joint_names != first.joint_names or [goal.name for goal in header.goals] != names
+        if differ or _objects(header) != objects:
             raise UserError(
-                f"{source} holds episodes of different robots or goals: export them apart, with --episodes."
+                f"{source} holds episodes of different robots, goals or things: export them apart, with"
+                " --episodes."
             )
         if _has_gripper(episode) != _has_gripper(kept[0]):
             raise UserError(
@@ -80,7 +84,7 @@ def demonstrations_of(
         goals=first.goals,
         end_effector=first.end_effector,
         limits=first.limits,
-        objects=tuple(names),
+        objects=objects,
     )
 
 
@@ -157,6 +161,21 @@ def _gripper(records: Sequence[StepRecord]) -> dict[str, FloatArray]:
     }
 
 
+def _objects(header: EpisodeHeader) -> tuple[str, ...]:
+    """The things whose poses go into the dataset: those that matter; where none were seen, the goals."""
+    return header.objects or header.things or tuple(goal.name for goal in header.goals)
+
+
+def _poses(recorded: JournalEpisode, objects: Sequence[str]) -> FloatArray:
+    """Where they are at each sample, (T, 7 K)."""
+    header, records = recorded.header, recorded.records
+    if not header.things:
+        goals = [stored_rows(goal.pose) for goal in header.goals]
+        return np.tile(np.concatenate(goals), (len(records), 1))
+    chosen = [header.things.index(name) for name in objects]
+    return np.stack([record.things[chosen].ravel() for record in records])
+
+
 def _episode(recorded: JournalEpisode) -> Episode:
     records, goals = recorded.records, recorded.header.goals
     time_s = np.array([record.time_s for record in records])
@@ -172,8 +191,8 @@ def _episode(recorded: JournalEpisode) -> Episode:
         extras["belief"] = np.stack([record.belief for record in records])
         bound = np.array([[record.bound_rad] for record in records])
         extras["assist.bound"] = np.where(np.isnan(bound), NO_BOUND, bound)
-        poses = [stored_rows(goal.pose) for goal in goals]
-        extras[ENVIRONMENT] = np.tile(np.concatenate(poses), (len(records), 1))
+    if objects := _objects(recorded.header):
+        extras[ENVIRONMENT] = _poses(recorded, objects)
     extras |= _gripper(records)
     return Episode(
         state=np.stack([record.state for record in records]),

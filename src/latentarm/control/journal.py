@@ -4,24 +4,25 @@ import math
 import sqlite3
 from collections.abc import Collection, Generator, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, final
 
 import numpy as np
 
 from latentarm.control.recorder import LIMITS, EpisodeHeader, check_is_journal
-from latentarm.control.samples import ALWAYS, COMPACT, gripper_command, gripper_reading, unpacked
+from latentarm.control.samples import ALWAYS, COMPACT, gripper_command, gripper_reading, thing_poses, unpacked
 from latentarm.demonstrations.provenance import parse_provenance
 from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import parse_limits
-from latentarm.types import Command, FloatArray, Goal, Pose, StepRecord, Stop
+from latentarm.types import NO_THINGS, Command, FloatArray, Goal, Pose, StepRecord, Stop
 from latentarm.untrusted.documents import parse_object
 from latentarm.untrusted.memory import bounded_memory
 from latentarm.untrusted.opening import check_file, is_missing
 
 _SCALARS = 5
+_LATER = 3
 _MOST_FIGURES = 100_000
 _MOST_CELL_BYTES = 1 << 20
 _MOST_BYTES = 1 << 38
@@ -174,7 +175,7 @@ def _episode(
     ).fetchall()
     header = _checked_header(path, number, about)
     try:
-        records = tuple(_record(*sample) for sample in samples)
+        records = _standing([_record(*sample) for sample in samples], len(header.things))
     except (ValueError, TypeError, AttributeError, OverflowError) as error:
         raise _damaged(path, number, error) from error
     return JournalEpisode(header, records, bool(complete))
@@ -192,7 +193,7 @@ def _damaged(path: Path, number: int, error: Exception) -> UserError:
 
 
 def _header(about: dict[str, Any]) -> EpisodeHeader:
-    return EpisodeHeader(
+    header = EpisodeHeader(
         robot=str(about["robot"]),
         joint_names=tuple(str(name) for name in about["joint_names"]),
         rate_hz=float(about["rate_hz"]),
@@ -205,7 +206,20 @@ def _header(about: dict[str, Any]) -> EpisodeHeader:
         # Journals from before this was recorded have none.
         provenance=parse_provenance(about.get("provenance", {})),
         joint_limits=_joint_limits(about.get("joint_limits")),
+        # Journals from before things were recorded have neither.
+        things=_names(about.get("things", [])),
+        objects=_names(about.get("objects", [])),
     )
+    if not set(header.objects) <= set(header.things):
+        raise ValueError("an object is not among the things")
+    return header
+
+
+def _names(listed: Any) -> tuple[str, ...]:
+    names = tuple(str(name) for name in listed)
+    if not all(names) or len(set(names)) != len(names):
+        raise ValueError("two things have one name, or one has none")
+    return names
 
 
 def _joint_limits(limits: dict[str, Any] | None) -> JointLimits | None:
@@ -238,9 +252,9 @@ def _record(figures: bytes, stop: str | None, limited_by: str) -> StepRecord:
 
 
 def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str) -> StepRecord:
-    scalars, state, given, latent, human, assist, belief, velocity, *gripper = parts
-    # Journals from before grippers were recorded have no such parts.
-    measured, asked = gripper or (np.zeros(0), np.zeros(0))
+    scalars, state, given, latent, human, assist, belief, velocity, *later = parts
+    # Journals from before grippers or things were recorded have no such parts.
+    measured, asked, things = [*later, *[np.zeros(0)] * (_LATER - len(later))]
     # Journals from before the bound was recorded have one less.
     known = scalars.tolist() if len(scalars) == _SCALARS else [*scalars.tolist(), math.nan]
     time_s, alpha, mode, duration_s, bound_rad = known
@@ -263,4 +277,21 @@ def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str)
         ),
         bound_rad=bound_rad,
         gripper=gripper_reading(measured),
+        things=thing_poses(things),
     )
+
+
+def _standing(records: Sequence[StepRecord], count: int) -> tuple[StepRecord, ...]:
+    """Records each with the poses of all things, where a sample leaves out what stands as before.
+
+    Raises:
+        ValueError: there are poses of another number of things.
+    """
+    newest = NO_THINGS
+    standing: list[StepRecord] = []
+    for record in records:
+        newest = record.things if len(record.things) else newest
+        if len(newest) != count:
+            raise ValueError("a sample does not say where the things are")
+        standing.append(replace(record, things=newest) if count else record)
+    return tuple(standing)

@@ -11,22 +11,23 @@ from typing import final
 import numpy as np
 
 from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalWatch
-from latentarm.control.samples import ALWAYS, figures_of, packed
+from latentarm.control.samples import ALWAYS, figures_of, packed, without_things
 from latentarm.demonstrations.provenance import provenance_json
 from latentarm.errors import UserError
+from latentarm.kinematics.pose_rows import STORED
 from latentarm.robots.limits import JointLimits
 from latentarm.robots.limits_file import limits_document
-from latentarm.types import Goal, Provenance, StatedLimits, StepRecord, StrPath
+from latentarm.types import NO_THINGS, Goal, Provenance, StatedLimits, StepRecord, StrPath
 from latentarm.untrusted.opening import check_file, is_missing
 
 LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
 """What a header says of the joints' limits."""
 
-SCHEMA_VERSION = 3
-"""Version 2 made samples compact, version 3 gave them a gripper. Both older versions can still be read and
-appended to."""
+SCHEMA_VERSION = 4
+"""Version 2 made samples compact, version 3 gave them a gripper, version 4 things. All older versions can
+still be read and appended to."""
 
-_READABLE = (1, 2, 3)
+_READABLE = (1, 2, 3, 4)
 
 _PAGE_BYTES = 2048
 """Each sample is a transaction, and each transaction writes one or two whole pages to the log."""
@@ -72,6 +73,9 @@ class EpisodeHeader:
         end_effector: site, body or link of the robot's model file, or None.
         limits: what was stated of the robot's limits, or None.
         joint_limits: of the joints: samples outside them are impossible. None if unknown.
+        things: names of the K things whose poses every sample has; empty where nobody looks at things.
+        objects: those of them that matter for what is done, in the order of the context feature ``objects``;
+            all where this is empty.
     """
 
     robot: str
@@ -84,6 +88,8 @@ class EpisodeHeader:
     end_effector: str | None = None
     limits: StatedLimits | None = None
     joint_limits: JointLimits | None = None
+    things: tuple[str, ...] = ()
+    objects: tuple[str, ...] = ()
 
 
 @final
@@ -117,6 +123,8 @@ class Recorder:
         self._episode: int | None = None
         self._number = 0
         self._widths: tuple[int, ...] = ()
+        self._things_width = 0
+        self._things = NO_THINGS
         if not is_missing(path):
             check_file(path, sys.maxsize)
         try:
@@ -181,6 +189,8 @@ class Recorder:
                 for goal in header.goals
             ],
             "provenance": provenance_json(header.provenance),
+            "things": list(header.things),
+            "objects": list(header.objects),
         }
         try:
             cursor = self._database.execute("INSERT INTO episodes (about) VALUES (?)", (json.dumps(about),))
@@ -190,6 +200,7 @@ class Recorder:
         self._episode = cursor.lastrowid
         self._number = 0
         self._widths = ()
+        self._things_width = STORED * len(header.things)
         self._samples_per_check = max(round(header.rate_hz), 1)
 
     def record(self, record: StepRecord) -> None:
@@ -199,8 +210,8 @@ class Recorder:
             JournalFullError: there is no room for more; the episode was completed before this step.
             JournalLostError: the journal has gone, and the episode with it.
             UserError: the journal cannot be written (the disk is full; the episode then stays incomplete), or
-                no episode is under way, the record's shapes differ from those before, or a figure of its
-                gripper is not finite.
+                no episode is under way, the record's shapes differ from those before or from the header, or a
+                figure of its gripper or of its things is not finite.
         """
         if self._episode is None:
             raise UserError(f"{self._path} has no episode under way: begin one before recording.")
@@ -208,10 +219,14 @@ class Recorder:
             self.check()
         parts = figures_of(record)
         widths = tuple(len(part) for part in parts[:ALWAYS])
-        if self._number and widths != self._widths:
+        if (self._number and widths != self._widths) or record.things.size != self._things_width:
             raise UserError(f"A record for {self._path} has other shapes than those before it.")
         if not all(np.isfinite(part).all() for part in parts[ALWAYS:]):
-            raise UserError(f"A record for {self._path} has a gripper whose figures are not finite.")
+            raise UserError(
+                f"A record for {self._path} has a gripper or things whose figures are not finite."
+            )
+        if self._number and np.array_equal(record.things, self._things):
+            parts = without_things(parts)
         stop = record.command.stop
         row = (
             self._episode,
@@ -226,7 +241,7 @@ class Recorder:
             # A sample is missing now: this episode can no longer become complete.
             self._episode = None
             raise _unwritable(self._path, error) from error
-        self._widths = widths
+        self._widths, self._things = widths, record.things
         self._number += 1
 
     def check(self) -> None:

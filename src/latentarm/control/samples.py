@@ -6,17 +6,19 @@ from typing import Final
 
 import numpy as np
 
+from latentarm.kinematics.pose_rows import STORED
 from latentarm.types import FloatArray, GripperCommand, GripperReading, StepRecord
 
-COMPACT: Final = {b"\x02": 8, b"\x03": 10}
-"""How many parts a compact sample has, by its first byte; the last two, a gripper's, came later. Samples from
-before compact ones begin with a small integer as a float64: a byte of 0."""
+COMPACT: Final = {b"\x02": 8, b"\x03": 10, b"\x04": 11}
+"""How many parts a compact sample has, by its first byte: two of a gripper came later, then one of things.
+Samples from before compact ones begin with a small integer as a float64: a byte of 0."""
 
 ALWAYS: Final = 8
-"""Parts that every step of an episode has, in one width. Those after them are a gripper's, and are empty
-where nothing was measured or commanded."""
+"""Parts that every step of an episode has, in one width. Those after them are a gripper's, which are empty
+where nothing was measured or commanded, and that of the things, which is empty where all stand as in the
+sample before."""
 
-_WRITTEN: Final = b"\x03"
+_WRITTEN: Final = b"\x04"
 
 _ZERO: Final = 0x8000
 _SAME: Final = 0x4000
@@ -27,7 +29,7 @@ _LEFT_OUT_MOST: Final = 64
 
 
 def figures_of(record: StepRecord) -> Sequence[FloatArray]:
-    """The numbers of a record, in the journal's order: times and scalars, arrays, then the gripper's."""
+    """The numbers of a record, in the journal's order: scalars, arrays, the gripper's, the things'."""
     command = record.command
     measured, asked = record.gripper, command.gripper
     return (
@@ -41,7 +43,13 @@ def figures_of(record: StepRecord) -> Sequence[FloatArray]:
         command.velocity,
         _NOTHING if measured is None else np.array([measured.width_m, float(measured.holding)]),
         _NOTHING if asked is None else np.array([asked.width_m, asked.speed_m_s, asked.force_n]),
+        record.things.ravel(),
     )
+
+
+def without_things(parts: Sequence[FloatArray]) -> Sequence[FloatArray]:
+    """The parts of a sample in which all things stand as in the one before."""
+    return (*parts[:-1], _NOTHING)
 
 
 def gripper_reading(part: FloatArray) -> GripperReading | None:
@@ -68,6 +76,17 @@ def gripper_command(part: FloatArray) -> GripperCommand | None:
         return None
     width_m, speed_m_s, force_n = _gripper_figures(part, 3)
     return GripperCommand(width_m, speed_m_s, force_n)
+
+
+def thing_poses(part: FloatArray) -> FloatArray:
+    """Poses of things, (K, 7), from a sample's part.
+
+    Raises:
+        ValueError: it is not what `figures_of` makes.
+    """
+    if len(part) % STORED or not np.isfinite(part).all():
+        raise ValueError("figures of things are missing or not finite")
+    return part.reshape(-1, STORED)
 
 
 def _gripper_figures(part: FloatArray, count: int) -> list[float]:
@@ -112,7 +131,7 @@ def unpacked(sample: bytes) -> list[FloatArray]:
     """The parts of a compact sample.
 
     Args:
-        sample: as `packed` made it, or as it was made before there were grippers.
+        sample: as `packed` made it, or as it was made before there were grippers or things.
 
     Raises:
         ValueError: it is not what `packed` makes.

@@ -8,7 +8,7 @@ import numpy as np
 from latentarm.context import OBJECT
 from latentarm.errors import UserError
 from latentarm.kinematics.rotations import quaternion
-from latentarm.types import FloatArray, Pose
+from latentarm.types import NO_THINGS, FloatArray, Pose
 
 STORED: Final = 7
 """Position and quaternion (w, x, y, z)."""
@@ -43,6 +43,21 @@ def object_rows(poses: Mapping[str, Pose], names: Sequence[str]) -> FloatArray:
 def stored_rows(pose: Pose) -> FloatArray:
     """Poses as datasets store them, (..., 7): position, m, then the quaternion (w, x, y, z), w >= 0."""
     return np.concatenate([pose.position, quaternion(pose.rotation)], axis=-1)
+
+
+def thing_rows(poses: Mapping[str, Pose], names: Sequence[str]) -> FloatArray:
+    """Poses of named things as datasets store them, (K, 7), in the order of the names.
+
+    Args:
+        poses: in the base frame, by name, such as `SceneState.poses`.
+        names: K names that are all among them.
+    """
+    if not names:
+        return NO_THINGS
+    found = [poses[name] for name in names]
+    return stored_rows(
+        Pose(np.array([pose.position for pose in found]), np.array([pose.rotation for pose in found]))
+    )
 
 
 def seen_rows(stored: FloatArray) -> FloatArray:

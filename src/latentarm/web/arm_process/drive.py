@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
@@ -156,7 +156,8 @@ class Drive:
         if not math.isnan(record.state[0]):
             self._seen = record.state
         self._note_gripper(record)
-        self._writer.add(record)
+        # Only a recording is worth the look: some 0.1 ms.
+        self._writer.add(replace(record, things=self._whereabouts.rows()) if self._writer.on else record)
         if self._steering.ending_episode and self._step.at_rest:
             self._end_episode()
         self._obey(record)
@@ -263,6 +264,8 @@ class Drive:
                 ),
                 end_effector=robot.end_effector,
                 limits=robot.stated_limits,
+                things=self._whereabouts.names,
+                objects=self._setup.objects if self._whereabouts.names else (),
             )
         )
 

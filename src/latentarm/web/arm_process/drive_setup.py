@@ -102,6 +102,7 @@ class DriveSetup:
         start: (n,), where the arm starts, rad.
         run_fingerprint: of the run's weights; "" without a run.
         scene: what stands about the arm, or None where things are of no account.
+        objects: names of the things that matter for the task; empty where it does not say.
     """
 
     spec: Spec
@@ -113,6 +114,7 @@ class DriveSetup:
     start: FloatArray
     run_fingerprint: str = ""
     scene: Scene | None = None
+    objects: tuple[str, ...] = ()
 
     @property
     def modes(self) -> tuple[ModeName, ...]:
@@ -188,7 +190,7 @@ def load_setup(spec: Spec) -> DriveSetup:
         UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
     """
     ARMS.find(spec.arm, "--arm")  # so that the error appears where the command was typed
-    task, start, scene = _begin(spec)
+    task, start, scene, objects = _begin(spec)
     latent = None if spec.run is None else latent_controller(spec.run, spec.profile, task.robot)
     if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
         raise UserError(
@@ -206,13 +208,17 @@ def load_setup(spec: Spec) -> DriveSetup:
         start=start,
         run_fingerprint="" if spec.run is None else weights_fingerprint(spec.run),
         scene=scene,
+        objects=objects,
     )
     setup.step()  # what cannot be driven fails now rather than later
     return setup
 
 
-def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None]:
-    """Where the arm is driven, where it starts, (n,), rad, and what is about it: the same for equal specs."""
+def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None, tuple[str, ...]]:
+    """Where the arm is driven, where it starts, (n,), rad, what is about it and which things of that matter.
+
+    The same for equal specs.
+    """
     rng = np.random.default_rng(spec.seed)
     if spec.task is not None and spec.task in SCENE_TASKS:
         with_things = make_scene_task(spec.task)
@@ -221,12 +227,12 @@ def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None]:
         # Made here too, so that an arm that can touch nothing is refused where the command was typed.
         make_scene_arm(spec.arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
         place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles)
-        return place, begun.state, begun.scene
+        return place, begun.state, begun.scene, begun.objects
     if spec.run is None:
         task = task_without_run(spec.task)
     else:
         task = task_of_run(read_run(spec.run), spec.task, option=False)
-    return task, task.sample_start(0, rng), None
+    return task, task.sample_start(0, rng), None, ()
 
 
 def _check_things(task: str, scene: Scene) -> None:

@@ -3,7 +3,9 @@
 from typing import Final, final
 
 from latentarm.arms.contract import Arm, SceneArm
+from latentarm.kinematics.pose_rows import thing_rows
 from latentarm.scene.scene import Scene
+from latentarm.types import NO_THINGS, FloatArray
 from latentarm.web.protocol.channel import Things
 from latentarm.web.protocol.things import whereabouts
 
@@ -23,6 +25,17 @@ class Whereabouts:
     def __init__(self, scene: Scene | None, arm: Arm) -> None:
         self._scene = scene
         self._arm = arm if isinstance(arm, SceneArm) else None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The things that are seen, in the order of the scene."""
+        if self._scene is None or self._arm is None:
+            return ()
+        return tuple(thing.name for thing in self._scene.things)
+
+    def rows(self) -> FloatArray:
+        """Where they are now, (K, 7), see `StepRecord.things`."""
+        return NO_THINGS if self._arm is None else thing_rows(self._arm.scene_state().poses, self.names)
 
     def look(self, tick: int) -> Things | None:
         """Where everything is, or None where this is not a tick to look in.
