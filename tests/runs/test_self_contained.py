@@ -184,6 +184,8 @@ def test_links_out_of_a_run_are_refused(made: Path, tmp_path: Path) -> None:
         ("routes", [[[0.0, 0.0]]], "has no waypoint"),
         ("routes", [[[0.0, 0.0], [1.0]]], "must be a list of numbers"),
         ("routes", 5, "must be a list"),
+        ("open_at", [[1.0]] * 9, "'open_at' has 9 entries for"),
+        ("open_at", 5, "must be a list"),
     ],
 )
 def test_what_a_run_keeps_is_checked(made: Path, tmp_path: Path, key: str, value: object, said: str) -> None:

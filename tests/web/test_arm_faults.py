@@ -1,10 +1,21 @@
 """What the page says and does when something happens to the arm, in simulated time."""
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
+import pytest
+
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.joined import JoinedController
+from latentarm.controllers.latent import LatentController
+from latentarm.models.pca.training import PCA
+from latentarm.tasks.table_top import TableTop
+from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.protocol.channel import Enable
 
 from .conftest import said
+
+GRIPPER = ("observation.gripper_width", "action.gripper")
 
 PRESSED = "The emergency stop on the arm is pressed."
 
@@ -81,3 +92,23 @@ def test_the_arm_in_physics_is_driven_and_at_rest_soon_after_letting_go(desk_in_
         desk.setup.task.robot.chain.forward(np.array(reported(desk, at_s).q)) for at_s in (0.4, 1.4)
     )
     assert np.linalg.norm(end.position - start.position) > 0.05
+
+
+def test_a_model_that_sees_the_gripper_outlives_readings_that_do_not_come(desk):
+    shown = TableTop().demonstrate(4, np.random.default_rng(0))
+    told = tuple(
+        replace(one, extras={name: np.linspace(0.08, 0.0, len(one.state))[:, None] for name in GRIPPER})
+        for one in shown.episodes
+    )
+    decoder = PCA(context=("joints", "gripper")).fit(replace(shown, episodes=told, objects=())).decoder()
+    robot = desk.setup.task.robot
+    controller = JoinedController([LatentController(decoder), EndEffectorController(robot)])
+    setup = replace(desk.setup, controller=controller)
+    on = (desk.arm, desk.channel, desk.clock, desk.writer, lambda: False, Steering("latent"))
+    desk.drive = Drive(setup, *on, observers=[desk._saw])
+    drive(desk, {1.0: desk.arm.cut})
+    desk.run(2.0)
+    assert moving(desk, 0.6, 1.0)
+    assert desk.reports[0].gripper.width_m == pytest.approx(0.08)
+    assert max(report.tick for report in desk.reports) > 150
+    assert np.isnan(desk.records[-1].state).all()

@@ -291,7 +291,9 @@ class Drive:
         """Deferrable work: ghosts, one direction a tick, and the loop's statistics."""
         phase = self._steering.tick % _LOOK_EVERY
         if phase < 4:
-            self._ghosts.look(phase, self._step.context(self._seen), record.mode)
+            # Without a reading nobody knows the gripper, which the decoder may look at.
+            if not math.isnan(record.state[0]):
+                self._ghosts.look(phase, self._step.context(self._seen), record.mode)
         elif self._steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
             statistics = self._loop.statistics()
             self._late_share = 1.0 - statistics.met_share
