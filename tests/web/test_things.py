@@ -118,7 +118,9 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
     cup = replace(CUP, pose=Pose(np.array([0.5, -0.2, 0.05]), UPRIGHT))
     begun = load_setup(Spec(task="marshmallows", arm="mujoco"))
     assert begun.objects == ("left marshmallow", "middle marshmallow", "right marshmallow")
-    setup = replace(begun, scene=Scene((cup, ball)), objects=("ball",))
+    setup = replace(
+        begun, task=ScenePlace(begun.task.robot, (), (), objects=("ball",)), scene=Scene((cup, ball))
+    )
     reading, orders = Pipe(duplex=False)
     clock, writer = SimulatedClock(), EpisodeWriter(tmp_path / "teleop")
     with make_scene_arm("mujoco", setup.task.robot, setup.start, clock.now_s, setup.scene) as arm:

@@ -37,8 +37,10 @@ class ScenePlace:
         robot: the arm, with what it carries.
         goals: what the person may want first.
         obstacles: what the arm must keep clear of.
+        objects: names of the things that matter, see `Beginning`.
     """
 
     robot: Robot
     goals: tuple[Goal, ...]
     obstacles: tuple[Obstacle, ...]
+    objects: tuple[str, ...] = ()

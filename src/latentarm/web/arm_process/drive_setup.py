@@ -102,7 +102,6 @@ class DriveSetup:
         start: (n,), where the arm starts, rad.
         run_fingerprint: of the run's weights; "" without a run.
         scene: what stands about the arm, or None where things are of no account.
-        objects: names of the things that matter for the task; empty where it does not say.
     """
 
     spec: Spec
@@ -114,7 +113,6 @@ class DriveSetup:
     start: FloatArray
     run_fingerprint: str = ""
     scene: Scene | None = None
-    objects: tuple[str, ...] = ()
 
     @property
     def modes(self) -> tuple[ModeName, ...]:
@@ -122,6 +120,11 @@ class DriveSetup:
         if not self.latent_dim:
             return ("end_effector",)
         return ("latent", "assisted", "end_effector") if self.task.goals else ("latent", "end_effector")
+
+    @property
+    def objects(self) -> tuple[str, ...]:
+        """Names of the things that matter for the task; empty where it does not say."""
+        return self.task.objects if isinstance(self.task, ScenePlace) else ()
 
     def mode_index(self, mode: ModeName, axes: int) -> int:
         """Index into the controller's modes.
@@ -190,7 +193,7 @@ def load_setup(spec: Spec) -> DriveSetup:
         UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
     """
     ARMS.find(spec.arm, "--arm")  # so that the error appears where the command was typed
-    task, start, scene, objects = _begin(spec)
+    task, start, scene = _begin(spec)
     latent = None if spec.run is None else latent_controller(spec.run, spec.profile, task.robot)
     if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
         raise UserError(
@@ -208,17 +211,13 @@ def load_setup(spec: Spec) -> DriveSetup:
         start=start,
         run_fingerprint="" if spec.run is None else weights_fingerprint(spec.run),
         scene=scene,
-        objects=objects,
     )
     setup.step()  # what cannot be driven fails now rather than later
     return setup
 
 
-def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None, tuple[str, ...]]:
-    """Where the arm is driven, where it starts, (n,), rad, what is about it and which things of that matter.
-
-    The same for equal specs.
-    """
+def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None]:
+    """Where the arm is driven, where it starts, (n,), rad, and what is about it: the same for equal specs."""
     rng = np.random.default_rng(spec.seed)
     if spec.task is not None and spec.task in SCENE_TASKS:
         with_things = make_scene_task(spec.task)
@@ -226,13 +225,13 @@ def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None, tuple[str, ...]
         _check_things(spec.task, begun.scene)
         # Made here too, so that an arm that can touch nothing is refused where the command was typed.
         make_scene_arm(spec.arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
-        place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles)
-        return place, begun.state, begun.scene, begun.objects
+        place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles, begun.objects)
+        return place, begun.state, begun.scene
     if spec.run is None:
         task = task_without_run(spec.task)
     else:
         task = task_of_run(read_run(spec.run), spec.task, option=False)
-    return task, task.sample_start(0, rng), None, ()
+    return task, task.sample_start(0, rng), None
 
 
 def _check_things(task: str, scene: Scene) -> None:
