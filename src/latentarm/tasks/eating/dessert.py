@@ -1,33 +1,27 @@
 """A marshmallow stabbed, drawn through icing and dipped in rice: the paper's *Dessert*, in physics."""
 
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import partial
 from typing import Final, final
 
 import numpy as np
 
-from latentarm.kinematics.obstacles import Obstacle
-from latentarm.robots.catalogue import load_robot
-from latentarm.robots.robot import Robot
 from latentarm.scene.containers import bowl, packed
 from latentarm.scene.interior import Interior
-from latentarm.scene.scene import Scene, SceneState
+from latentarm.scene.scene import Scene
 from latentarm.scene.thing import Grains, Thing
-from latentarm.tasks.eating.marshmallows import START_SPREAD_RAD
-from latentarm.tasks.eating.stabbing import HOVER_M, above, stab
+from latentarm.tasks.eating.fork_task import OFF_M, ForkTask, fallen
+from latentarm.tasks.eating.stabbing import above, over, stab
 from latentarm.tasks.eating.table import (
     MARSHMALLOW_HALF_M,
     STAND_M,
     at,
-    fork,
     marshmallow,
     plate,
 )
-from latentarm.tasks.inverse_kinematics import solve
-from latentarm.tasks.predicates import CarriedOver, Dropped, Placed, Spilled, Swept, Within
-from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.predicates import CarriedOver, Placed, Spilled, Swept, Within
+from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.types import FloatArray, Goal, Pose
 
 MIDDLE_M: Final = (0.50, 0.0)
 """x and y of the plate with the marshmallow."""
@@ -63,6 +57,9 @@ RICE: Final = 40
 
 RICE_RADIUS_M: Final = 0.005
 
+SPILLED: Final = 0.5
+"""Share of it that may be spilled."""
+
 BOWL_RADIUS_M: Final = 0.045
 BOWL_HEIGHT_M: Final = 0.035
 
@@ -71,9 +68,12 @@ WET: Final = Interior(ICING_RADIUS_M, 0.0, ICING_DEEP_M)
 
 MARSHMALLOW: Final = "marshmallow"
 
+NAMES: Final = (MARSHMALLOW, "icing", "rice bowl", "own plate")
+"""What matters, in the order in which it is needed."""
+
 
 @final
-class Dessert(SceneTask):
+class Dessert(ForkTask):
     """Stab a marshmallow, scoop it through icing, dip it in rice, and set it down on the own plate."""
 
     @property
@@ -82,19 +82,9 @@ class Dessert(SceneTask):
         return "dessert"
 
     @property
-    def robot(self) -> Robot:
-        """A Panda with a fork."""
-        return self._robot
-
-    @property
     def choices(self) -> tuple[str, ...]:
         """One marshmallow."""
         return (MARSHMALLOW,)
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table."""
-        return (Scene().table,)
 
     @property
     def time_limit_s(self) -> float:
@@ -121,29 +111,19 @@ class Dessert(SceneTask):
             marshmallow(MARSHMALLOW, float(x), float(y), rng.uniform(-np.pi, np.pi)),
         )
         scene = Scene(things, (rice,))
-        state = self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
         room = dish.room
         return Beginning(
-            state=state,
+            state=self.start(rng),
             scene=scene,
             steps=_steps(room),
             failures=(
-                Dropped(MARSHMALLOW, STAND_M - 0.02),
-                Spilled("rice", STAND_M - 0.02, (("rice bowl", room),), 0.5),
+                *fallen(MARSHMALLOW),
+                Spilled("rice", OFF_M, (("rice bowl", room),), SPILLED),
             ),
-            goals=tuple(self._goal(scene, name) for name in (MARSHMALLOW, "icing", "rice bowl", "own plate")),
-            objects=(MARSHMALLOW, "icing", "rice bowl", "own plate"),
+            goals=self.goals(scene.thing(name) for name in NAMES),
+            objects=NAMES,
             text="dip the marshmallow in icing and rice",
         )
-
-    def _goal(self, scene: Scene, name: str) -> Goal:
-        place = scene.thing(name).pose.position
-        configuration = solve(self.robot, fork(place, HOVER_M), self.robot.home)
-        return Goal(name, configuration, self.robot.chain.forward(configuration))
-
-    @cached_property
-    def _robot(self) -> Robot:
-        return load_robot("panda_fork")
 
 
 def icing(name: str, x: float, y: float) -> Thing:
@@ -155,18 +135,18 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
     enter, leave = -0.035, 0.035
     low = MARSHMALLOW_HALF_M + 0.006
     through = (
-        Waypoint(partial(_over, dish="icing", height_m=0.07, tilt_rad=SCOOP_RAD, out_m=enter)),
-        Waypoint(partial(_over, dish="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=enter), speed=0.6),
-        Waypoint(partial(_over, dish="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=leave), speed=0.6),
-        Waypoint(partial(_over, dish="icing", height_m=0.08, tilt_rad=SCOOP_RAD, out_m=leave)),
+        Waypoint(partial(over, thing="icing", height_m=0.07, tilt_rad=SCOOP_RAD, out_m=enter)),
+        Waypoint(partial(over, thing="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=enter), speed=0.6),
+        Waypoint(partial(over, thing="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=leave), speed=0.6),
+        Waypoint(partial(over, thing="icing", height_m=0.08, tilt_rad=SCOOP_RAD, out_m=leave)),
     )
     into = (
-        Waypoint(partial(_over, dish="rice bowl", height_m=0.09)),
-        Waypoint(partial(_over, dish="rice bowl", height_m=0.018), speed=0.4, wait_s=0.3),
+        Waypoint(partial(over, thing="rice bowl", height_m=0.09)),
+        Waypoint(partial(over, thing="rice bowl", height_m=0.018), speed=0.4, wait_s=0.3),
     )
-    over = Waypoint(partial(_over, dish="own plate", height_m=0.09))
+    high = Waypoint(partial(over, thing="own plate", height_m=0.09))
     down = Waypoint(
-        partial(_over, dish="own plate", height_m=MARSHMALLOW_HALF_M + 0.006), wait_s=0.5, speed=0.5
+        partial(over, thing="own plate", height_m=MARSHMALLOW_HALF_M + 0.006), wait_s=0.5, speed=0.5
     )
     centre = np.array([*OWN_M, STAND_M + MARSHMALLOW_HALF_M])
     laid = Placed(MARSHMALLOW, centre, np.array([0.8 * SMALL_M, 0.8 * SMALL_M, 0.015]), let_go=False)
@@ -179,14 +159,7 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
         TaskStep("above", "over the rice", CarriedOver(MARSHMALLOW, "rice bowl", 0.03), into[:1]),
         TaskStep("dipped", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),
         TaskStep(
-            "above", "over the own plate", CarriedOver(MARSHMALLOW, "own plate", 0.03), (*into[:1], over)
+            "above", "over the own plate", CarriedOver(MARSHMALLOW, "own plate", 0.03), (*into[:1], high)
         ),
-        TaskStep("placed", "set down", laid, (over, down)),
+        TaskStep("placed", "set down", laid, (high, down)),
     )
-
-
-def _over(state: SceneState, dish: str, height_m: float, tilt_rad: float = 0.0, out_m: float = 0.0) -> Pose:
-    """The fork over a dish, a little farther out or in."""
-    place: FloatArray = state.poses[dish].position
-    outwards = np.array([place[0], place[1], 0.0]) / np.hypot(place[0], place[1])
-    return fork(place + out_m * outwards, height_m, float(np.arctan2(place[1], place[0])), tilt_rad)

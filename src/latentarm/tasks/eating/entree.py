@@ -1,23 +1,19 @@
 """A slice of tofu that is cut off, stabbed and brought to a plate: the paper's *Entree*, in physics."""
 
-from functools import cached_property, partial
+from functools import partial
 from typing import Final, final
 
 import numpy as np
 
-from latentarm.kinematics.obstacles import Obstacle
-from latentarm.robots.catalogue import load_robot
-from latentarm.robots.robot import Robot
 from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Bond, Food, Part, Thing
-from latentarm.tasks.eating.marshmallows import START_SPREAD_RAD
-from latentarm.tasks.eating.stabbing import HOVER_M, above, stab
+from latentarm.tasks.eating.fork_task import ForkTask, fallen
+from latentarm.tasks.eating.stabbing import above, over, stab
 from latentarm.tasks.eating.table import PLATE_RADIUS_M, STAND_M, at, fork, plate
-from latentarm.tasks.inverse_kinematics import solve
-from latentarm.tasks.predicates import Apart, CarriedOver, Dropped, Placed
-from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.predicates import Apart, CarriedOver, Placed
+from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.types import Goal, Pose
+from latentarm.types import Pose
 
 DISH_M: Final = (0.50, 0.14)
 """x and y of the middle of the dish with the tofu."""
@@ -47,7 +43,7 @@ _COLOUR: Final = (0.96, 0.93, 0.82, 1.0)
 
 
 @final
-class Entree(SceneTask):
+class Entree(ForkTask):
     """Cut a slice of tofu with the edge of the fork, stab it, and bring it to the person's own plate."""
 
     @property
@@ -56,19 +52,9 @@ class Entree(SceneTask):
         return "entree"
 
     @property
-    def robot(self) -> Robot:
-        """A Panda with a fork."""
-        return self._robot
-
-    @property
     def choices(self) -> tuple[str, ...]:
         """One slice."""
         return ("slice",)
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table."""
-        return (Scene().table,)
 
     @property
     def time_limit_s(self) -> float:
@@ -83,13 +69,12 @@ class Entree(SceneTask):
             things=(plate("dish", *DISH_M), plate("own plate", *OWN_M), *tofu(float(x), float(y), turn)),
             bonds=(cut_between(),),
         )
-        state = self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
         return Beginning(
-            state=state,
+            state=self.start(rng),
             scene=scene,
             steps=self._steps(turn),
-            failures=tuple(Dropped(name, STAND_M - 0.02) for name in ("tofu", "slice")),
-            goals=tuple(self._goal(scene, name) for name in ("slice", "own plate")),
+            failures=fallen("tofu", "slice"),
+            goals=self.goals((scene.thing("slice"), scene.thing("own plate")), np.pi / 2),
             objects=("tofu", "slice", "own plate"),
             text="cut a slice of tofu and bring it to the plate",
         )
@@ -105,26 +90,18 @@ class Entree(SceneTask):
             speed=0.5,
         )
         out = Waypoint(partial(_at_cut, height_m=0.05, turn_rad=along), within_rad=0.3)
-        over = Waypoint(partial(_over_own, height_m=0.10, turn_rad=along))
-        down = Waypoint(partial(_over_own, height_m=HALF_M[2] + 0.006, turn_rad=along), wait_s=0.5, speed=0.5)
+        high = Waypoint(partial(over, thing="own plate", height_m=0.10, turn_rad=along))
+        low = partial(over, thing="own plate", height_m=HALF_M[2] + 0.006, turn_rad=along)
+        down = Waypoint(low, wait_s=0.5, speed=0.5)
         centre = np.array([*OWN_M, STAND_M + HALF_M[2]])
         laid = Placed("slice", centre, np.array([*(2 * [0.7 * PLATE_RADIUS_M]), 0.015]), let_go=False)
         return (
             above("slice", along),
             TaskStep("cut", "a slice cut off", Apart("tofu", "slice"), (ready, through, out)),
             stab("slice", along, HALF_M[2]),
-            TaskStep("above", "above the plate", CarriedOver("slice", "own plate", 0.03), (over,)),
-            TaskStep("placed", "the slice on the plate", laid, (over, down)),
+            TaskStep("above", "above the plate", CarriedOver("slice", "own plate", 0.03), (high,)),
+            TaskStep("placed", "the slice on the plate", laid, (high, down)),
         )
-
-    def _goal(self, scene: Scene, name: str) -> Goal:
-        place = scene.thing(name).pose.position
-        configuration = solve(self.robot, fork(place, HOVER_M, np.pi / 2), self.robot.home)
-        return Goal(name, configuration, self.robot.chain.forward(configuration))
-
-    @cached_property
-    def _robot(self) -> Robot:
-        return load_robot("panda_fork")
 
 
 def tofu(x: float, y: float, turn_rad: float) -> tuple[Thing, Thing]:
@@ -164,8 +141,3 @@ def _at_cut(state: SceneState, height_m: float, turn_rad: float) -> Pose:
     pose = state.poses["tofu"]
     place = pose.position + pose.rotation @ np.array([0.0, HALF_M[1], HALF_M[2]])
     return fork(place, height_m, turn_rad)
-
-
-def _over_own(state: SceneState, height_m: float, turn_rad: float) -> Pose:
-    """The fork over the person's own plate."""
-    return fork(state.poses["own plate"].position, height_m, turn_rad)

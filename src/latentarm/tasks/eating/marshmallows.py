@@ -1,22 +1,17 @@
 """Three marshmallows on a plate, one of which is to be stabbed: the paper's first user study, in physics."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final, final
 
 import numpy as np
 
-from latentarm.kinematics.obstacles import Obstacle
-from latentarm.robots.catalogue import load_robot
-from latentarm.robots.robot import Robot
 from latentarm.scene.scene import Scene
-from latentarm.tasks.eating.stabbing import HOVER_M, above, stab
-from latentarm.tasks.eating.table import STAND_M, fork, marshmallow, plate
-from latentarm.tasks.inverse_kinematics import solve
-from latentarm.tasks.predicates import Dropped
+from latentarm.tasks.eating.fork_task import ForkTask, fallen
+from latentarm.tasks.eating.stabbing import above, stab
+from latentarm.tasks.eating.table import marshmallow, plate
 from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning, SceneTask
-from latentarm.types import FloatArray, Goal
+from latentarm.tasks.scene_task import Beginning
+from latentarm.types import FloatArray
 
 PLATE_AT_M: Final[Region] = ((0.5, 0.5), (0.0, 0.0))
 """x and y of the plate's middle: always the same, as in the paper."""
@@ -32,13 +27,10 @@ SECTOR_RAD: Final = 0.6
 OUT_M: Final = (0.045, 0.075)
 """How far from the plate's middle."""
 
-START_SPREAD_RAD: Final = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
-"""How far each joint may start from the robot's home, at most: mostly turned about the base."""
-
 
 @final
 @dataclass(frozen=True, eq=False)
-class Marshmallows(SceneTask):
+class Marshmallows(ForkTask):
     """Bring the fork over the chosen marshmallow, stab it and lift it.
 
     Attributes:
@@ -53,19 +45,9 @@ class Marshmallows(SceneTask):
         return "marshmallows"
 
     @property
-    def robot(self) -> Robot:
-        """A Panda with a fork."""
-        return self._robot
-
-    @property
     def choices(self) -> tuple[str, ...]:
         """Which marshmallow."""
         return NAMES
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; the food and its plate may be touched."""
-        return (Scene().table,)
 
     @property
     def time_limit_s(self) -> float:
@@ -81,25 +63,16 @@ class Marshmallows(SceneTask):
             for name, (x, y) in zip(NAMES, places, strict=True)
         ]
         scene = Scene((plate("plate", *middle), *food))
-        state = self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
         wanted = NAMES[choice]
         return Beginning(
-            state=state,
+            state=self.start(rng),
             scene=scene,
             steps=(above(wanted), stab(wanted)),
-            failures=tuple(Dropped(name, STAND_M - 0.02) for name in NAMES),
-            goals=tuple(self._goal(thing.name, thing.pose.position) for thing in food),
+            failures=fallen(*NAMES),
+            goals=self.goals(food),
             objects=NAMES,
             text=f"stab the {wanted}",
         )
-
-    def _goal(self, name: str, place: FloatArray) -> Goal:
-        configuration = solve(self.robot, fork(place, HOVER_M), self.robot.home)
-        return Goal(name, configuration, self.robot.chain.forward(configuration))
-
-    @cached_property
-    def _robot(self) -> Robot:
-        return load_robot("panda_fork")
 
 
 def _place(plate: FloatArray, index: int, rng: np.random.Generator) -> tuple[float, float]:

@@ -3,11 +3,13 @@
 from functools import partial
 from typing import Final
 
+import numpy as np
+
 from latentarm.scene.scene import SceneState
 from latentarm.tasks.eating.table import MARSHMALLOW_HALF_M, STAND_M, fork
 from latentarm.tasks.predicates import Above, Stabbed
 from latentarm.tasks.steps import TaskStep, Waypoint
-from latentarm.types import Pose
+from latentarm.types import FloatArray, Pose
 
 HOVER_M: Final = 0.10
 """How far over the middle of the food a reach ends."""
@@ -26,8 +28,8 @@ def above(thing: str, turn_rad: float | None = None) -> TaskStep:
         thing: its name.
         turn_rad: see `latentarm.tasks.eating.table.fork`.
     """
-    over = Waypoint(partial(_over, thing=thing, height_m=HOVER_M, turn_rad=turn_rad))
-    return TaskStep("above", f"above the {thing}", Above(thing, 0.02, 0.05, 0.2), (over,))
+    high = Waypoint(partial(over, thing=thing, height_m=HOVER_M, turn_rad=turn_rad))
+    return TaskStep("above", f"above the {thing}", Above(thing, 0.02, 0.05, 0.2), (high,))
 
 
 def stab(thing: str, turn_rad: float | None = None, half_m: float = MARSHMALLOW_HALF_M) -> TaskStep:
@@ -38,18 +40,36 @@ def stab(thing: str, turn_rad: float | None = None, half_m: float = MARSHMALLOW_
         turn_rad: see `latentarm.tasks.eating.table.fork`.
         half_m: half of its height, m.
     """
-    over = partial(_over, thing=thing, turn_rad=turn_rad)
+    above_it = partial(over, thing=thing, turn_rad=turn_rad)
     lying_m = STAND_M + half_m
-    near = Waypoint(partial(over, height_m=half_m + 0.02), within_m=0.008, speed=0.6)
-    into = Waypoint(partial(over, height_m=-INTO_M), within_m=0.008, wait_s=0.1, speed=0.4)
+    near = Waypoint(partial(above_it, height_m=half_m + 0.02), within_m=0.008, speed=0.6)
+    into = Waypoint(partial(above_it, height_m=-INTO_M), within_m=0.008, wait_s=0.1, speed=0.4)
     lifted = Waypoint(partial(_over_plate, thing=thing, height_m=lying_m + HOVER_M, turn_rad=turn_rad))
     done = Stabbed(thing, lying_m + LIFTED_M)
     return TaskStep("stabbed", f"the {thing} on the fork", done, (near, into, lifted))
 
 
-def _over(state: SceneState, thing: str, height_m: float, turn_rad: float | None) -> Pose:
-    """The fork upright over a thing."""
-    return fork(state.poses[thing].position, height_m, turn_rad)
+def over(
+    state: SceneState,
+    thing: str,
+    height_m: float,
+    turn_rad: float | None = None,
+    tilt_rad: float = 0.0,
+    out_m: float = 0.0,
+) -> Pose:
+    """The fork over a thing.
+
+    Args:
+        state: where that is now.
+        thing: its name.
+        height_m: of the fork's tip over it, m.
+        turn_rad: see `latentarm.tasks.eating.table.fork`.
+        tilt_rad: see the same.
+        out_m: how far farther away from the arm's base, m.
+    """
+    place: FloatArray = state.poses[thing].position
+    outwards = np.array([place[0], place[1], 0.0]) / np.hypot(place[0], place[1])
+    return fork(place + out_m * outwards, height_m, turn_rad, tilt_rad)
 
 
 def _over_plate(state: SceneState, thing: str, height_m: float, turn_rad: float | None) -> Pose:

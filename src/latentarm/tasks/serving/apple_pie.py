@@ -1,22 +1,19 @@
 """Eggs, flour and an apple for a pie: the paper's second user study, in physics."""
 
 from collections.abc import Mapping
-from functools import cached_property, partial
+from functools import partial
 from typing import Final, final
 
 import numpy as np
 
-from latentarm.kinematics.obstacles import Obstacle
-from latentarm.robots.catalogue import load_robot
-from latentarm.robots.robot import Robot
 from latentarm.scene.containers import bowl, cup
 from latentarm.scene.interior import Interior
 from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Part, Thing
 from latentarm.tasks.eating.table import at
-from latentarm.tasks.predicates import CarriedOver, Dropped, KnockedOver, Placed, Spilled, Stirred, Within
+from latentarm.tasks.predicates import CarriedOver, KnockedOver, Placed, Stirred, Within
 from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.serving.counter import (
     BOWL_HEIGHT_M,
     FLOUR,
@@ -29,8 +26,8 @@ from latentarm.tasks.serving.counter import (
     counter_cup,
     filled,
 )
-from latentarm.tasks.serving.cup_steps import LIFT_M, at_place, over, pour, take
-from latentarm.tasks.serving.reach_and_pour import start
+from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
+from latentarm.tasks.serving.cup_steps import LIFT_M, POURED, at_place, over, pour, take
 from latentarm.tasks.steps import TaskStep, Waypoint
 from latentarm.types import FloatArray, Pose
 
@@ -62,12 +59,6 @@ EGG_RADIUS_M: Final = 0.008
 EGG_KG: Final = 0.004
 GRAINS: Final = 30
 
-POURED: Final = 0.8
-"""Share of the eggs or the flour that must end in the bowl."""
-
-SPILLED: Final = 0.25
-"""Share that may be spilled."""
-
 APPLE_RADIUS_M: Final = 0.028
 
 STAND_M: Final = 0.05
@@ -85,7 +76,7 @@ STIR_STROKES: Final = 6
 
 
 @final
-class ApplePie(SceneTask):
+class ApplePie(CounterTask):
     """Pour eggs into a bowl and drop their cup into the bin; flour, and put it back; an apple, and stir."""
 
     @property
@@ -94,19 +85,9 @@ class ApplePie(SceneTask):
         return "apple_pie"
 
     @property
-    def robot(self) -> Robot:
-        """A Panda with its hand."""
-        return self._robot
-
-    @property
     def choices(self) -> tuple[str, ...]:
         """The three parts of the recipe; between them the arm goes back to its start, as in the paper."""
         return CHOICES
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table."""
-        return (Scene().table,)
 
     @property
     def time_limit_s(self) -> float:
@@ -124,22 +105,18 @@ class ApplePie(SceneTask):
         rooms = {name: things[name].room for name in ("bowl", "bin", "egg cup", "flour cup")}
         what = CHOICES[choice]
         return Beginning(
-            state=start(self.robot, rng),
+            state=self.start(rng),
             scene=Scene(tuple(things.values()), grains),
             steps=_STEPS[what](things, rooms),
             failures=(
-                *(Dropped(name, TOP_M - 0.05) for name in ("egg cup", "flour cup", "apple", "spoon")),
+                *fallen("egg cup", "flour cup", "apple", "spoon"),
                 *(KnockedOver(name) for name in ("egg cup", "flour cup") if not name.startswith(what[:3])),
-                *(Spilled(name, TOP_M - 0.02, (("bowl", rooms["bowl"]),), SPILLED) for name in CHOICES[:2]),
+                *(spilled(name, things["bowl"]) for name in CHOICES[:2]),
             ),
             goals=(),
             objects=("egg cup", "flour cup", "apple", "bowl", "bin", "shelf"),
             text=f"the {what} of the pie",
         )
-
-    @cached_property
-    def _robot(self) -> Robot:
-        return load_robot("panda")
 
 
 _YOLK: Final = (0.95, 0.75, 0.3, 1.0)

@@ -1,21 +1,19 @@
 """A hand that goes round a bottle: *Avoid* of the paper's fourth user study, in physics."""
 
-from functools import cached_property, partial
+from functools import partial
 from typing import Final, final
 
 import numpy as np
 
-from latentarm.kinematics.obstacles import Obstacle
-from latentarm.robots.catalogue import load_robot
-from latentarm.robots.robot import Robot
 from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Part, Thing
 from latentarm.tasks.eating.table import at
-from latentarm.tasks.inverse_kinematics import solve
 from latentarm.tasks.predicates import KnockedOver, Pressed
 from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning, SceneTask
-from latentarm.tasks.serving.counter import POSTURE_RAD, TOP_M, bearing_of, counter, hand
+from latentarm.tasks.scene_task import Beginning
+from latentarm.tasks.serving.counter import TOP_M, bearing_of, counter, hand
+from latentarm.tasks.serving.counter_task import CounterTask
+from latentarm.tasks.serving.cup_steps import at_place
 from latentarm.tasks.steps import TaskStep, Waypoint
 from latentarm.types import FloatArray, Goal, Pose
 
@@ -42,7 +40,7 @@ _RADIUS_M: Final = 0.03
 
 
 @final
-class Avoid(SceneTask):
+class Avoid(CounterTask):
     """Guide the hand in a plane past a bottle to a place behind it."""
 
     @property
@@ -51,19 +49,9 @@ class Avoid(SceneTask):
         return "avoid"
 
     @property
-    def robot(self) -> Robot:
-        """A Panda with its hand."""
-        return self._robot
-
-    @property
     def choices(self) -> tuple[str, ...]:
         """One place."""
         return ("place",)
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; to keep clear of the bottle is the task."""
-        return (Scene().table,)
 
     @property
     def time_limit_s(self) -> float:
@@ -76,26 +64,19 @@ class Avoid(SceneTask):
         goal = np.append(anywhere(GOAL_AT_M, rng), PLANE_M)
         place = np.append(anywhere(START_AT_M, rng), PLANE_M)
         past = Waypoint(_before_bottle, within_m=0.03, within_rad=0.35)
-        there = Waypoint(partial(_there, place=goal), within_m=0.03, within_rad=0.35)
-        posture = np.array(POSTURE_RAD)
-        wanted = hand(goal, bearing_of(goal))
-        configuration = solve(self.robot, wanted, posture)
+        there = Waypoint(partial(at_place, place=goal), within_m=0.03, within_rad=0.35)
         return Beginning(
-            state=solve(self.robot, hand(place, bearing_of(place)), posture),
+            state=self.reaching(place),
             scene=Scene((counter(), bottle)),
             steps=(
                 TaskStep("reached", "past the bottle", _past, (past, there)),
                 TaskStep("reached", "at the place", there.reached, (there,)),
             ),
             failures=(Pressed("bottle", TOUCHED_N), KnockedOver("bottle")),
-            goals=(Goal("place", configuration, wanted),),
+            goals=(Goal("place", self.reaching(goal), hand(goal, bearing_of(goal))),),
             objects=("bottle",),
             text="go round the bottle",
         )
-
-    @cached_property
-    def _robot(self) -> Robot:
-        return load_robot("panda")
 
 
 def _bottle(x: float, y: float) -> Thing:
@@ -115,7 +96,3 @@ def _before_bottle(state: SceneState) -> Pose:
     place -= ROUND_M * np.array([np.cos(bearing), np.sin(bearing), 0.0])
     place[2] = PLANE_M
     return hand(place, bearing)
-
-
-def _there(state: SceneState, place: FloatArray) -> Pose:
-    return hand(place, bearing_of(place))

@@ -34,6 +34,7 @@ POSTURE_RAD: Final = (0.0, -0.5, 0.0, -2.3, 0.0, 2.2, np.pi / 4)
 """From where configurations are looked for, rad: the hand before the chest, pointing out and down."""
 
 FLOUR: Final = (0.9, 0.85, 0.7, 1.0)
+_BLUE: Final = (0.36, 0.55, 0.75, 1.0)
 _WOOD: Final = (0.55, 0.42, 0.30, 1.0)
 
 
@@ -45,7 +46,7 @@ def counter() -> Thing:
     return Thing("counter", (block,), 20.0, at((x0 + x1) / 2, (y0 + y1) / 2, TOP_M), fixed=True)
 
 
-def counter_cup(name: str, x: float, y: float, colour: Colour, up_m: float = 0.0) -> Thing:
+def counter_cup(name: str, x: float, y: float, colour: Colour = _BLUE, up_m: float = 0.0) -> Thing:
     """A cup on the counter, or on something that stands on it."""
     made = cup(CUP_RADIUS_M, CUP_HEIGHT_M, colour)
     return Thing(name, made.parts, 0.06, at(x, y, TOP_M + up_m), friction=1.0, interior=made.interior)

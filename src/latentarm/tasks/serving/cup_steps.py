@@ -24,6 +24,9 @@ LIFTED_M: Final = 0.10
 POURING_M: Final = 0.14
 """How far over a bowl's rim the fingers are while they pour."""
 
+POURED: Final = 0.8
+"""Share of what is in a cup that must end in the bowl, where it is to be emptied."""
+
 POUR_RAD: Final = 1.8
 """How far a cup is tilted to be emptied."""
 

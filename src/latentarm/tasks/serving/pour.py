@@ -1,28 +1,22 @@
 """A cup that is shared between two bowls: *Pour* of the paper's fourth user study, in physics."""
 
-from functools import cached_property
 from typing import Final, final
 
 import numpy as np
 
-from latentarm.kinematics.obstacles import Obstacle
-from latentarm.robots.catalogue import load_robot
-from latentarm.robots.robot import Robot
 from latentarm.scene.scene import Scene
-from latentarm.tasks.predicates import Dropped, Spilled
 from latentarm.tasks.region import Region, anywhere
-from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.scene_task import Beginning
 from latentarm.tasks.serving.counter import (
     FLOUR,
     GRAIN_KG,
-    TOP_M,
     counter,
     counter_bowl,
     counter_cup,
     filled,
 )
+from latentarm.tasks.serving.counter_task import CounterTask, fallen, spilled
 from latentarm.tasks.serving.cup_steps import pour, take
-from latentarm.tasks.serving.reach_and_pour import start
 
 CUP_AT_M: Final[Region] = ((0.54, 0.58), (-0.02, 0.02))
 """Where the cup stands, x and y."""
@@ -41,15 +35,12 @@ LARGE_M: Final = 0.0065
 SHARE: Final = 0.2
 """Share of the grains that must end in each bowl."""
 
-SPILLED: Final = 0.25
-"""Share that may be spilled."""
-
 TIP_SPEED: Final = 0.12
 """How fast the cup is tipped, as a share of the person's usual speed: some must stay in it."""
 
 
 @final
-class Pour(SceneTask):
+class Pour(CounterTask):
     """Take a cup, pour some of it into the left bowl and some into the right one."""
 
     @property
@@ -58,19 +49,9 @@ class Pour(SceneTask):
         return "pour"
 
     @property
-    def robot(self) -> Robot:
-        """A Panda with its hand."""
-        return self._robot
-
-    @property
     def choices(self) -> tuple[str, ...]:
         """One cup."""
         return ("cup",)
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
-        """The table; the counter and what stands on it may be touched."""
-        return (Scene().table,)
 
     @property
     def time_limit_s(self) -> float:
@@ -79,13 +60,12 @@ class Pour(SceneTask):
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Cup and bowls anywhere in their regions of the counter."""
-        cup = counter_cup("cup", *anywhere(CUP_AT_M, rng), colour=(0.36, 0.55, 0.75, 1.0))
+        cup = counter_cup("cup", *anywhere(CUP_AT_M, rng))
         left = counter_bowl("left bowl", *anywhere(LEFT_AT_M, rng))
         right = counter_bowl("right bowl", *anywhere(RIGHT_AT_M, rng))
-        rooms = tuple((bowl.name, bowl.room) for bowl in (left, right))
         grains = filled("grains", cup, GRAINS, LARGE_M, GRAIN_KG, FLOUR)
         return Beginning(
-            state=start(self.robot, rng),
+            state=self.start(rng),
             scene=Scene((counter(), cup, left, right), (grains,)),
             steps=(
                 *take("cup"),
@@ -94,12 +74,8 @@ class Pour(SceneTask):
                     "cup", "grains", "right bowl", right.room, SHARE, side=-1.0, leaving=("left bowl", 1.0)
                 ),
             ),
-            failures=(Dropped("cup", TOP_M - 0.05), Spilled("grains", TOP_M - 0.02, rooms, SPILLED)),
+            failures=(*fallen("cup"), spilled("grains", left, right)),
             goals=(),
             objects=("cup", "left bowl", "right bowl"),
             text="share the cup between the bowls",
         )
-
-    @cached_property
-    def _robot(self) -> Robot:
-        return load_robot("panda")

@@ -1,0 +1,65 @@
+"""What tasks at the table have in common: a Panda with a fork, its start, and a goal over each thing."""
+
+from collections.abc import Iterable
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.scene.scene import Scene
+from latentarm.scene.thing import Thing
+from latentarm.tasks.eating.stabbing import HOVER_M
+from latentarm.tasks.eating.table import STAND_M, fork
+from latentarm.tasks.inverse_kinematics import solve
+from latentarm.tasks.predicates import Dropped
+from latentarm.tasks.scene_task import SceneTask
+from latentarm.types import FloatArray, Goal
+
+START_SPREAD_RAD: Final = np.array([0.3, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05])
+"""How far each joint may start from the robot's home, at most: mostly turned about the base."""
+
+OFF_M: Final = STAND_M - 0.02
+"""Lower than this, food has fallen off its dish and rice is spilled."""
+
+
+class ForkTask(SceneTask):
+    """Something to be done with a fork, at a table with dishes on stands."""
+
+    @property
+    @final
+    def robot(self) -> Robot:
+        """A Panda with a fork."""
+        return load_robot("panda_fork")
+
+    @property
+    @final
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table; food and dishes may be touched."""
+        return (Scene().table,)
+
+    @final
+    def start(self, rng: np.random.Generator) -> FloatArray:
+        """Where the arm starts, about its home, (n,), rad."""
+        return self.robot.home + rng.uniform(-START_SPREAD_RAD, START_SPREAD_RAD)
+
+    @final
+    def goals(self, things: Iterable[Thing], turn_rad: float | None = None) -> tuple[Goal, ...]:
+        """The fork over each of some things.
+
+        Args:
+            things: as they stand in the beginning.
+            turn_rad: see `latentarm.tasks.eating.table.fork`.
+        """
+        return tuple(self._over(thing, turn_rad) for thing in things)
+
+    def _over(self, thing: Thing, turn_rad: float | None) -> Goal:
+        wanted = fork(thing.pose.position, HOVER_M, turn_rad)
+        configuration = solve(self.robot, wanted, self.robot.home)
+        return Goal(thing.name, configuration, self.robot.chain.forward(configuration))
+
+
+def fallen(*food: str) -> tuple[Dropped, ...]:
+    """Food that fell off its dish ends the run."""
+    return tuple(Dropped(name, OFF_M) for name in food)

@@ -1,0 +1,60 @@
+"""What tasks at the counter have in common: a Panda with its hand, its start, and what ends a run."""
+
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.obstacles import Obstacle
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.robot import Robot
+from latentarm.scene.scene import Scene
+from latentarm.scene.thing import Thing
+from latentarm.tasks.inverse_kinematics import solve
+from latentarm.tasks.predicates import Dropped, Spilled
+from latentarm.tasks.scene_task import SceneTask
+from latentarm.tasks.serving.counter import POSTURE_RAD, TOP_M, bearing_of, hand
+from latentarm.types import FloatArray
+
+START_M: Final = (0.45, 0.0, 0.50)
+"""About where the hand starts before it takes something."""
+
+START_SPREAD_M: Final = 0.03
+
+SPILLED: Final = 0.25
+"""Share of the grains that may be spilled."""
+
+
+class CounterTask(SceneTask):
+    """Something to be done with the hand, at a counter."""
+
+    @property
+    @final
+    def robot(self) -> Robot:
+        """A Panda with its hand."""
+        return load_robot("panda")
+
+    @property
+    @final
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """The table; the counter and what stands on it may be touched."""
+        return (Scene().table,)
+
+    @final
+    def reaching(self, place: FloatArray) -> FloatArray:
+        """Joints (n,), rad, with which the fingertips are at a place (3,), m, away from the base."""
+        return solve(self.robot, hand(place, bearing_of(place)), np.array(POSTURE_RAD))
+
+    @final
+    def start(self, rng: np.random.Generator) -> FloatArray:
+        """Where the arm starts over the counter, (n,), rad."""
+        return self.reaching(np.array(START_M) + rng.uniform(-START_SPREAD_M, START_SPREAD_M, 3))
+
+
+def fallen(*names: str) -> tuple[Dropped, ...]:
+    """A thing that fell off the counter ends the run."""
+    return tuple(Dropped(name, TOP_M - 0.05) for name in names)
+
+
+def spilled(grains: str, *bowls: Thing) -> Spilled:
+    """Grains on the counter rather than in the bowls that they are for end the run."""
+    return Spilled(grains, TOP_M - 0.02, tuple((bowl.name, bowl.room) for bowl in bowls), SPILLED)
