@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.metrics.drives import Drive, drive_rows, measure_drive, path_length
+from latentarm.metrics.drives import Drive, GoalDrive, goal_drive_rows, measure_goal_drive, path_length
 from latentarm.metrics.summary import Subject
 from latentarm.types import Command, Pose, StepRecord
 
@@ -33,40 +33,43 @@ def test_the_figures_of_a_drive_are_those_of_its_record(gantry):
     ]
     target = Pose(position=np.array([3.0, 4.0, 2.0]), rotation=np.eye(3))
     elsewhere = Pose(position=np.array([0.0, 0.0, 1.0]), rotation=np.eye(3))
-    drive = measure_drive(records, gantry, target, [elsewhere, target], success=True)
+    to_goal = measure_goal_drive(records, gantry, target, [elsewhere, target], success=True)
+    drive = to_goal.drive
     assert drive.time_s == pytest.approx(3.0)
     assert drive.idle_s == 0.0
     # 1 m from the other goal, then √10 from it (√20 from the target), then 2 from the target.
-    assert drive.goal_error_m_s == pytest.approx(0.5 * 1.0 + 2.0 * np.sqrt(10.0) + 0.5 * 2.0)
-    assert drive.goal_error_m == pytest.approx(drive.goal_error_m_s / 3.0)
+    assert to_goal.goal_error_m_s == pytest.approx(0.5 * 1.0 + 2.0 * np.sqrt(10.0) + 0.5 * 2.0)
+    assert to_goal.goal_error_m == pytest.approx(to_goal.goal_error_m_s / 3.0)
     assert drive.input_magnitude == pytest.approx(0.5 * 1.0 + 2.0 * 1.0 + 0.5 * np.sqrt(2.0))
     assert drive.mode_switches == 2
     assert drive.path_length == pytest.approx(7.0)
-    assert drive.final_distance == pytest.approx(2.0)
-    assert drive.final_angle_deg == 0.0
+    assert to_goal.final_distance == pytest.approx(2.0)
+    assert to_goal.final_angle_deg == 0.0
 
 
 def test_a_drive_of_one_step_went_nowhere(gantry):
     target = Pose(position=np.zeros(3), rotation=np.eye(3))
-    drive = measure_drive([record(2.0, [1, 0, 0], u=(1.0, 0.0))], gantry, target, [target], success=False)
+    records = [record(2.0, [1, 0, 0], u=(1.0, 0.0))]
+    to_goal = measure_goal_drive(records, gantry, target, [target], success=False)
+    drive = to_goal.drive
     assert (drive.time_s, drive.input_magnitude, drive.path_length) == (0.0, 0.0, 0.0)
-    assert (drive.idle_s, drive.turned_round, drive.goal_error_m_s) == (0.0, 0.0, 0.0)
-    assert drive.goal_error_m == pytest.approx(1.0)
-    assert drive.final_distance == pytest.approx(1.0)
+    assert (drive.idle_s, drive.turned_round, to_goal.goal_error_m_s) == (0.0, 0.0, 0.0)
+    assert to_goal.goal_error_m == pytest.approx(1.0)
+    assert to_goal.final_distance == pytest.approx(1.0)
 
 
 def test_no_steps_are_no_drive(gantry):
     with pytest.raises(ValueError, match="without a single step"):
-        measure_drive([], gantry, Pose(np.zeros(3), np.eye(3)), [], success=False)
+        measure_goal_drive([], gantry, Pose(np.zeros(3), np.eye(3)), [], success=False)
 
 
 def test_rows_hold_mean_sd_and_number_of_a_condition():
     drives = [
-        Drive(True, 4.0, 1.0, 2.0, 0.1, 1, 0.5, 0.8, 0.2, 0.01, 5.0),
-        Drive(False, 8.0, 3.0, 4.0, 0.3, 3, 0.7, 2.4, 0.3, 0.03, 30.0),
+        GoalDrive(Drive(True, 4.0, 1.0, 2.0, 0.1, 1, 0.5), 0.8, 0.2, 0.01, 5.0),
+        GoalDrive(Drive(False, 8.0, 3.0, 4.0, 0.3, 3, 0.7), 2.4, 0.3, 0.03, 30.0),
     ]
     subject = Subject("drive", task="table", condition="latent")
-    rows = {row.measure: row for row in drive_rows(subject, drives)}
+    rows = {row.measure: row for row in goal_drive_rows(subject, drives)}
     assert rows["success_rate"].mean == 0.5
     assert rows["time_s"].mean == pytest.approx(6.0)
     assert rows["time_s"].sd == pytest.approx(np.std([4.0, 8.0], ddof=1))

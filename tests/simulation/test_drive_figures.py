@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from latentarm.metrics.drives import Drive
+from latentarm.metrics.drives import Drive, GoalDrive
 from latentarm.metrics.ending import Ending
 from latentarm.simulation.drive import Trace
 from latentarm.simulation.drive_figures import draw_drives, draw_inputs, median_drive
@@ -16,7 +16,7 @@ def trace(duration_s: float = 2.0, success: bool = True, modes: int = 1) -> Trac
     steps = len(time_s)
     position = np.stack([0.3 + 0.1 * time_s, -0.1 * time_s, 0.5 - 0.1 * time_s], axis=-1)
     return Trace(
-        figures=Drive(success, duration_s, 0.2, 1.0, 0.1, modes - 1, 0.5, 0.4, 0.2, 0.01, 5.0),
+        measured=GoalDrive(Drive(success, duration_s, 0.2, 1.0, 0.1, modes - 1, 0.5), 0.4, 0.2, 0.01, 5.0),
         goal=0,
         progress=1.0,
         ending=Ending("reached", "reached the goal"),

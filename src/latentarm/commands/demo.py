@@ -25,7 +25,7 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.errors import UserError
 from latentarm.files import write_text
 from latentarm.metrics.comparison_figure import comparison_figure
-from latentarm.metrics.drives import drive_rows
+from latentarm.metrics.drives import goal_drive_rows
 from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject, headline
 from latentarm.metrics.table import markdown_table
@@ -137,7 +137,7 @@ def run_demo(config: DemoOptions, sizes: Sizes = USUAL) -> list[Row]:
             f" {name}."
         )
         driven = drive_all(setups, config.drives, config.seed, config.jobs, bars=config.bars)
-        tables[person] += drive_rows(subject, [trace.figures for trace in driven])
+        tables[person] += goal_drive_rows(subject, [trace.measured for trace in driven])
         if person == SHOWN and subject.model in (MODELS[0], None):
             traces[str(subject.condition)] = driven
     rows = [_named(person, row) for person, table in tables.items() for row in table]

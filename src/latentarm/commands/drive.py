@@ -23,7 +23,7 @@ from latentarm.controllers.latent import latent_controller
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.errors import UserError
-from latentarm.metrics.drives import drive_rows
+from latentarm.metrics.drives import goal_drive_rows
 from latentarm.metrics.results import as_document
 from latentarm.metrics.summary import Subject
 from latentarm.operators.catalogue import PEOPLE, OperatorName, usual_operator
@@ -217,7 +217,7 @@ def drive_run(config: DriveOptions, tell: Callable[[Sequence[str]], None] = lamb
         traces = _record_all(setup, config, config.record)
     model = None if run is None or config.driver == "end_effector" else run.model
     subject = Subject("drive", task=task.name, model=model, condition=config.driver)
-    rows = drive_rows(subject, [trace.figures for trace in traces])
+    rows = goal_drive_rows(subject, [trace.measured for trace in traces])
     planned = [
         Planned(task.goals[goal].name, manner, number % config.drives)
         for number, (goal, manner, _) in enumerate(drive_plan(task, config.drives, config.seed))

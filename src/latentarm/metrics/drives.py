@@ -15,7 +15,7 @@ from latentarm.types import FloatArray, Pose, Row, StepRecord
 
 @dataclass(frozen=True)
 class Drive:
-    """Figures of one drive.
+    """Figures that every drive has.
 
     Attributes:
         success: the task was done.
@@ -25,10 +25,6 @@ class Drive:
         turned_round: share of the time in which the stick points away from where it pointed a moment ago.
         mode_switches: how often the controller's mode changed.
         path_length: way of the tool through space, m.
-        goal_error_m_s: integral over time of the tool's distance to the goal that is closest to it, m s.
-        goal_error_m: mean of the same distance over time, m.
-        final_distance: of the tool from the target at the end, m.
-        final_angle_deg: of the tool from the target's orientation at the end, degrees.
     """
 
     success: bool
@@ -38,6 +34,21 @@ class Drive:
     turned_round: float
     mode_switches: int
     path_length: float
+
+
+@dataclass(frozen=True)
+class GoalDrive:
+    """Figures of one drive to a goal.
+
+    Attributes:
+        drive: those that every drive has.
+        goal_error_m_s: integral over time of the tool's distance to the goal that is closest to it, m s.
+        goal_error_m: mean of the same distance over time, m.
+        final_distance: of the tool from the target at the end, m.
+        final_angle_deg: of the tool from the target's orientation at the end, degrees.
+    """
+
+    drive: Drive
     goal_error_m_s: float
     goal_error_m: float
     final_distance: float
@@ -76,7 +87,33 @@ def goal_error(time_s: FloatArray, position: FloatArray, goals: FloatArray) -> t
     return total, total / took_s if took_s > 0.0 else float(closest[0])
 
 
-def measure_drive(
+def measure_drive(records: Sequence[StepRecord], position: FloatArray, *, success: bool) -> Drive:
+    """Figures of a drive from its record.
+
+    Args:
+        records: every step in order.
+        position: (T, 3), the tool at each, m.
+        success: whether the task says that it was done.
+
+    Raises:
+        ValueError: there are no records.
+    """
+    if not records:
+        raise ValueError("A drive without a single step has no figures.")
+    time_s = np.array([record.time_s for record in records])
+    u = np.stack([record.input for record in records])
+    return Drive(
+        success=success,
+        time_s=float(time_s[-1] - time_s[0]),
+        idle_s=idle_time(time_s, u),
+        input_magnitude=input_magnitude(time_s, u),
+        turned_round=turned_round_share(time_s, u),
+        mode_switches=mode_switches([record.mode for record in records]),
+        path_length=path_length(position),
+    )
+
+
+def measure_goal_drive(
     records: Sequence[StepRecord],
     chain: PlacesTool,
     target: Pose,
@@ -84,8 +121,8 @@ def measure_drive(
     *,
     success: bool,
     tool: int = 0,
-) -> Drive:
-    """Figures of a drive from its record.
+) -> GoalDrive:
+    """Figures of a drive to a goal from its record.
 
     Args:
         records: every step in order; the last holds the state in which the drive ended.
@@ -100,19 +137,12 @@ def measure_drive(
     """
     if not records:
         raise ValueError("A drive without a single step has no figures.")
-    time_s = np.array([record.time_s for record in records])
     pose = chain.forward(np.stack([record.state for record in records]), tool)
     position = pose.position
-    u = np.stack([record.input for record in records])
+    time_s = np.array([record.time_s for record in records])
     total, mean = goal_error(time_s, position, np.stack([goal.position for goal in goals]))
-    return Drive(
-        success=success,
-        time_s=float(time_s[-1] - time_s[0]),
-        idle_s=idle_time(time_s, u),
-        input_magnitude=input_magnitude(time_s, u),
-        turned_round=turned_round_share(time_s, u),
-        mode_switches=mode_switches([record.mode for record in records]),
-        path_length=path_length(position),
+    return GoalDrive(
+        drive=measure_drive(records, position, success=success),
         goal_error_m_s=total,
         goal_error_m=mean,
         final_distance=float(np.linalg.norm(position[-1] - target.position)),
@@ -121,7 +151,7 @@ def measure_drive(
 
 
 def drive_rows(subject: Subject, drives: Sequence[Drive]) -> list[Row]:
-    """Mean and SD over the drives of one condition.
+    """Mean and SD over the drives of one condition, of what every drive has.
 
     ``success_rate`` is the share of drives that succeeded. All other figures are over all drives,
     failed ones too, so that a controller cannot look fast by giving up.
@@ -134,7 +164,14 @@ def drive_rows(subject: Subject, drives: Sequence[Drive]) -> list[Row]:
         summarise(subject, "turned_round", [drive.turned_round for drive in drives]),
         summarise(subject, "mode_switches", [drive.mode_switches for drive in drives]),
         summarise(subject, "path_length", [drive.path_length for drive in drives]),
-        summarise(subject, "goal_error_m_s", [drive.goal_error_m_s for drive in drives]),
-        summarise(subject, "goal_error_m", [drive.goal_error_m for drive in drives]),
-        summarise(subject, "final_distance", [drive.final_distance for drive in drives]),
+    ]
+
+
+def goal_drive_rows(subject: Subject, drives: Sequence[GoalDrive]) -> list[Row]:
+    """Mean and SD over the drives to goals of one condition, failed ones too."""
+    return [
+        *drive_rows(subject, [one.drive for one in drives]),
+        summarise(subject, "goal_error_m_s", [one.goal_error_m_s for one in drives]),
+        summarise(subject, "goal_error_m", [one.goal_error_m for one in drives]),
+        summarise(subject, "final_distance", [one.final_distance for one in drives]),
     ]

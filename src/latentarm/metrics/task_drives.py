@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from latentarm.metrics.drives import input_magnitude, mode_switches, path_length
-from latentarm.metrics.stick import idle_time, turned_round_share
+from latentarm.metrics.drives import Drive, drive_rows, measure_drive
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.types import FloatArray, Row, StepRecord
 
@@ -16,14 +15,8 @@ class TaskDrive:
     """Figures of one drive at a task with things.
 
     Attributes:
-        success: all steps were done, and nothing went wrong.
+        drive: those that every drive has; a success is that all steps were done and nothing went wrong.
         steps_done: share of the steps that were done.
-        time_s: from the first step of the loop to the last, s.
-        idle_s: time without input, s.
-        input_magnitude: integral of ‖u‖ over time, s (seconds of full deflection of one axis).
-        turned_round: share of the time in which the stick points away from where it pointed a moment ago.
-        mode_switches: how often the controller's mode changed.
-        path_length: way of the tool through space, m.
         preference_alignment: mean over time of the dot product of the direction in which the tool points and
             the one needed at that moment.
         table_force_n: largest force of the tool on the table or a dish, N.
@@ -32,14 +25,8 @@ class TaskDrive:
         grains: grains that there were.
     """
 
-    success: bool
+    drive: Drive
     steps_done: float
-    time_s: float
-    idle_s: float
-    input_magnitude: float
-    turned_round: float
-    mode_switches: int
-    path_length: float
     preference_alignment: float
     table_force_n: float
     food_force_n: float
@@ -86,19 +73,9 @@ def measure_task_drive(
     Raises:
         ValueError: there are no records.
     """
-    if not records:
-        raise ValueError("A drive without a single step has no figures.")
-    time_s = np.array([record.time_s for record in records])
-    u = np.stack([record.input for record in records])
     return TaskDrive(
-        success=success,
+        drive=measure_drive(records, position, success=success),
         steps_done=steps_done,
-        time_s=float(time_s[-1] - time_s[0]),
-        idle_s=idle_time(time_s, u),
-        input_magnitude=input_magnitude(time_s, u),
-        turned_round=turned_round_share(time_s, u),
-        mode_switches=mode_switches([record.mode for record in records]),
-        path_length=path_length(position),
         preference_alignment=alignment,
         table_force_n=force_n.get("table", 0.0),
         food_force_n=force_n.get("food", 0.0),
@@ -107,30 +84,16 @@ def measure_task_drive(
     )
 
 
-TASK_DRIVE_MEASURES = (
-    "success_rate",
-    "steps_done",
-    "time_s",
-    "idle_s",
-    "input_magnitude",
-    "turned_round",
-    "mode_switches",
-    "path_length",
-    "preference_alignment",
-    "table_force_n",
-    "food_force_n",
-    "spilled_share",
-)
-"""Names in `latentarm.metrics.measures.MEASURES`, in the order of tables."""
-
-
 def task_drive_rows(subject: Subject, drives: Sequence[TaskDrive]) -> list[Row]:
     """Mean and SD over the drives of one condition, failed ones too."""
-    values: dict[str, list[float]] = {
-        "success_rate": [float(one.success) for one in drives],
-        "spilled_share": [one.spilled / one.grains if one.grains else np.nan for one in drives],
-    }
+    succeeded, *how = drive_rows(subject, [one.drive for one in drives])
+    spilled = [one.spilled / one.grains if one.grains else np.nan for one in drives]
     return [
-        summarise(subject, name, values.get(name) or [float(getattr(one, name)) for one in drives])
-        for name in TASK_DRIVE_MEASURES
+        succeeded,
+        summarise(subject, "steps_done", [one.steps_done for one in drives]),
+        *how,
+        summarise(subject, "preference_alignment", [one.preference_alignment for one in drives]),
+        summarise(subject, "table_force_n", [one.table_force_n for one in drives]),
+        summarise(subject, "food_force_n", [one.food_force_n for one in drives]),
+        summarise(subject, "spilled_share", spilled),
     ]

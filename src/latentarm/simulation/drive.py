@@ -14,7 +14,7 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.metrics.drives import Drive, measure_drive
+from latentarm.metrics.drives import Drive, GoalDrive, measure_goal_drive
 from latentarm.metrics.ending import Ending, why_it_ended
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.person import Person, SimulatedPerson
@@ -60,7 +60,7 @@ class Trace:
     """What is kept of a drive for figures, sampled at the loop's rate.
 
     Attributes:
-        figures: what is measured of it.
+        measured: its figures.
         goal: index of the goal.
         progress: share of the waypoints that were reached.
         ending: why it ended.
@@ -71,7 +71,7 @@ class Trace:
         belief: (T, G).
     """
 
-    figures: Drive
+    measured: GoalDrive
     goal: int
     progress: float
     ending: Ending
@@ -80,6 +80,11 @@ class Trace:
     input: FloatArray
     mode: FloatArray
     belief: FloatArray
+
+    @property
+    def figures(self) -> Drive:
+        """Those that every drive has."""
+        return self.measured.drive
 
 
 def simulate(
@@ -161,7 +166,7 @@ def _trace(
     chain = setup.task.robot.chain
     waypoints: tuple[Pose, ...] = setup.task.waypoints(goal, manner)
     return Trace(
-        figures=measure_drive(
+        measured=measure_goal_drive(
             records, chain, waypoints[-1], [goal.pose for goal in setup.task.goals], success=not remaining
         ),
         goal=goal,

@@ -84,10 +84,10 @@ def drive_entries(
             "turned_round": trace.figures.turned_round,
             "mode_switches": trace.figures.mode_switches,
             "path_length_m": trace.figures.path_length,
-            "goal_error_m_s": trace.figures.goal_error_m_s,
-            "goal_error_m": trace.figures.goal_error_m,
-            "final_distance_m": trace.figures.final_distance,
-            "final_angle_deg": trace.figures.final_angle_deg,
+            "goal_error_m_s": trace.measured.goal_error_m_s,
+            "goal_error_m": trace.measured.goal_error_m,
+            "final_distance_m": trace.measured.final_distance,
+            "final_angle_deg": trace.measured.final_angle_deg,
             "waypoints_reached": trace.progress,
         }
         for number, (plan, trace) in enumerate(zip(planned, traces, strict=True))

@@ -14,6 +14,7 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
+from latentarm.metrics.drives import Drive
 from latentarm.metrics.task_drives import TaskDrive, measure_task_drive, preference_alignment
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.operator import Operator
@@ -59,7 +60,7 @@ class TaskTrace:
     """What is kept of a drive.
 
     Attributes:
-        figures: what is measured of it.
+        measured: its figures.
         choice: index into the task's choices.
         steps: what was to be done, in order.
         done_s: when each of the steps that were done was done, s.
@@ -69,7 +70,7 @@ class TaskTrace:
         states: how things stood, ten times per second, for film.
     """
 
-    figures: TaskDrive
+    measured: TaskDrive
     choice: int
     steps: tuple[TaskStep, ...]
     done_s: tuple[float, ...]
@@ -77,6 +78,11 @@ class TaskTrace:
     time_s: FloatArray
     position: FloatArray
     states: tuple[SceneState, ...]
+
+    @property
+    def figures(self) -> Drive:
+        """Those that every drive has."""
+        return self.measured.drive
 
     @property
     def ended_in(self) -> str:
@@ -209,7 +215,7 @@ class _Watch:
         state = self._states[-1]
         spilled = [fails for fails in self._begun.failures if isinstance(fails, Spilled)]
         position = np.stack(self._position[: len(self.records)])
-        figures = measure_task_drive(
+        measured = measure_task_drive(
             self.records,
             position,
             preference_alignment(np.array(self._points), np.array(self._needed)),
@@ -220,7 +226,7 @@ class _Watch:
             grains=sum(len(one) for one in state.grains.values()),
         )
         return TaskTrace(
-            figures=figures,
+            measured=measured,
             choice=choice,
             steps=self._begun.steps,
             done_s=tuple(self._done_s),

@@ -8,6 +8,7 @@ import pytest
 
 from figure_faults import faults
 from latentarm.errors import UserError
+from latentarm.metrics.drives import Drive
 from latentarm.metrics.task_drives import TaskDrive
 from latentarm.runs.results_folder import CONFIG
 from latentarm.studies.study import ALWAYS_MADE, Request, run_study
@@ -95,21 +96,8 @@ def test_only_tasks_of_the_catalogue_are_made():
         make_scene_task("soup")
 
 
-def figures(**changes):
-    numbers = dict.fromkeys(
-        (
-            "time_s",
-            "idle_s",
-            "input_magnitude",
-            "turned_round",
-            "path_length",
-            "table_force_n",
-            "food_force_n",
-        ),
-        1.0,
-    )
-    whole = numbers | {"steps_done": 1.0, "success": True, "mode_switches": 3, "spilled": 0, "grains": 0}
-    return TaskDrive(**(whole | {"preference_alignment": float("nan")} | changes))
+def figures(success, steps_done):
+    return TaskDrive(Drive(success, 1.0, 1.0, 1.0, 1.0, 3, 1.0), steps_done, float("nan"), 1.0, 1.0, 0, 0)
 
 
 def ran(number, done, why="done", steps=("above", "stabbed"), drive=True):

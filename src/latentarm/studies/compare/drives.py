@@ -17,7 +17,7 @@ from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
 from latentarm.demonstrations.split import select_episodes
-from latentarm.metrics.drives import Drive, drive_rows
+from latentarm.metrics.drives import GoalDrive, goal_drive_rows
 from latentarm.metrics.ending import Ending
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.undone import undone_share
@@ -79,7 +79,7 @@ class DriveResult:
     dataset: str
     controller: str
     episode: int
-    figures: Drive
+    figures: GoalDrive
     progress: float
     ending: Ending
     undone: float
@@ -147,7 +147,7 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
         dataset=cell.dataset.name,
         controller=cell.controller,
         episode=cell.episode,
-        figures=trace.figures,
+        figures=trace.measured,
         progress=trace.progress,
         ending=trace.ending,
         undone=undone_share(trace.position),
@@ -167,7 +167,7 @@ def rows_of_drives(study: str, condition: str, results: Sequence[DriveResult]) -
     for dataset, controller in dict.fromkeys((one.dataset, one.controller) for one in results):
         here = [one for one in results if (one.dataset, one.controller) == (dataset, controller)]
         subject = Subject(study, task=dataset, model=controller, condition=condition)
-        rows += drive_rows(subject, [one.figures for one in here])
+        rows += goal_drive_rows(subject, [one.figures for one in here])
         rows += [
             summarise(subject, "progress", [one.progress for one in here]),
             summarise(subject, "undone_share", [one.undone for one in here]),

@@ -280,7 +280,7 @@ def _timings(results: Sequence[CellResult], drives: Sequence[DriveResult]) -> di
                 "dataset": one.dataset,
                 "controller": one.controller,
                 "episode": one.episode,
-                "simulated_s": one.figures.time_s,
+                "simulated_s": one.figures.drive.time_s,
                 "took_s": one.took_s,
             }
             for one in drives

@@ -95,10 +95,10 @@ class Run:
     def as_json(self) -> dict[str, object]:
         """Plain mapping; what has no value is None."""
         entries = asdict(self)
-        figures = entries.pop("figures") or {}
+        figures = entries.pop("figures") or {"drive": {}}
         return {
             name: None if isinstance(value, float) and not isfinite(value) else value
-            for name, value in (figures | entries).items()
+            for name, value in (figures.pop("drive") | figures | entries).items()
         }
 
 
@@ -133,7 +133,7 @@ def driven_run(task: SceneTask, number: int, trace: TaskTrace) -> Run:
         ended_in=trace.ended_in,
         why=trace.why,
         time_s=trace.figures.time_s,
-        figures=trace.figures,
+        figures=trace.measured,
     )
 
 
