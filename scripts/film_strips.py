@@ -1,28 +1,33 @@
 """Draw ``docs/figures/tasks/<task>.png``: each task with things by latent actions, as a strip of 8 pictures.
 
-``python scripts/film_strips.py dessert`` draws that of one task. Demonstrations and models are those of
-``latentarm reproduce tasks``; the strip shows the first of its runs that succeeds, and says which that is.
+``python scripts/film_strips.py dessert --study reproduced/tasks`` draws that of one task with the models of
+that folder, which ``latentarm reproduce tasks`` wrote; without a folder it trains the same models itself. The
+strip shows the first of the study's runs that succeeds, and says which that is.
 """
 
 import argparse
 import os
-from dataclasses import replace
 from pathlib import Path
 
 os.environ.setdefault("MUJOCO_GL", "egl")  # before MuJoCo is imported
 
 from latentarm.errors import UserError
 from latentarm.metrics.looks import look_of
+from latentarm.models.saving import read_model
 from latentarm.operators.catalogue import PEOPLE
 from latentarm.parallel.grid import run_grid
+from latentarm.runs.results_folder import CONFIG
 from latentarm.simulation.film import Camera, Film, strip
 from latentarm.simulation.task_drive import TaskSetup, drive_task
 from latentarm.studies.streams import generator
-from latentarm.studies.tasks.cell import ShownCell, Trained, TrainingCell, blocks, show, train, training_set
+from latentarm.studies.study import MODELS
+from latentarm.studies.tasks.cell import ShownCell, TrainingCell, blocks, show, train, training_set
 from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
-from latentarm.studies.tasks.runs import Driver, choice_of
+from latentarm.studies.tasks.rows import STUDY
+from latentarm.studies.tasks.runs import Condition, Driver, choice_of, decoders_of, kept_in
 from latentarm.style import save_figure
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
+from latentarm.untrusted.documents import read_object
 
 FIGURES = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tasks"
 
@@ -33,24 +38,43 @@ CAMERAS: dict[str, Camera] = dict.fromkeys(("avoid", "pour", "reach_and_pour", "
 """Of tasks that the usual one does not show well."""
 
 
-def learned(task: str, model: str, preset: Preset, seed: int, jobs: int) -> Trained:
-    """The models of the study."""
+def learned(task: str, model: str, preset: Preset, seed: int, jobs: int) -> Driver:
+    """The models of the study, trained anew."""
     cells = [
         ShownCell(task, Stream.DEMONSTRATIONS, numbers, seed)
         for numbers in blocks(preset.demonstrations, preset.block)
     ]
     shown = run_grid(show, cells, jobs=jobs, backend="joblib", label=lambda cell: task, bars=True)
-    return train(TrainingCell(task, model, preset.context, training_set(task, shown), preset, seed))
+    return train(TrainingCell(task, model, preset.context, training_set(task, shown), preset, seed)).driver
 
 
-def film(task: str, model: str, preset: Preset, seed: int, jobs: int) -> None:
+def sizes_of(study: Path) -> tuple[Preset, int]:
+    """The sizes and the seed of a study that was run.
+
+    Raises:
+        UserError: the folder holds no such study.
+    """
+    config = read_object(study / CONFIG)
+    if config.get("study") != STUDY or not (study / MODELS).is_dir():
+        raise UserError(
+            f"{study} holds no models of `latentarm reproduce tasks`: name a folder that it wrote."
+        )
+    return PRESETS[config["preset"]["name"]], config["seed"]
+
+
+def kept(task: str, model: str, preset: Preset, study: Path) -> Driver:
+    """The models that a study kept."""
+    condition = Condition(preset.context, model)
+    return Driver(condition, decoders_of(read_model(study / MODELS / kept_in(task, condition))))
+
+
+def film(task: str, model: str, driver: Driver, preset: Preset, seed: int) -> None:
     """Drive until one run succeeds, and write its strip.
 
     Raises:
         UserError: none succeeds, or nothing can be rendered here.
     """
-    trained = learned(task, model, preset, seed, jobs)
-    driver, made = Driver(trained.condition, trained.decoders), make_scene_task(task)
+    made = make_scene_task(task)
     for number in range(preset.runs):
         watched = Film()
         setup = TaskSetup(made, driver.controller(made.robot, number), PEOPLE[preset.person])
@@ -73,10 +97,14 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("tasks", nargs="*", default=[*SCENE_TASKS], help="all where none is named")
     parser.add_argument("--model", default="homogeneous")
-    parser.add_argument("--demonstrations", type=int, default=PRESETS["paper"].demonstrations)
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--study", type=Path, help="what `latentarm reproduce tasks` wrote; else train here")
+    parser.add_argument("--seed", type=int, default=0, help="of the models that are trained here")
     parser.add_argument("--jobs", type=int, default=-1)
     given = parser.parse_args()
-    sizes = replace(PRESETS["paper"], demonstrations=given.demonstrations)
+    sizes, number = (PRESETS["paper"], given.seed) if given.study is None else sizes_of(given.study)
     for chosen in given.tasks:
-        film(chosen, given.model, sizes, given.seed, given.jobs)
+        if given.study is None:
+            steered = learned(chosen, given.model, sizes, number, given.jobs)
+        else:
+            steered = kept(chosen, given.model, sizes, given.study)
+        film(chosen, given.model, steered, sizes, number)

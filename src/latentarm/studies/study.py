@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
 from latentarm.errors import UserError
 from latentarm.files import write_text
 from latentarm.metrics.results import write_results
+from latentarm.models.kind import TrainedModel
+from latentarm.models.saving import write_model
 from latentarm.parallel.grid import check_processes, run_grid
 from latentarm.runs.checks import check_seed
 from latentarm.runs.results_folder import ResultsFolder, write_json
@@ -23,6 +25,9 @@ if TYPE_CHECKING:
 
 ALWAYS_MADE: Final = ("results.json", "results.md", "hypotheses.json", "timings.json")
 """Files that every study writes."""
+
+MODELS: Final = "models"
+"""The folder of the models that a study keeps."""
 
 Cell = TypeVar("Cell")
 Result = TypeVar("Result")
@@ -130,6 +135,7 @@ class Report:
         documents: further JSON files by name.
         timings: how long parts took, s, apart from the grids.
         tables: the study at a glance, for a terminal.
+        models: to keep below `MODELS`, by folder.
     """
 
     rows: list[Row]
@@ -139,6 +145,7 @@ class Report:
     documents: Mapping[str, object] = field(default_factory=dict)
     timings: Mapping[str, object] = field(default_factory=dict)
     tables: "Sequence[RenderableType]" = ()
+    models: Mapping[str, TrainedModel] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -204,6 +211,8 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
     write_json(request.out / "hypotheses.json", [one.as_json() for one in report.tests])
     for name, document in report.documents.items():
         write_json(request.out / name, document)
+    for folder, model in report.models.items():
+        write_model(request.out / MODELS / folder, model, about)
     timings = {"backend": request.backend, "jobs": request.jobs, "grid_s": grid.took_s, **report.timings}
     write_json(request.out / "timings.json", timings)
     write_results(request.out / "results.json", report.rows, about)

@@ -10,18 +10,20 @@ from figure_faults import faults
 from latentarm.errors import UserError
 from latentarm.metrics.drives import Drive
 from latentarm.metrics.task_drives import TaskDrive
+from latentarm.models.saving import load_decoder
 from latentarm.runs.results_folder import CONFIG
-from latentarm.studies.study import ALWAYS_MADE, Request, run_study
+from latentarm.studies.study import ALWAYS_MADE, MODELS, Request, run_study
 from latentarm.studies.tasks.cell import training_set
 from latentarm.studies.tasks.figures import steps_figure
 from latentarm.studies.tasks.preset import Preset
 from latentarm.studies.tasks.rows import rows_of, runs_as_json
-from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Run, through
+from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Run, kept_in, through
 from latentarm.studies.tasks.study import STUDY
 from latentarm.studies.tasks.tables import failure_table, measure_table
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.eating.marshmallows import Marshmallows
 from latentarm.tasks.scene_task import SceneTask
+from latentarm.untrusted.documents import read_object
 
 TINY = Preset(
     "tiny", runs=1, demonstrations=2, models=("homogeneous",), seeds=1, epochs=1, hidden=(8,), block=2
@@ -72,7 +74,7 @@ def test_every_condition_has_its_runs_of_the_same_scene(done):
 
 def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
     _, out = done
-    assert {path.name for path in out.iterdir()} == {CONFIG, *ALWAYS_MADE, "runs.json", "steps.png"}
+    assert {path.name for path in out.iterdir()} == {CONFIG, *ALWAYS_MADE, "runs.json", "steps.png", MODELS}
     page = (out / "results.md").read_text()
     assert "**simulated**" in page
     assert "--preset tiny --task marshmallows --seed 0" in page
@@ -83,6 +85,13 @@ def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
         "steps.png",
     ):
         assert words in page
+
+
+def test_the_models_that_were_driven_with_are_kept(done):
+    _, out = done
+    kept = out / MODELS / kept_in("marshmallows", Condition("joints objects", "homogeneous"))
+    assert load_decoder(kept).kind == "homogeneous"
+    assert read_object(kept / CONFIG)["preset"]["name"] == TINY.name
 
 
 def test_models_need_demonstrations():

@@ -8,7 +8,7 @@ from typing import final
 from threadpoolctl import threadpool_limits
 
 from latentarm.errors import UserError
-from latentarm.models.kind import Decoder
+from latentarm.models.kind import TrainedModel
 from latentarm.operators.catalogue import PEOPLE, OperatorName
 from latentarm.simulation.demonstrate import Demonstration, dataset_of, demonstrate_once
 from latentarm.simulation.task_drive import TaskSetup, drive_task
@@ -16,7 +16,16 @@ from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.streams import generator, integer, sequence
 from latentarm.studies.tasks.moved import task_of
 from latentarm.studies.tasks.preset import CONTEXTS, Preset, Stream
-from latentarm.studies.tasks.runs import Condition, Driver, Run, choice_of, driven_run, shown_run
+from latentarm.studies.tasks.runs import (
+    Condition,
+    Driver,
+    Run,
+    choice_of,
+    decoders_of,
+    driven_run,
+    kept_in,
+    shown_run,
+)
 from latentarm.types import Demonstrations
 
 
@@ -102,14 +111,24 @@ class Trained:
     Attributes:
         task: a name of `latentarm.studies.tasks.moved.TASKS`.
         condition: which kind of model, and what its decoder sees.
-        decoders: one per seed.
+        model: with all its seeds.
         fit_s: how long the fit took, s.
     """
 
     task: str
     condition: Condition
-    decoders: tuple[Decoder, ...]
+    model: TrainedModel
     fit_s: float
+
+    @property
+    def driver(self) -> Driver:
+        """What a person steers with."""
+        return Driver(self.condition, decoders_of(self.model))
+
+    @property
+    def folder(self) -> str:
+        """Where the study keeps the model, below `latentarm.studies.study.MODELS`."""
+        return kept_in(self.task, self.condition)
 
 
 def train(cell: TrainingCell) -> Trained:
@@ -135,9 +154,8 @@ def train(cell: TrainingCell) -> Trained:
             hidden=preset.hidden,
             state_noise_rad=preset.state_noise_rad,
         )
-        decoders = tuple(model.decoder(seed) for seed in range(preset.seeds))
         condition = Condition(cell.context, cell.model)
-        return Trained(cell.task, condition, decoders, perf_counter() - began)
+        return Trained(cell.task, condition, model.trained_, perf_counter() - began)
 
 
 @final

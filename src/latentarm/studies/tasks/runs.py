@@ -10,7 +10,7 @@ from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
 from latentarm.metrics.looks import look_of
 from latentarm.metrics.task_drives import TaskDrive
-from latentarm.models.kind import Decoder
+from latentarm.models.kind import Decoder, TrainedModel
 from latentarm.robots.robot import Robot
 from latentarm.simulation.demonstrate import Demonstration
 from latentarm.simulation.task_drive import TaskTrace
@@ -100,6 +100,16 @@ class Run:
             name: None if isinstance(value, float) and not isfinite(value) else value
             for name, value in (figures.pop("drive") | figures | entries).items()
         }
+
+
+def decoders_of(model: TrainedModel) -> tuple[Decoder, ...]:
+    """The decoders of all seeds of a model."""
+    return tuple(Decoder(model, seed) for seed in range(model.dimensions.seeds))
+
+
+def kept_in(task: str, condition: Condition) -> str:
+    """The folder of a condition's model, among those of the study's models."""
+    return f"{task}/{condition.model}_{condition.name.replace(' ', '_')}"
 
 
 def choice_of(task: SceneTask, number: int) -> int:

@@ -72,7 +72,7 @@ def _drive_cells(request: Request[Preset], trained: Sequence[Trained]) -> list[D
         for task in request.tasks
         for driver in (
             Driver(Condition(SWITCHING)),
-            *(Driver(one.condition, one.decoders) for one in trained if one.task == task),
+            *(one.driver for one in trained if one.task == task),
         )
         for numbers in blocks(preset.runs, preset.block)
     ]
@@ -101,6 +101,7 @@ def _report(request: Request[Preset], measured: Measured) -> Report:
         documents={"runs.json": runs_as_json(by_task)},
         timings=_timings(measured),
         tables=summary_tables(rows, by_task),
+        models={one.folder: one.model for one in measured.trained},
     )
 
 
