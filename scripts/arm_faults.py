@@ -57,6 +57,10 @@ def _times_ms(times_s: list[float]) -> str:
     return f"{1000.0 * np.median(times_s):.0f} / {1000.0 * max(times_s):.0f}"
 
 
+def _ticks(count: int) -> str:
+    return "1 tick" if count == 1 else f"{count} ticks"
+
+
 def rows(arm: str, tries: int) -> list[Row]:
     """All faults of one arm."""
 
@@ -65,7 +69,7 @@ def rows(arm: str, tries: int) -> list[Row]:
         return [try_fault(ARMS[arm], panda(), fault, seed, late_s) for seed in range(tries)]
 
     stops = [
-        Row(arm, f"{FAULTS['stop_pressed']}, readings {late} ticks late", tried("stop_pressed", late))
+        Row(arm, f"{FAULTS['stop_pressed']}, readings {_ticks(late)} late", tried("stop_pressed", late))
         for late in LATE_TICKS
     ]
     return [*stops, *(Row(arm, said, tried(name)) for name, said in FAULTS.items() if name != "stop_pressed")]
