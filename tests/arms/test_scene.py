@@ -158,9 +158,11 @@ def test_a_touch_does_not_stab():
     world = World.above("panda_fork", Scene((marshmallow(Food(50.0, 0.008, 1.5)),)), (0.5, 0.0, 0.03))
     touched = world.move((0.0, 0.0, -0.02), 0.4)
     assert touched.force_n["marshmallow", "tool"] > 0.1
+    assert world.arm.scene_state().force_n == touched.force_n, "asked again, nobody loses a force"
     left = world.move((0.0, 0.0, 0.05), 0.5)
     assert not left.stabbed
     assert left.poses["marshmallow"].position[2] < 0.002
+    assert ("marshmallow", "tool") not in world.move(seconds=0.01).force_n, "forces begin anew"
 
 
 @pytest.mark.parametrize(("degrees", "cut"), [(0.0, True), (60.0, False)])

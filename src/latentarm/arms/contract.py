@@ -147,7 +147,11 @@ class SceneArm(Arm, ABC):
 
     @abstractmethod
     def scene_state(self) -> SceneState:
-        """How everything stands by now: the truth, whatever is read."""
+        """How everything stands by now: the truth, whatever is read.
+
+        Asked again in the same moment, it is the same state. Its forces are the largest since the state of an
+        earlier moment, so one alone who asks at every tick of the loop misses none.
+        """
 
 
 def check_arm(spec: ArmSpec, robot: Robot) -> None:

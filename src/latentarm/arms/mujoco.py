@@ -125,6 +125,7 @@ class MujocoArm(SimulatedArm, SceneArm):
             self._watch = SceneWatch(self._model, self._data, robot, found.body_link, scene)
             if robot.attachment is not None and robot.attachment.tines is not None:
                 self._tines = TinesInFood(self._model, self._data, robot.attachment.tines, scene)
+        self._state: SceneState | None = None
         self._steps = 0
         self._behind_s = 0.0
         self._rng = np.random.default_rng(self._imperfections.seed)
@@ -147,7 +148,7 @@ class MujocoArm(SimulatedArm, SceneArm):
         return self._data.qpos[self._positions].copy(), self._data.qvel[self._speeds].copy()
 
     def scene_state(self) -> SceneState:
-        """How everything stands by now: the truth, whatever is read.
+        """See the base class.
 
         Forces are looked at every `LOOK_STEPS` time steps; one that rises and falls in between is missed.
         Things that have come to rest sleep: the forces between them are left out.
@@ -158,10 +159,13 @@ class MujocoArm(SimulatedArm, SceneArm):
         if self._watch is None:
             raise RuntimeError("an arm without a scene has no state of it")
         self._elapse()
-        q = self._data.qpos[self._positions].copy()
-        if self._tines is None:
-            return self._watch.state(q, frozenset(), self._bonds)
-        return self._watch.state(q, self._tines.stabbed, self._tines.bonds)
+        if self._state is None or self._state.time_s != self._data.time:
+            q = self._data.qpos[self._positions].copy()
+            stabbed, bonds = frozenset[str](), self._bonds
+            if self._tines is not None:
+                stabbed, bonds = self._tines.stabbed, self._tines.bonds
+            self._state = self._watch.state(q, stabbed, bonds)
+        return self._state
 
     def _pass(self, span_s: float, commanded: FloatArray) -> None:
         self._behind_s += span_s

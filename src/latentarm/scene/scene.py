@@ -82,7 +82,7 @@ class SceneState:
         bonds: pairs of names that have not been cut apart.
         grains: (K, 3), middles by the grains' name, m.
         force_n: largest normal force between two of the tool (`TOOL`), the table (`TABLE`) and the things
-            since the state before was asked for, N; by pairs of names in alphabetical order, pairs without
+            since the state of an earlier moment, N; by pairs of names in alphabetical order, pairs without
             contact left out.
     """
 
