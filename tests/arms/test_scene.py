@@ -132,6 +132,7 @@ def test_food_is_stabbed_lifted_and_scraped_off():
     stabbed = world.move((0.0, 0.0, -0.05), 0.45)
     assert stabbed.stabbed == {"marshmallow"}
     assert 2.0 <= stabbed.force_n["marshmallow", "tool"] < 20.0
+    assert world.arm.scene_state().force_n == stabbed.force_n, "asked again, no force is lost"
     for _ in range(5):
         assert world.move((0.0, 0.0, -0.05), 0.01).stabbed, "pressed deeper, it is held all the while"
     lifted = world.move((0.0, 0.0, 0.05))
@@ -158,7 +159,6 @@ def test_a_touch_does_not_stab():
     world = World.above("panda_fork", Scene((marshmallow(Food(50.0, 0.008, 1.5)),)), (0.5, 0.0, 0.03))
     touched = world.move((0.0, 0.0, -0.02), 0.4)
     assert touched.force_n["marshmallow", "tool"] > 0.1
-    assert world.arm.scene_state().force_n == touched.force_n, "asked again, nobody loses a force"
     left = world.move((0.0, 0.0, 0.05), 0.5)
     assert not left.stabbed
     assert left.poses["marshmallow"].position[2] < 0.002
