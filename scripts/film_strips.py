@@ -55,10 +55,9 @@ def sizes_of(study: Path) -> tuple[Preset, int]:
         UserError: the folder holds no such study.
     """
     config = read_object(study / CONFIG)
-    if config.get("study") != STUDY or not (study / MODELS).is_dir():
-        raise UserError(
-            f"{study} holds no models of `latentarm reproduce tasks`: name a folder that it wrote."
-        )
+    # Its rows are written last: what lies in the folder of a run that was cut short may be an earlier one's.
+    if config.get("study") != STUDY or not (study / "results.json").is_file():
+        raise UserError(f"{study} holds no whole `latentarm reproduce tasks`: name a folder that it wrote.")
     return PRESETS[config["preset"]["name"]], config["seed"]
 
 
