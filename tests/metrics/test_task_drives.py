@@ -13,6 +13,8 @@ from latentarm.metrics.task_drives import (
 )
 from latentarm.types import Command, StepRecord
 
+NOTHING = {"steps_done": 0.0, "success": False, "stops": 0, "spilled": 0, "grains": 0}
+
 
 def record(time_s, u=(0.0, 0.0), mode=0):
     zero = np.zeros(3)
@@ -31,7 +33,7 @@ def record(time_s, u=(0.0, 0.0), mode=0):
 
 
 def measured(**changes):
-    facts = {"steps_done": 0.5, "success": False, "spilled": 0, "grains": 0} | changes
+    facts = NOTHING | {"steps_done": 0.5} | changes
     records = [
         record(1.0, (1.0, 0.0)),
         record(1.5, (0.6, 0.8), mode=1),
@@ -55,7 +57,7 @@ def test_the_figures_of_a_drive_are_those_of_its_record():
 
 def test_a_drive_without_a_step_has_no_figures():
     with pytest.raises(ValueError, match="without a single step"):
-        measure_task_drive([], np.zeros((0, 3)), 0.0, {}, steps_done=0, success=False, spilled=0, grains=0)
+        measure_task_drive([], np.zeros((0, 3)), 0.0, {}, **NOTHING)
 
 
 def test_pointing_as_needed_is_one_and_the_other_way_minus_one():
@@ -79,6 +81,7 @@ def test_every_measure_has_its_row_over_all_drives_failed_ones_too():
         "turned_round",
         "mode_switches",
         "path_length",
+        "stops",
         "preference_alignment",
         "table_force_n",
         "food_force_n",

@@ -90,6 +90,29 @@ def test_inputs_come_as_often_as_equation_24_says(one_mode):
     assert given.std(axis=0) == pytest.approx(spread, rel=0.12)
 
 
+def test_somebody_who_must_come_near_counts_distances_for_more(one_mode):
+    config, near = BoltzmannConfig(), pose_after([0.02, -0.01, 0.0, 0.0, 0.0])
+    usual = config.missed(near, pose_after(0.0), 0.02)
+    careful = config.missed(near, pose_after(0.0), 0.005)
+    assert careful[:3] == pytest.approx(4.0 * usual[:3])
+    assert careful[3:] == pytest.approx(usual[3:])
+
+
+@pytest.mark.parametrize(("within_m", "switches"), [(0.02, False), (0.008, True)])
+def test_what_another_mode_gains_is_worth_a_switch_where_it_must_be_near(within_m, switches):
+    """12 mm to the side of a target, and the mode moves up and down only."""
+    robot = load_robot("panda")
+    here = robot.chain.forward(robot.home)
+    aside = replace(here, position=here.position + np.array([0.012, 0.0, 0.0]))
+    decision = OneStep(BoltzmannConfig(), period_s=0.01)
+    context = Context(robot.home, np.zeros(0))
+    moment = Moment(context, 1, aside, np.zeros(2), within_m)
+    knows = Settled(KnowsTheArm(robot.chain, UNLIMITED))
+    seen = decision.outlook(moment, EndEffectorController(robot), knows, np.random.default_rng(0))
+    # Ten times per second; without reason it is 0.04.
+    assert seen.switch > 0.1 if switches else seen.switch < 0.04
+
+
 def test_a_learner_is_at_each_moment_as_rational_as_they_have_become(one_mode):
     for time_s in (0.0, 0.5, 3.0):
         now = outlook(one_mode, time_s=time_s, beta=10.0, beta_per_s=40.0)

@@ -249,6 +249,7 @@ MEASURES: Final[dict[str, Measure]] = {
         "s", "input magnitude", "lower", "integral of ‖u‖ over time, seconds of full deflection of one axis"
     ),
     "mode_switches": Measure("1", "mode switches", "lower", "how often the controller's mode changed"),
+    "stops": Measure("1", "stops", "lower", "how often the arm was stopped and had to be enabled again"),
     "path_length": Measure("m", "path length", "lower", "length of the tool's path"),
     "path_length_percent_of_vae": Measure(
         "%", "path length, of the VAE's", "lower", "the same in % of the VAE's"

@@ -17,6 +17,7 @@ class TaskDrive:
     Attributes:
         drive: those that every drive has; a success is that all steps were done and nothing went wrong.
         steps_done: share of the steps that were done.
+        stops: how often the arm was stopped, such as for not following when it met a dish.
         preference_alignment: mean over time of the dot product of the direction in which the tool points and
             the one needed at that moment.
         table_force_n: largest force of the tool on the table or a dish, N.
@@ -27,6 +28,7 @@ class TaskDrive:
 
     drive: Drive
     steps_done: float
+    stops: int
     preference_alignment: float
     table_force_n: float
     food_force_n: float
@@ -55,6 +57,7 @@ def measure_task_drive(
     *,
     steps_done: float,
     success: bool,
+    stops: int,
     spilled: int,
     grains: int,
 ) -> TaskDrive:
@@ -67,6 +70,7 @@ def measure_task_drive(
         force_n: largest force of the tool on the ``table`` (dishes too) and on ``food``, N.
         steps_done: share of the task's steps.
         success: the task says that it was done.
+        stops: how often the arm was stopped.
         spilled: grains that were spilled.
         grains: grains that there were.
 
@@ -76,6 +80,7 @@ def measure_task_drive(
     return TaskDrive(
         drive=measure_drive(records, position, success=success),
         steps_done=steps_done,
+        stops=stops,
         preference_alignment=alignment,
         table_force_n=force_n.get("table", 0.0),
         food_force_n=force_n.get("food", 0.0),
@@ -92,6 +97,7 @@ def task_drive_rows(subject: Subject, drives: Sequence[TaskDrive]) -> list[Row]:
         succeeded,
         summarise(subject, "steps_done", [one.steps_done for one in drives]),
         *how,
+        summarise(subject, "stops", [float(one.stops) for one in drives]),
         summarise(subject, "preference_alignment", [one.preference_alignment for one in drives]),
         summarise(subject, "table_force_n", [one.table_force_n for one in drives]),
         summarise(subject, "food_force_n", [one.food_force_n for one in drives]),

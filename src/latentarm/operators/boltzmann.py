@@ -12,7 +12,7 @@ from latentarm.kinematics.rotations import pose_error
 from latentarm.operators.decision import Decision
 from latentarm.operators.density import CostModel, InputDensity, Lattice
 from latentarm.operators.imagination import Imagination
-from latentarm.operators.moment import Moment
+from latentarm.operators.moment import USUAL_WITHIN_M, Moment
 from latentarm.operators.rationality import boltzmann
 from latentarm.types import FloatArray, Input, Pose
 
@@ -72,9 +72,17 @@ class BoltzmannConfig:
                     f"The simulated person's {name} must be in [0, 0.5), not {getattr(self, name)}."
                 )
 
-    def missed(self, target: Pose, reached: Pose) -> FloatArray:
-        """How far poses are from the target, (..., 6), m; a radian counts as `rotation_weight`."""
-        return pose_error(target, reached) * np.repeat([1.0, self.rotation_weight], 3)
+    def missed(self, target: Pose, reached: Pose, within_m: float) -> FloatArray:
+        """How far poses are from the target, (..., 6), m; a radian counts as `rotation_weight`.
+
+        Args:
+            target: where the tool is wanted.
+            reached: where it may be.
+            within_m: how near it has to come. Distances count in proportion to that, so that a person is as
+                careful as they need to be (distance over width, as in Fitts 1954); with `USUAL_WITHIN_M`
+                they are what they are.
+        """
+        return pose_error(target, reached) * np.repeat([USUAL_WITHIN_M / within_m, self.rotation_weight], 3)
 
 
 @final
@@ -109,8 +117,9 @@ class OneStep(Decision):
 
     over all inputs of length 1 at most that the loop does not take for rest (see
     `latentarm.operators.density`), with the person's own `Foresight` in place of Psi and phi where they do
-    not know these. Distance between poses is ``‖Δp‖² + (rotation_weight · angle)²``, m². The person looks
-    one step ahead only, as in the paper: they can get stuck where no single input brings the tool closer.
+    not know these. Distance between poses is ``‖Δp‖² + (rotation_weight · angle)²``, m², and Δp grows where
+    they must come nearer than usual (see `BoltzmannConfig.missed`). The person looks one step ahead only, as
+    in the paper: they can get stuck where no single input brings the tool closer.
     ``beta(t)`` counts from `reset`, by calls of `decide`.
 
     A person can also let go, which leaves the tool where it is: one more input of equation 24, with a
@@ -173,7 +182,7 @@ class OneStep(Decision):
         def residuals(tried: FloatArray, in_modes: Sequence[int]) -> FloatArray:
             """(M, K, 6), m, what K inputs leave in each of M modes."""
             reached = foresight(tried, moment.context, controller, in_modes, config.horizon_s)
-            return config.missed(moment.target, reached)
+            return config.missed(moment.target, reached, moment.within_m)
 
         left = residuals(inputs, modes)
         models = [CostModel(lattice, one[1:]) for one in left]

@@ -5,6 +5,7 @@ from abc import ABC, abstractmethod
 import numpy as np
 
 from latentarm.control.controller import Controller
+from latentarm.operators.moment import USUAL_WITHIN_M
 from latentarm.types import Context, Input, Pose
 
 
@@ -21,7 +22,13 @@ class Operator(ABC):
 
     @abstractmethod
     def act(
-        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
+        self,
+        context: Context,
+        controller: Controller,
+        mode: int,
+        target: Pose,
+        rng: np.random.Generator,
+        within_m: float = USUAL_WITHIN_M,
     ) -> Input:
         """The simulated person's input for this step.
 
@@ -31,6 +38,7 @@ class Operator(ABC):
             mode: the controller's present mode.
             target: the pose that the simulated person wants the tool at.
             rng: source of all randomness.
+            within_m: how near they have to come to it, m.
 
         Returns:
             Inputs in [-1, 1]^d, and whether the next mode is asked for.

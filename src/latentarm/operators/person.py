@@ -14,7 +14,7 @@ from latentarm.operators.hand import Hand, HandConfig
 from latentarm.operators.imagination import Imagination, Settled
 from latentarm.operators.linear_guess import LinearGuess, LinearGuessConfig
 from latentarm.operators.loop_limits import UNLIMITED, LoopLimits
-from latentarm.operators.moment import Moment
+from latentarm.operators.moment import USUAL_WITHIN_M, Moment
 from latentarm.operators.operator import Operator
 from latentarm.operators.planning import Planning, PlanningConfig
 from latentarm.robots.robot import Robot
@@ -76,11 +76,17 @@ class SimulatedPerson(Operator):
         self._given: Input | None = None
 
     def act(
-        self, context: Context, controller: Controller, mode: int, target: Pose, rng: np.random.Generator
+        self,
+        context: Context,
+        controller: Controller,
+        mode: int,
+        target: Pose,
+        rng: np.random.Generator,
+        within_m: float = USUAL_WITHIN_M,
     ) -> Input:
         """See, learn, decide and move the hand."""
         u = np.zeros(controller.input_dim) if self._given is None else self._given.u
-        seen = self._hand.sees(Moment(context, mode, target, u))
+        seen = self._hand.sees(Moment(context, mode, target, u, within_m))
         self._imagination.saw(seen)
         meant = self._decision.decide(seen, controller, self._imagination, rng)
         self._given = self._hand.gives(meant, rng)

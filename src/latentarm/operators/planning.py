@@ -14,7 +14,7 @@ from latentarm.operators.imagination import Imagination
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.moment import Moment
 from latentarm.robots.robot import Robot
-from latentarm.types import Context, FloatArray, Input, IntArray, Pose
+from latentarm.types import Context, FloatArray, Input, IntArray
 
 BEYOND: Final = 0.01
 """Initial inputs of a plan lie this far beyond the dead zone: within it nothing they do changes anything, and
@@ -141,7 +141,7 @@ class Planning(Decision):
         pieces = len(starts[0])
         length = np.repeat(np.arange(1, pieces + 1), len(starts))
         plans = np.tile(np.stack(starts), (pieces, 1, 1))
-        plans, left = self._bettered(plans, length, moment.context, controller, moment.mode, moment.target)
+        plans, left = self._bettered(plans, length, moment, controller)
         arrives = np.flatnonzero(left < self._planning.arrived_m)
         taken = int(arrives[np.argmin(length[arrives])] if len(arrives) else np.argmin(left))
         return within_reach(plans[taken, : length[taken]]), float(left[taken])
@@ -150,10 +150,8 @@ class Planning(Decision):
         self,
         plans: FloatArray,
         length: IntArray,
-        context: Context,
+        moment: Moment,
         controller: Controller,
-        mode: int,
-        target: Pose,
     ) -> tuple[FloatArray, FloatArray]:
         """Plans (P, L, d), of which the first ``length`` pieces count, bettered, and what is left (P,), m."""
         shape, flat = plans.shape, plans.reshape(len(plans), -1)
@@ -166,9 +164,9 @@ class Planning(Decision):
                 [tried[:, None], tried[:, None] + inward[:, None] * np.eye(tried.shape[1])], axis=1
             )
             ends = self._imagined(
-                varied.reshape(*varied.shape[:2], *shape[1:]), length, context, controller, mode
+                varied.reshape(*varied.shape[:2], *shape[1:]), length, moment.context, controller, moment.mode
             )
-            residual = self._residual(ends, target)
+            residual = self._residual(ends, moment)
             slope = (residual[:, 1:] - residual[:, :1]) / inward[..., None]
             return residual[:, 0], slope.mT
 
@@ -207,9 +205,9 @@ class Planning(Decision):
             ends.append(state)
         return np.stack(ends)[length - 1, np.arange(len(plans))]
 
-    def _residual(self, state: FloatArray, target: Pose) -> FloatArray:
+    def _residual(self, state: FloatArray, moment: Moment) -> FloatArray:
         """How far, (..., 6), m, the tool is from the target."""
-        return self._config.missed(target, self._chain.forward(state))
+        return self._config.missed(moment.target, self._chain.forward(state), moment.within_m)
 
 
 def _step(flat: FloatArray, residual: FloatArray, slope: FloatArray, damping: FloatArray) -> FloatArray:

@@ -34,6 +34,10 @@ NEARER: Final = 0.1
 """What counts as nearer, in tolerances of the waypoint."""
 
 
+REARM_S: Final = 2.0
+"""After a stop the simulated person lets go, and enables the arm again so much later, s."""
+
+
 @final
 @dataclass(frozen=True, eq=False)
 class TaskSetup:
@@ -122,6 +126,7 @@ def drive_task(
         step(Input(np.zeros(controller.input_dim)), 0.0, reading, clock.now_s())
         arm.enable()
         step.enable()
+        rearming = _Rearming(step)
         for tick in range(1, int(task.time_limit_s * RATE_HZ) + 1):
             clock.wait_until(tick * step.dt_s)
             reading, state = arm.read(), arm.scene_state()
@@ -130,11 +135,15 @@ def drive_task(
                 watch(arm)
             if follow.ended is not None:
                 break
-            given = _given(operator, reading, state, follow.progress, step, controller, rng)
+            if rearming.lets_go(clock.now_s()):
+                operator.reset()
+                given = Input(np.zeros(controller.input_dim))
+            else:
+                given = _given(operator, reading, state, follow.progress, step, controller, rng)
             record = step(given, 0.0, reading, clock.now_s())
             follow.records.append(record)
             arm.send(record.command)
-    return follow.trace(choice)
+    return follow.trace(choice, rearming.stops)
 
 
 def _step(setup: TaskSetup, begun: Beginning, follow: "_Watch") -> Step:
@@ -167,7 +176,30 @@ def _given(
     waypoint = progress.waypoint
     if waypoint is None or progress.waits:
         return Input(np.zeros(controller.input_dim), gripper=progress.asks)
-    return operator.act(step.context(reading.q), controller, step.mode, waypoint.pose(state), rng)
+    target, within_m = waypoint.pose(state), waypoint.within_m
+    return operator.act(step.context(reading.q), controller, step.mode, target, rng, within_m)
+
+
+@final
+class _Rearming:
+    """What the person does about stops: they let go, find out why, and enable the arm again."""
+
+    def __init__(self, step: Step) -> None:
+        self.stops = 0
+        self._step = step
+        self._since_s: float | None = None
+
+    def lets_go(self, time_s: float) -> bool:
+        """Whether the arm is stopped; in the end it is enabled for the next tick."""
+        if self._step.stopped is None:
+            self._since_s = None
+            return False
+        if self._since_s is None:
+            self.stops += 1
+            self._since_s = time_s
+        elif time_s - self._since_s >= REARM_S:
+            self._step.enable()
+        return True
 
 
 @final
@@ -184,6 +216,7 @@ class _Watch:
         self._points: list[FloatArray] = []
         self._needed: list[FloatArray] = []
         self._states: list[SceneState] = []
+        self._newest: SceneState
         self._done_s: list[float] = []
         self._force_n: dict[str, float] = {}
         self._waypoint: Waypoint | None = None
@@ -192,7 +225,7 @@ class _Watch:
 
     def sees(self, state: SceneState) -> None:
         """Take how things stand before the next input."""
-        self.poses = state.poses
+        self.poses, self._newest = state.poses, state
         self.progress.update(state)
         self._done_s += [state.time_s] * (self.progress.done - len(self._done_s))
         self._feel(state)
@@ -210,9 +243,8 @@ class _Watch:
             if self._stuck(waypoint, state):
                 self.ended = f"no nearer for {STUCK_S:g} s"
 
-    def trace(self, choice: int) -> TaskTrace:
+    def trace(self, choice: int, stops: int) -> TaskTrace:
         """What is kept."""
-        state = self._states[-1]
         spilled = [fails for fails in self._begun.failures if isinstance(fails, Spilled)]
         position = np.stack(self._position[: len(self.records)])
         measured = measure_task_drive(
@@ -222,8 +254,9 @@ class _Watch:
             self._force_n,
             steps_done=self.progress.share,
             success=self.progress.succeeded,
-            spilled=sum(one.count(state) for one in spilled),
-            grains=sum(len(one) for one in state.grains.values()),
+            stops=stops,
+            spilled=sum(one.count(self._newest) for one in spilled),
+            grains=sum(len(one) for one in self._newest.grains.values()),
         )
         return TaskTrace(
             measured=measured,

@@ -106,7 +106,7 @@ def test_only_tasks_of_the_catalogue_are_made():
 
 
 def figures(success, steps_done):
-    return TaskDrive(Drive(success, 1.0, 1.0, 1.0, 1.0, 3, 1.0), steps_done, float("nan"), 1.0, 1.0, 0, 0)
+    return TaskDrive(Drive(success, 1.0, 1.0, 1.0, 1.0, 3, 1.0), steps_done, 0, float("nan"), 1.0, 1.0, 0, 0)
 
 
 def ran(number, done, why="done", steps=("above", "stabbed"), drive=True):

@@ -21,6 +21,7 @@ SHOWN: Final = (
     "time_s",
     "input_magnitude",
     "mode_switches",
+    "stops",
     "table_force_n",
     "food_force_n",
     "spilled_share",
