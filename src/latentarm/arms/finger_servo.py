@@ -72,14 +72,15 @@ class FingerServo(SimulatedGripper):
 
     def prepare(self) -> bool:
         """Set the servos for the next time step; whether those after it need to be set anew."""
-        if not self._stalled():
-            self._moved_s = float(self._data.time)
+        # Plain numbers: NumPy takes several times as long for so few, and this runs in every time step.
+        where: list[float] = self._data.qpos[self._positions].tolist()
+        if not self._stalled(where):
+            self._moved_s = self._data.time
         if self._target == self._goal:
             return False
-        way = np.clip(self._goal - self._target, -self._per_step, self._per_step)
-        width = self._data.qpos[self._positions]
+        way = min(max(self._goal - self._target, -self._per_step), self._per_step)
         # Fingers that are held must not wind their servos up, or they would leap once they are free.
-        self._target = float(np.clip(self._target + way, width.max() - self._lead, width.min() + self._lead))
+        self._target = min(max(self._target + way, max(where) - self._lead), min(where) + self._lead)
         self._data.ctrl[self._servos] = self._target
         return True
 
@@ -107,13 +108,14 @@ class FingerServo(SimulatedGripper):
         self._model.actuator_forcerange[self._servos] = -force_n, force_n
 
     def _reading(self) -> GripperReading:
-        holding = self._stalled() and float(self._data.time) - self._moved_s >= _STALLED_S
-        return GripperReading(float(self._data.qpos[self._positions].sum()), holding)
+        where: list[float] = self._data.qpos[self._positions].tolist()
+        holding = self._stalled(where) and self._data.time - self._moved_s >= _STALLED_S
+        return GripperReading(sum(where), holding)
 
-    def _stalled(self) -> bool:
-        """Whether the fingers stand still although their servos press."""
-        pulled = float((self._data.qpos[self._positions] - self._target).min())
-        speed = abs(float(self._data.qvel[self._speeds].sum()))
+    def _stalled(self, where: list[float]) -> bool:
+        """Whether the fingers, which are at these positions, m, stand still although their servos press."""
+        pulled = min(where) - self._target
+        speed = abs(sum(self._data.qvel[self._speeds].tolist()))
         enough = max(min(_STALLED_M, 0.5 * self._lead), 0.5 * _LEAST_N / self._stiffness)
         return pulled > enough and speed < _STILL_M_S
 

@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.arms.scene_model import grain_body, rotation_of, thing_body
 from latentarm.robots.robot import Robot
 from latentarm.scene.scene import TABLE, TOOL, Scene, SceneState
-from latentarm.types import FloatArray, IntArray, Pose
+from latentarm.types import BoolArray, FloatArray, IntArray, Pose
 
 _UNNAMED: Final = -1
 
@@ -124,16 +124,16 @@ class SceneWatch:
         geoms = self._data.contact.geom
         touched: list[set[int]] = []
         for finger in self._fingers:
-            on = np.isin(geoms, finger)
+            on = finger[geoms]
             touched.append({int(group) for group in self._group[geoms[on[:, ::-1]]]})
         both = set.intersection(*touched)
         return frozenset(self._names[group] for group in both if group > 1)
 
 
-def _fingers(model: mujoco.MjModel, robot: Robot) -> list[IntArray]:
-    """Ids of the geoms of each finger of the robot's gripper."""
+def _fingers(model: mujoco.MjModel, robot: Robot) -> list[BoolArray]:
+    """For each finger of the robot's gripper, which geoms are its own, (ngeom,)."""
     joints = () if robot.gripper is None else robot.gripper.joints
-    return [np.flatnonzero(model.geom_bodyid == model.jnt_bodyid[model.joint(name).id]) for name in joints]
+    return [model.geom_bodyid == model.jnt_bodyid[model.joint(name).id] for name in joints]
 
 
 def _grain_positions(model: mujoco.MjModel, name: str, count: int) -> tuple[FloatArray, IntArray]:
