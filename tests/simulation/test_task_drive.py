@@ -34,9 +34,9 @@ def test_an_arm_that_meets_a_dish_stops_and_the_person_enables_it_again():
     task = ThroughThePlate()
     setup = TaskSetup(task, EndEffectorController(task.robot), PEOPLE["greedy"])
     trace = drive_task(setup, 0, np.random.default_rng(3))
-    drive = trace.figures
+    drive = trace.measured
     assert drive.table_force_n > 50.0
     # At rest from each stop on, and then tried again: more than once, and no more often than that allows.
-    assert 2 <= drive.stops <= drive.time_s / REARM_S
-    assert not drive.success
+    assert 2 <= drive.stops <= drive.drive.time_s / REARM_S
+    assert not drive.drive.success
     assert trace.ended_in == "below the plate"
