@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from latentarm.simulation.guide import GuidingHand
-from latentarm.simulation.task_drive import STUCK_S
+from latentarm.simulation.task_drive import REARM_S, STUCK_S
 from latentarm.studies.page import render_page
 from latentarm.studies.study import Grid, Report, Request, Study, again
 from latentarm.studies.tasks.cell import (
@@ -120,6 +120,7 @@ def _page(
         figures=figures,
         hand=GuidingHand(),
         stuck_s=STUCK_S,
+        rearm_s=REARM_S,
         tasks=tasks,
         moved={name: MOVED[name].about for name in tasks if name in MOVED},
         demonstrated={name: measured.demonstrated(name) for name in tasks},
