@@ -12,11 +12,11 @@ from latentarm.metrics.task_drives import task_drive_rows
 from latentarm.robots.notices import notices
 from latentarm.runs.folder import Run
 from latentarm.runs.results_folder import ResultsFolder, write_json
-from latentarm.simulation.drive_figures import draw_drives, marks_of_choices
+from latentarm.simulation.drive_figures import draw_drives, marks_of_first_steps
 from latentarm.simulation.drive_table import write_drives_csv
 from latentarm.simulation.task_drive import TaskSetup
 from latentarm.simulation.task_drive_table import task_drive_entries
-from latentarm.simulation.task_drives import drive_choices
+from latentarm.simulation.task_drives import Series, drive_series
 from latentarm.tasks.catalogue import make_scene_task
 
 MADE: Final = ("drives.json", "drives.csv", "paths.png")
@@ -53,7 +53,8 @@ def drive_with_things(
     about = steering.about(task.time_limit_s)
     ResultsFolder("drive", MADE).claim(config.out, about)
     setup = TaskSetup(task, steering.controller, steering.person, steering.arbitration, steering.arm)
-    traces = drive_choices([setup], config.drives, config.seed, config.jobs, bars=config.bars)
+    series = Series([setup], config.drives)
+    (traces,) = drive_series([series], config.seed, config.jobs, bars=config.bars)
     subject = Subject("drive", task=name, model=steering.model, condition=config.driver)
     rows = task_drive_rows(subject, [trace.figures for trace in traces])
     operator = steering.operator
@@ -67,7 +68,7 @@ def drive_with_things(
     )
     write_json(config.out / "drives.json", as_document(rows, about) | {"drives": entries})
     write_drives_csv(config.out / "drives.csv", entries)
-    draw_drives({config.driver: traces}, marks_of_choices(task.choices, traces), config.out / "paths.png")
+    draw_drives({config.driver: traces}, marks_of_first_steps(traces), config.out / "paths.png")
     return Driven(rows, entries, config.driver, operator, name, task.time_limit_s)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, Literal, Protocol, TypeVar, final
 import numpy as np
 
 from latentarm.metrics.looks import look_of
+from latentarm.simulation.task_drive import TaskTrace
 from latentarm.style import FONT_SIZE, legend_below, new_figure, save_figure, tidy
 from latentarm.types import FloatArray, Goal
 
@@ -22,6 +23,9 @@ OUTCOMES: Final[dict[str, Literal["-", ":"]]] = {"goal reached": "-", "goal not 
 
 PANEL_MM = 51.0
 WIDTH_MM = 170.0
+
+TICKS: Final = 3
+"""Intervals across a panel, at most: a narrow one has no room for the labels of more."""
 
 
 class Outcome(Protocol):
@@ -91,23 +95,9 @@ def marks_of_goals(goals: Sequence[Goal]) -> list[Mark]:
     return [Mark(goal.name, index, goal.pose.position) for index, goal in enumerate(goals)]
 
 
-class TowardsThing(Protocol):
-    """A drive towards something that lies elsewhere in each."""
-
-    @property
-    def goal(self) -> int:
-        """Index of what it was for."""
-        ...
-
-    @property
-    def target(self) -> FloatArray:
-        """(3,), m."""
-        ...
-
-
-def marks_of_choices(choices: Sequence[str], traces: Sequence[TowardsThing]) -> list[Mark]:
-    """Where each drive was to lead first."""
-    return [Mark(choices[trace.goal], trace.goal, trace.target) for trace in traces]
+def marks_of_first_steps(traces: Sequence[TaskTrace]) -> list[Mark]:
+    """Where the first step of each drive leads, which lies elsewhere in each."""
+    return [Mark(trace.steps[0].name, trace.goal, trace.target) for trace in traces]
 
 
 def draw_drives(traces: Mapping[str, Sequence[Drawn]], marks: Sequence[Mark], path: Path) -> None:
@@ -134,6 +124,7 @@ def draw_drives(traces: Mapping[str, Sequence[Drawn]], marks: Sequence[Mark], pa
         axes.set_xlabel("y (m)")
     for axes in panels.flat:
         tidy(axes)
+        axes.locator_params(axis="x", nbins=TICKS)
     handles, labels = panels[0, 0].get_legend_handles_labels()
     legend_below(figure, [*handles, *outcome_lines()], [*labels, *OUTCOMES])
     save_figure(figure, path)

@@ -14,39 +14,39 @@ DRIVE_STREAM: Final = 12
 """Separates the drives' randomness from everything else drawn from the same seed."""
 
 
-def drive_choices(
-    setups: Sequence[TaskSetup], drives: int, seed: int, jobs: int, *, bars: bool = False
-) -> list[TaskTrace]:
-    """Drive for every choice ``drives`` times; see `drive_conditions`.
+@final
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Drives of one condition.
 
-    Args:
+    Attributes:
         setups: of one task; they take turns, so that no figure depends on one trained model.
-        drives: for each choice.
-        seed: of the things' places and of the simulated operator.
-        jobs: processes; -1 is one per core.
-        bars: show on standard error how many drives are done.
-
-    Returns:
-        The drives, choice by choice.
-
-    Raises:
-        UserError: the arm cannot be used.
+        drives: for each choice of the task.
     """
-    return drive_conditions([setups], drives, seed, jobs, bars=bars)[0]
+
+    setups: Sequence[TaskSetup]
+    drives: int
+
+    def calls(self, seed: int) -> "list[_Call]":
+        """Its drives, choice by choice."""
+        return [self.call(seed, index) for index in range(self.drives * len(self.setups[0].task.choices))]
+
+    def call(self, seed: int, index: int) -> "_Call":
+        """One of them."""
+        choice, number = divmod(index, self.drives)
+        return _Call(self.setups[index % len(self.setups)], choice, seed, number)
 
 
-def drive_conditions(
-    conditions: Sequence[Sequence[TaskSetup]], drives: int, seed: int, jobs: int, *, bars: bool = False
+def drive_series(
+    series: Sequence[Series], seed: int, jobs: int, *, bars: bool = False
 ) -> list[list[TaskTrace]]:
-    """Drive for every choice ``drives`` times in each condition, processes side by side.
+    """Drive for every choice several times in each condition, processes side by side.
 
     A drive depends on the seed, the choice and its number alone, so that every controller meets the same
     things and starts, and the number of processes changes nothing.
 
     Args:
-        conditions: setups of one task for each; they take turns, so that no figure depends on one trained
-            model.
-        drives: for each choice.
+        series: the conditions.
         seed: of the things' places and of the simulated operator.
         jobs: processes; -1 is one per core.
         bars: show on standard error how many drives are done.
@@ -57,26 +57,26 @@ def drive_conditions(
     Raises:
         UserError: the arm cannot be used.
     """
-    choices = len(conditions[0][0].task.choices)
-    calls = [
-        _Call(setups[number % len(setups)], choice, seed, number)
-        for setups in conditions
-        for choice in range(choices)
-        for number in range(drives)
-    ]
-    traces = run_grid(_drive, calls, jobs=jobs, backend="joblib", label=_name_of, bars=bars, unit="drives")
-    each = choices * drives
-    return [traces[first : first + each] for first in range(0, len(traces), each)]
+    calls = [one.calls(seed) for one in series]
+    traces = iter(
+        run_grid(
+            _drive,
+            [call for of_one in calls for call in of_one],
+            jobs=jobs,
+            backend="joblib",
+            label=_name_of,
+            bars=bars,
+            unit="drives",
+        )
+    )
+    return [[next(traces) for _ in of_one] for of_one in calls]
 
 
-def drive_again(
-    setups: Sequence[TaskSetup], drives: int, seed: int, index: int, watch: Callable[[SceneArm], None]
-) -> TaskTrace:
-    """One drive of `drive_choices` once more, the same to the bit, for a camera.
+def drive_again(series: Series, seed: int, index: int, watch: Callable[[SceneArm], None]) -> TaskTrace:
+    """One drive of `drive_series` once more, the same to the bit, for a camera.
 
     Args:
-        setups: as there.
-        drives: as there.
+        series: as there.
         seed: as there.
         index: of the drive among those that came of it.
         watch: sees the arm at every tick.
@@ -84,27 +84,27 @@ def drive_again(
     Raises:
         UserError: the arm cannot be used.
     """
-    choice, number = divmod(index, drives)
-    return drive_task(setups[number % len(setups)], choice, _generator(seed, choice, number), watch)
+    call = series.call(seed, index)
+    return drive_task(call.setup, call.choice, call.generator(), watch)
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class _Call:
-    """One drive of `drive_choices`."""
+    """One drive of a series."""
 
     setup: TaskSetup
     choice: int
     seed: int
     number: int
 
+    def generator(self) -> np.random.Generator:
+        """Of the things' places and of the simulated operator."""
+        return np.random.default_rng([DRIVE_STREAM, self.seed, self.choice, self.number])
+
 
 def _drive(call: _Call) -> TaskTrace:
-    return drive_task(call.setup, call.choice, _generator(call.seed, call.choice, call.number))
-
-
-def _generator(seed: int, choice: int, number: int) -> np.random.Generator:
-    return np.random.default_rng([DRIVE_STREAM, seed, choice, number])
+    return drive_task(call.setup, call.choice, call.generator())
 
 
 def _name_of(call: _Call) -> str:
