@@ -101,7 +101,8 @@ def steering_of(config: DriveOptions, run: Run | None, task: str, robot: Robot) 
     Raises:
         UserError: the run's model or profile cannot be used, or is for another arm.
     """
-    return Steering(config, task, robot, run, _controller(config, robot), _arbitration(config))
+    arbitration = _arbitration(config)
+    return Steering(config, task, robot, run, _controller(config, robot), arbitration)
 
 
 def _arbitration(config: DriveOptions) -> FixedAlpha | ConfidenceAlpha | None:
