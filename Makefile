@@ -38,7 +38,7 @@ node_modules/installed: package-lock.json $(VENV)/installed-dev
 	NODE_USE_SYSTEM_CA=1 $(BIN)/npm ci --no-audit --no-fund --loglevel=error
 	@touch $@
 
-demo: $(VENV)/installed ## Learn latent actions and drive a 7-DoF arm to three goals (minutes).
+demo: $(VENV)/installed ## Learn latent actions and stab marshmallows with a 7-DoF arm in physics (minutes).
 	$(BIN)/latentarm demo --out demo
 
 check: $(VENV)/installed-dev node_modules/installed ## Lint, formatting, types and import layers.

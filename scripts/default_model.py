@@ -1,9 +1,9 @@
 """Drives the candidates for the default model, and applies the rule of docs/decisions/0031 to the drives.
 
-All candidates drive the demo's table with all simulated people. With a recording they race along its held-out
-episodes, the most promising first: a candidate whose interval of success cannot reach that of the best any
-more, even if every further drive succeeded, is not driven on, because the rule's first step would drop it
-whatever came. Every place that was driven is kept in a file and is not driven again. For example:
+All candidates drive to three items on a table with all simulated people. With a recording they race along its
+held-out episodes, the most promising first: a candidate whose interval of success cannot reach that of the
+best any more, even if every further drive succeeded, is not driven on, because the rule's first step would
+drop it whatever came. Every place that was driven is kept in a file and is not driven again. For example:
 python scripts/default_model.py --models cvae scl homogeneous --recording pour --out default_model
 """
 
@@ -17,8 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from latentarm.commands.demo import TIME_LIMIT_S, USUAL
-from latentarm.commands.drive import HELD_OUT_LIMIT_S
+from latentarm.commands.drive import HELD_OUT_LIMIT_S, TIME_LIMIT_S
 from latentarm.controllers.latent import LatentController
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.split import Fold, select_episodes
@@ -39,6 +38,11 @@ from latentarm.tasks.table_top import TableTop
 from latentarm.tasks.task import Task
 
 TABLE: Final = "table"
+
+EPISODES: Final = 60
+SEEDS: Final = 3
+EPOCHS: Final = 16
+"""Of the demonstrations at the table and of the training on them."""
 
 Drives = dict[str, Any]
 """Of one model at one place: its training time, s, and every drive."""
@@ -98,25 +102,25 @@ def _kept(asked: argparse.Namespace, model: str, place: str, drive: Callable[[],
 
 
 def _table(model: str, asked: argparse.Namespace) -> Drives:
-    """The demo's table, with decoders trained as there."""
+    """The table with three items, with decoders trained on demonstrations there."""
     shown, run = asked.out / "table", asked.out / model / "run"
     task = TableTop()
     if not shown.exists():
-        write_dataset(task.demonstrate(USUAL.episodes, np.random.default_rng(asked.seed)), shown)
+        write_dataset(task.demonstrate(EPISODES, np.random.default_rng(asked.seed)), shown)
     began = process_time()
     train_run(
         TrainConfig(
             demonstrations=shown,
             model=model,
             out=run,
-            seeds=USUAL.seeds,
+            seeds=SEEDS,
             seed=asked.seed,
             state_noise_rad=STATE_NOISE_RAD,
-            epochs=USUAL.epochs,
+            epochs=EPOCHS,
         )
     )
     train_s = process_time() - began
-    decoders = [load_decoder(run, seed) for seed in range(USUAL.seeds)]
+    decoders = [load_decoder(run, seed) for seed in range(SEEDS)]
     return _driven(asked, model, TABLE, task, decoders, asked.drives, TIME_LIMIT_S) | {"train_s": train_s}
 
 

@@ -1,7 +1,7 @@
 """Redraw the figures of ``docs/figures`` by the commands that the pages name.
 
 ``python scripts/docs_figures.py demo alignment`` redraws those of some commands. All take about an
-hour of one core: demo 4 minutes, properties 11, shared-autonomy 19, alignment 27 (measured).
+hour of one core: demo 6 minutes, properties 11, shared-autonomy 19, alignment 27 (measured).
 ``compare`` needs the recordings that are not part of the repository, and about four hours of one core: it
 runs only if named.
 """

@@ -1,4 +1,4 @@
-"""Whether drives that fail at the demo's table end in true local minima of the decoder's map.
+"""Whether drives that fail at the table with three items end in true local minima of the decoder's map.
 
 For every drive of the greedy operator that fails, the largest gain of any held input out of a fine grid, and
 whether the planning operator completes the same drive. For example:

@@ -22,7 +22,7 @@ from latentarm.untrusted.terminal import one_line
 COMMANDS: dict[str, tuple[str, str]] = {
     "demo": (
         "demo:demo",
-        "Learn latent actions and drive a 7-DoF Panda to three goals, against mode switching.",
+        "Learn latent actions and stab marshmallows with a 7-DoF Panda in physics, against mode switching.",
     ),
     "import": (
         "import_demonstrations:import_demonstrations",

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from latentarm.metrics.drives import Drive, GoalDrive
 from latentarm.metrics.ending import Ending
 from latentarm.simulation.drive import Trace
-from latentarm.simulation.drive_figures import draw_drives, draw_inputs, median_drive
+from latentarm.simulation.drive_figures import draw_drives, draw_inputs, marks_of_goals, median_drive
 from latentarm.tasks.table_top import TableTop
 
 
@@ -47,18 +47,16 @@ def test_six_goals_and_both_outcomes_fit_under_one_column(conditions, tmp_path):
     task = TableTop()
     goals = tuple(replace(task.goals[0], name=f"a rather long name {index}") for index in range(6))
 
-    class SixGoals:
-        pass
-
-    SixGoals.goals = goals
     draw_drives(
-        {name: [trace(), trace(success=False)] for name in conditions}, SixGoals(), tmp_path / "p.png"
+        {name: [trace(), trace(success=False)] for name in conditions},
+        marks_of_goals(goals),
+        tmp_path / "p.png",
     )
     assert (tmp_path / "p.png").exists()
 
 
 def test_the_legend_names_goals_and_lines(saved, tmp_path):
-    draw_drives({"latent": [trace(success=False)]}, TableTop(), tmp_path / "paths.png")
+    draw_drives({"latent": [trace(success=False)]}, marks_of_goals(TableTop().goals), tmp_path / "paths.png")
     assert legends(saved[0]) == ["carrot", "tofu", "melon", "goal reached", "goal not reached"]
 
 

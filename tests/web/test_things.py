@@ -102,7 +102,7 @@ def test_the_fingers_of_a_gripper_open_away_from_each_other():
 
 
 def test_things_are_looked_at_25_times_a_second_where_the_arm_knows_of_them():
-    setup = load_setup(Spec(task="marshmallows", arm="mujoco"))
+    setup = load_setup(Spec(task="marshmallows"))
     arm = make_scene_arm("mujoco", setup.task.robot, setup.start, lambda: 0.0, setup.scene)
     seen = [Whereabouts(setup.scene, arm).look(tick) for tick in range(100)]
     assert sum(one is not None for one in seen) == 25
@@ -150,4 +150,4 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
 
 def test_a_task_with_things_needs_an_arm_that_can_touch_them():
     with pytest.raises(UserError, match="--arm kinematic has no things about it"):
-        load_setup(Spec(task="marshmallows"))
+        load_setup(Spec(task="marshmallows", arm="kinematic"))

@@ -32,14 +32,15 @@ class Servo:
     def __init__(
         self, model: mujoco.MjModel, data: mujoco.MjData, joints: IntArray, quickening: FloatArray
     ) -> None:
-        self._model, self._data = model, data
         self._n = len(joints)
         self._positions = model.jnt_qposadr[joints]
         self._quickening = quickening
         self._velocity = np.zeros(self._n)
         stiffness = model.actuator_gainprm[: self._n, 0]
         self._farthest = model.jnt_actfrcrange[joints, 1] / stiffness
-        data.act[: self._n] = data.qpos[self._positions]
+        self._qpos, self._act = data.qpos, data.act[: self._n]
+        self._ctrl = data.ctrl[: 2 * self._n].reshape(2, self._n)
+        self._act[:] = self._qpos[self._positions]
 
     def prepare(self, commanded: FloatArray) -> bool:
         """Set the servos for the next time step; whether those after it need to be set anew.
@@ -53,17 +54,14 @@ class Servo:
             self._velocity = np.where(
                 np.abs(commanded - self._velocity) <= self._quickening, commanded, self._velocity + change
             )
-        n = self._n
-        self._data.ctrl[:n] = self._velocity
-        self._data.ctrl[n : 2 * n] = self._velocity
+        self._ctrl[:] = self._velocity
         return changes
 
     def unwind(self) -> None:
         """After a time step: a joint that is held must not wind its servo up, or it would leap once free."""
-        q = self._data.qpos[self._positions]
-        act = self._data.act[: self._n]
-        # Not np.clip, which takes twice as long for so few: this runs after every time step.
-        self._data.act[: self._n] = np.minimum(np.maximum(act, q - self._farthest), q + self._farthest)
+        q = self._qpos[self._positions]
+        np.maximum(self._act, q - self._farthest, out=self._act)
+        np.minimum(self._act, q + self._farthest, out=self._act)
 
 
 def torque_limits(model: mujoco.MjModel, joints: IntArray, robot: Robot) -> FloatArray:

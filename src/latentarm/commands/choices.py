@@ -12,10 +12,8 @@ if TYPE_CHECKING:
     BeliefName = str
     ModelName = str
     TaskName = str
-    AnyTaskName = str
 else:
     ArmName = Literal[tuple(ARMS)]
     BeliefName = Literal[tuple(BELIEFS)]
     ModelName = Literal[tuple(KINDS)]
-    TaskName = Literal[(*TASKS, HELD_OUT)]
-    AnyTaskName = Literal[(*TASKS, *SCENE_TASKS, HELD_OUT)]
+    TaskName = Literal[(*TASKS, *SCENE_TASKS, HELD_OUT)]

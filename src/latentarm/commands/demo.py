@@ -3,19 +3,19 @@
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated, Final, final
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 from tyro.conf import arg
 
 from latentarm.alignment.profile import profile_names
-from latentarm.arms.catalogue import DEFAULT_ARM
 from latentarm.assistance.blending import Arbitration, FixedAlpha
-from latentarm.commands.choices import ArmName
 from latentarm.commands.configuration import write_options
+from latentarm.commands.demo_page import FILM, film, held_in_words, page
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import say, show
 from latentarm.control.controller import Controller
@@ -25,24 +25,27 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.errors import UserError
 from latentarm.files import write_text
 from latentarm.metrics.comparison_figure import comparison_figure
-from latentarm.metrics.drives import goal_drive_rows
+from latentarm.metrics.looks import look_of
 from latentarm.metrics.results import write_results
 from latentarm.metrics.summary import Subject, headline
-from latentarm.metrics.table import markdown_table
+from latentarm.metrics.task_drives import task_drive_rows
 from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.models.saving import load_decoder
-from latentarm.models.training import epoch_bar
 from latentarm.operators.catalogue import PEOPLE, OperatorName
+from latentarm.parallel.grid import run_grid
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.runs.evaluating import evaluate_run
 from latentarm.runs.results_folder import ResultsFolder, vacant_name
 from latentarm.runs.training import TrainConfig, train_run
 from latentarm.simulation.arm_figure import draw_task
-from latentarm.simulation.drive import STATE_NOISE_RAD, Setup, Trace
-from latentarm.simulation.drive_figures import draw_drives, draw_inputs
-from latentarm.simulation.drives import drive_all
+from latentarm.simulation.demonstrate import demonstrate
+from latentarm.simulation.drive import STATE_NOISE_RAD
+from latentarm.simulation.drive_figures import draw_drives, draw_inputs, marks_of_first_steps
+from latentarm.simulation.task_drive import TaskSetup, TaskTrace
+from latentarm.simulation.task_drives import Series, drive_series
 from latentarm.style import save_figure
-from latentarm.tasks.table_top import TableTop
+from latentarm.tasks.eating.marshmallows import Marshmallows
+from latentarm.tasks.place import ScenePlace
 from latentarm.types import Row
 from latentarm.untrusted.console import VisibleConsole
 from latentarm.web.arm_process.drive_setup import Spec
@@ -52,12 +55,22 @@ from latentarm.web.server.app import serve
 MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae")))
 """The default model and the paper's."""
 
-TIME_LIMIT_S = 60.0
+HIDDEN: Final = (64, 64)
+BATCH_SIZE: Final = 256
+"""Units of each hidden layer and pairs per step, as in the study of the tasks."""
+
+TASK: Final = Marshmallows()
+
+ARM: Final = "mujoco"
+"""What moves: only in physics is food held."""
 
 SHOWN: Final[OperatorName] = "greedy"
 """Whose drives the figures show, and who is helped as well: the paper's simulated person (equation 24)."""
 
-MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png", "task.png")
+DRIVERS: Final[tuple[OperatorName, ...]] = tuple(person for person in PEOPLE if person != "planning")
+"""Who drives: everybody but the person who plans, each of whose drives takes 20 s and more to compute."""
+
+MADE = ("results.json", "results.md", "paths.png", "inputs.png", "properties.png", "task.png", FILM)
 """Every file of the folder except its options, the dataset and the runs."""
 
 
@@ -72,15 +85,27 @@ class DemoOptions:
     out: Annotated[Path, arg(metavar="DIR", help="Folder for datasets, runs, table and figures.")] = Path(
         "demo"
     )
-    drives: Annotated[int, arg(help="Simulated drives for each goal, person and condition.")] = 7
-    arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM
+    drives: Annotated[
+        int,
+        arg(
+            help="Simulated drives of the greedy person for each marshmallow and condition; the other people"
+            " drive a third as often."
+        ),
+    ] = 3
     seed: Seed = 0
-    jobs: Annotated[int, arg(help="Processes that drive side by side; -1 is one per core.")] = -1
+    jobs: Annotated[
+        int, arg(help="Processes that demonstrate and drive side by side; -1 is one per core.")
+    ] = -1
     json: Json = False
 
     def __post_init__(self) -> None:
         check_seed(self.seed)
-        check_count("drives for each goal", self.drives)
+        check_count("drives for each marshmallow", self.drives)
+
+    @property
+    def others(self) -> int:
+        """Drives for each marshmallow of everybody but `SHOWN`: a third of theirs, at least one."""
+        return -(-self.drives // 3)
 
     @property
     def bars(self) -> bool:
@@ -93,79 +118,173 @@ class Sizes:
     """How much is learned from; only tests take other sizes.
 
     Attributes:
-        episodes: demonstrations.
+        episodes: demonstrations, of some 5 s each.
         seeds: models of each kind, trained together and driven in turn.
-        epochs: passes over the training pairs, at most.
+        epochs: passes over the training pairs, at most, by model.
     """
 
-    episodes: int = 60
+    episodes: int = 230
     seeds: int = 3
-    epochs: int = 16
+    epochs: Mapping[str, int] = field(default_factory=lambda: EPOCHS)
 
+
+EPOCHS: Final = {DEFAULT_MODEL: 2, "cvae": 30}
+"""Of the default model chosen on drives of another seed; the cVAE's validation loss has settled."""
 
 USUAL = Sizes()
 
 
-def run_demo(config: DemoOptions, sizes: Sizes = USUAL) -> list[Row]:
-    """Run the whole demo and write its results to ``config.out``.
+@dataclass(frozen=True)
+class Shown:
+    """What the demo showed.
 
-    Returns:
-        Figures of the drives: mean and SD over all goals.
+    Attributes:
+        rows: figures of the drives: mean and SD over all of a condition.
+        said: what happened to the food, and why anything is missing, in sentences.
+    """
+
+    rows: list[Row]
+    said: tuple[str, ...]
+
+
+def run_demo(config: DemoOptions, sizes: Sizes = USUAL) -> Shown:
+    """Run the whole demo and write its results to ``config.out``.
 
     Raises:
         UserError: the folder holds something else, or cannot be written.
     """
     _claim(config, sizes)
     console = VisibleConsole(stderr=True, quiet=config.json)
-    task = TableTop()
-    console.print(f"1/3  A simulated person demonstrates eating {sizes.episodes} times.")
-    demonstrations = task.demonstrate(sizes.episodes, np.random.default_rng(config.seed))
+    task = TASK
+    console.print(
+        f"1/3  A simulated person guides a fork into marshmallows {sizes.episodes} times, in physics."
+    )
+    demonstrations, _ = demonstrate(task, sizes.episodes, config.seed, config.jobs, bars=config.bars)
     write_dataset(demonstrations, config.out / "demonstrations")
-    draw_task(task, demonstrations, config.out / "task.png")
-    properties: list[Row] = []
-    for model in MODELS:
-        console.print(f"2/3  {model}: learning 2-D latent actions, {sizes.seeds} seeds at once.")
-        properties += _train(config, sizes, model)
+    draw_task(_place(task, config.seed), demonstrations, config.out / "task.png")
+    console.print(
+        f"2/3  {' and '.join(MODELS)} learn 2-D latent actions, {sizes.seeds} seeds of each at once."
+    )
+    properties = _learn_all(config, sizes)
     conditions = _conditions(task, config, sizes.seeds)
-    traces: dict[str, list[Trace]] = {}
-    tables: dict[OperatorName, list[Row]] = {person: [] for person in PEOPLE}
-    for number, (person, subject, setups) in enumerate(conditions, start=1):
-        drives = config.drives * len(task.goals)
-        name = " ".join(part for part in (subject.model, subject.condition) if part)
-        console.print(
-            f"3/3  {number} of {len(conditions)}: the {person} simulated operator drives {drives} times,"
-            f" {name}."
-        )
-        driven = drive_all(setups, config.drives, config.seed, config.jobs, bars=config.bars)
-        tables[person] += goal_drive_rows(subject, [trace.measured for trace in driven])
-        if person == SHOWN and subject.model in (MODELS[0], None):
-            traces[str(subject.condition)] = driven
+    number = len(task.choices) * sum(one.series.drives for one in conditions)
+    console.print(f"3/3  Simulated operators drive {number} times, in {len(conditions)} conditions.")
+    series = [one.series for one in conditions]
+    driven = drive_series(series, config.seed, config.jobs, bars=config.bars)
+    tables: dict[OperatorName, list[Row]] = {person: [] for person in DRIVERS}
+    for condition, traces in zip(conditions, driven, strict=True):
+        tables[condition.person] += task_drive_rows(condition.subject, [trace.measured for trace in traces])
     rows = [_named(person, row) for person, table in tables.items() for row in table]
     write_results(config.out / "results.json", [*rows, *properties], _about(config, sizes))
-    _write_page(config, sizes, task, tables, properties, traces)
-    return rows
-
-
-def _train(config: DemoOptions, sizes: Sizes, model: str) -> list[Row]:
-    run = config.out / "runs" / model
-    chosen = TrainConfig(
-        demonstrations=config.out / "demonstrations",
-        model=model,
-        out=run,
+    shown = [(one, traces) for one, traces in zip(conditions, driven, strict=True) if one.person == SHOWN]
+    held = held_in_words({condition.name: traces for condition, traces in shown})
+    filmed = film(config.out, MODELS[0], shown[0][0].series, shown[0][1], config.seed)
+    _draw({str(one.subject.condition): traces for one, traces in shown if one.drawn}, properties, config.out)
+    text = page(
+        task,
+        tables,
+        properties,
+        held,
+        filmed,
+        model=MODELS[0],
+        shown=SHOWN,
+        drives=config.drives,
+        others=config.others,
         seeds=sizes.seeds,
         seed=config.seed,
-        state_noise_rad=STATE_NOISE_RAD,
-        epochs=sizes.epochs,
     )
-    with epoch_bar(config.bars) as report:
-        train_run(chosen, report)
-    return evaluate_run(run, run, config.seed, folds=0).rows
+    write_text(config.out / "results.md", text)
+    return Shown(rows, (held, filmed.said))
 
 
-def _conditions(
-    task: TableTop, config: DemoOptions, seeds: int
-) -> list[tuple[OperatorName, Subject, list[Setup]]]:
-    """Each person with each model (all its seeds in turn), alone and assisted, and with mode switching."""
+def _place(task: Marshmallows, seed: int) -> ScenePlace:
+    """The task with the marshmallows where they lie in one run."""
+    begun = task.begin(0, np.random.default_rng(seed))
+    return ScenePlace(task.robot, begun.goals, task.obstacles)
+
+
+def _draw(shown: Mapping[str, Sequence[TaskTrace]], properties: Sequence[Row], out: Path) -> None:
+    """Draw drives by condition, and the properties of the latent spaces."""
+    marks = marks_of_first_steps(next(iter(shown.values())))
+    draw_drives(shown, marks, out / "paths.png")
+    draw_inputs(shown, out / "inputs.png")
+    save_figure(comparison_figure(headline(properties)), out / "properties.png")
+
+
+@final
+@dataclass(frozen=True)
+class _Learning:
+    """One kind of model, as it is trained and measured."""
+
+    config: DemoOptions
+    model: str
+    seeds: int
+    epochs: int
+
+
+def _learn_all(config: DemoOptions, sizes: Sizes) -> list[Row]:
+    """Train and measure the models, side by side."""
+    calls = [_Learning(config, model, sizes.seeds, sizes.epochs[model]) for model in MODELS]
+    found = run_grid(
+        _learn,
+        calls,
+        jobs=config.jobs,
+        backend="joblib",
+        label=lambda call: call.model,
+        bars=config.bars,
+        unit="models",
+    )
+    return [row for rows in found for row in rows]
+
+
+def _learn(call: _Learning) -> list[Row]:
+    config = call.config
+    run = config.out / "runs" / call.model
+    chosen = TrainConfig(
+        demonstrations=config.out / "demonstrations",
+        model=call.model,
+        out=run,
+        seeds=call.seeds,
+        seed=config.seed,
+        state_noise_rad=STATE_NOISE_RAD,
+        epochs=call.epochs,
+        hidden=HIDDEN,
+        batch_size=BATCH_SIZE,
+        task=TASK.name,
+    )
+    with threadpool_limits(limits=1):
+        train_run(chosen)
+        return evaluate_run(run, run, config.seed, folds=0).rows
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class _Condition:
+    """Who drives with what.
+
+    Attributes:
+        person: who drives.
+        subject: of the figures.
+        series: their drives; all seeds of a model take turns.
+    """
+
+    person: OperatorName
+    subject: Subject
+    series: Series
+
+    @property
+    def name(self) -> str:
+        """What steers, in words."""
+        return ", ".join(look_of(part).label for part in (self.subject.model, self.subject.condition) if part)
+
+    @property
+    def drawn(self) -> bool:
+        """Whether figures show it."""
+        return self.subject.model in (MODELS[0], None)
+
+
+def _conditions(task: Marshmallows, config: DemoOptions, seeds: int) -> list[_Condition]:
+    """The shown person with everything, the others without help, with the default model or mode switching."""
     steered: list[tuple[str | None, str, Sequence[Controller], Arbitration | None]] = []
     for model in MODELS:
         run = config.out / "runs" / model
@@ -174,14 +293,17 @@ def _conditions(
         steered.append((model, "latent_assist", controllers, FixedAlpha()))
     steered.append((None, "end_effector", [EndEffectorController(task.robot)], None))
     return [
-        (
+        _Condition(
             person,
             Subject("demo", task=task.name, model=model, condition=condition),
-            [Setup(task, one, help_by, PEOPLE[person], TIME_LIMIT_S, arm=config.arm) for one in controllers],
+            Series(
+                [TaskSetup(task, one, PEOPLE[person], help_by, ARM) for one in controllers],
+                config.drives if person == SHOWN else config.others,
+            ),
         )
-        for person in PEOPLE
+        for person in DRIVERS
         for model, condition, controllers, help_by in steered
-        if person == SHOWN or help_by is None
+        if person == SHOWN or (help_by is None and model in (MODELS[0], None))
     ]
 
 
@@ -190,53 +312,18 @@ def _named(person: OperatorName, row: Row) -> Row:
     return row if person == SHOWN else replace(row, condition=f"{row.condition}, {person}")
 
 
-def _write_page(
-    config: DemoOptions,
-    sizes: Sizes,
-    task: TableTop,
-    tables: Mapping[OperatorName, Sequence[Row]],
-    properties: Sequence[Row],
-    traces: dict[str, list[Trace]],
-) -> None:
-    out = config.out
-    draw_drives(traces, task, out / "paths.png")
-    save_figure(comparison_figure(headline(properties)), out / "properties.png")
-    draw_inputs(traces, out / "inputs.png")
-    count = config.drives * len(task.goals)
-    write_text(
-        out / "results.md",
-        "# What the demo measured\n\n"
-        f"A simulated operator drove a simulated Panda {count} times per column ({config.drives} to each of"
-        f" {len(task.goals)} goals; the {sizes.seeds} trained models of a kind take turns),"
-        f" seed {config.seed}; mean ± SD over the drives, failed ones included"
-        f" (they end after {TIME_LIMIT_S:g} s). No person took part.\n\n"
-        f"{_people_tables(tables)}"
-        f"The figures show the model {MODELS[0]}, driven by the {SHOWN} operator."
-        " ![Paths of the tool](paths.png)\n\n"
-        "![Inputs over time](inputs.png)\n\n"
-        "## The latent spaces, on held-out episodes\n\n"
-        f"Mean ± SD over {sizes.seeds} seeds.\n\n{markdown_table(properties)}\n"
-        "![The properties of the latent spaces](properties.png)\n\n"
-        "![The task](task.png)\n",
-    )
-
-
-def _people_tables(tables: Mapping[OperatorName, Sequence[Row]]) -> str:
-    """A table of drives under the name of each simulated person."""
-    return "".join(f"## The {person} operator\n\n{markdown_table(rows)}\n" for person, rows in tables.items())
-
-
 def _about(config: DemoOptions, sizes: Sizes) -> dict[str, object]:
     """What the figures depend on."""
     return {
         "study": "demo",
         "seed": config.seed,
-        "drives_per_goal": config.drives,
+        "drives_per_choice": config.drives,
         "operator": "simulated",
         "episodes": sizes.episodes,
         "seeds": sizes.seeds,
-        "epochs": sizes.epochs,
-        "arm": config.arm,
+        "epochs": dict(sizes.epochs),
+        "task": TASK.name,
+        "arm": ARM,
     }
 
 
@@ -259,19 +346,21 @@ def _claim(config: DemoOptions, sizes: Sizes) -> None:
 
 
 def demo(options: DemoOptions) -> int:
-    """Learn latent actions and drive a 7-DoF Panda to three goals, against mode switching.
+    """Learn latent actions and stab marshmallows with a 7-DoF Panda in physics, against mode switching.
 
     In a terminal it ends with the page of `latentarm teleop`. For example: latentarm demo --out demo
     """
     out, json = options.out, options.json
-    rows = run_demo(options)
+    shown = run_demo(options)
     write_options(out, "demo")
-    show(rows, json)
+    show(shown.rows, json)
+    for sentence in shown.said:
+        say(sentence, json)
     say(f"Table, figures, datasets and runs are in {out}/ (begin with {out}/results.md).", json)
     run = out / "runs" / MODELS[0]
     if json or not (sys.stdin.isatty() and sys.stdout.isatty()):
         say(f"To drive the arm yourself: latentarm teleop {run}", json)
         return 0
-    spec = Spec(run, out=out / "teleop", arm=options.arm)
+    spec = Spec(run, out=out / "teleop", arm=ARM)
     serve(TeleopConfig(spec, port=0), partial(say, json=json))
     return 0

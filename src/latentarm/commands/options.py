@@ -6,8 +6,14 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
+from latentarm.commands.choices import ArmName
+
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
 Seed = Annotated[int, arg(help="Seed of all randomness.")]
+Arm = Annotated[
+    ArmName | None,
+    arg(help="What moves; by default kinematic, and mujoco at a task with things, which only physics holds."),
+]
 RobotName = Annotated[
     str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")
 ]

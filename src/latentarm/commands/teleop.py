@@ -7,10 +7,9 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
-from latentarm.arms.catalogue import DEFAULT_ARM
-from latentarm.commands.choices import AnyTaskName, ArmName
+from latentarm.commands.choices import TaskName
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Json, Seed
+from latentarm.commands.options import Arm, Json, Seed
 from latentarm.commands.output import say
 
 
@@ -28,9 +27,9 @@ def teleop(
     ] = None,
     certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
-    arm: Annotated[ArmName, arg(help="What moves.")] = DEFAULT_ARM,
+    arm: Arm = None,
     task: Annotated[
-        AnyTaskName | None,
+        TaskName | None,
         arg(help="What the arm is driven at; the run's own task, or a table, where none is named."),
     ] = None,
     seed: Seed = 0,

@@ -29,6 +29,7 @@ def _outer_product_map() -> FloatArray:
 
 
 _OUTER = _outer_product_map()
+_ONE = np.eye(4).ravel()
 
 
 def rotation_vector(rotation: FloatArray) -> FloatArray:
@@ -83,7 +84,7 @@ def pose_error(x_from: Pose, x_to: Pose) -> FloatArray:
 def quaternion(rotation: FloatArray) -> FloatArray:
     """Unit quaternions (..., 4), (w, x, y, z) with w >= 0, of rotation matrices (..., 3, 3)."""
     # Row i of the outer product 4 q qᵀ is q times its own i-th component: take the largest.
-    outer = (rotation.reshape(-1, 9) @ _OUTER + np.eye(4).ravel()).reshape(-1, 4, 4)
+    outer = (rotation.reshape(-1, 9) @ _OUTER + _ONE).reshape(-1, 4, 4)
     largest = outer[:, _DIAGONAL, _DIAGONAL].argmax(axis=-1)
     row = outer[np.arange(len(outer)), largest]
     row *= np.copysign(1.0 / np.sqrt(np.vecdot(row, row)), row[:, 0])[:, None]

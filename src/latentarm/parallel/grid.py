@@ -76,9 +76,13 @@ def run_grid(
         one_by_one: dict[str, Any] = {"batch_size": 1, "pre_dispatch": workers}
         parallel = Parallel(n_jobs=workers, **one_by_one)
         try:
-            measured = parallel(
-                delayed(_measure)(function, cell, label(cell)) for cell in _watched(cells, workers, bar, unit)
-            )
+            with warnings.catch_warnings():
+                # A process that has grown, as one that trained a model has, makes way for a new one.
+                warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
+                measured = parallel(
+                    delayed(_measure)(function, cell, label(cell))
+                    for cell in _watched(cells, workers, bar, unit)
+                )
         except BrokenProcessPool as error:
             raise UserError(
                 "A process of the grid was killed, most likely because memory ran out: try fewer with --jobs."

@@ -26,7 +26,7 @@ from latentarm.robots.end_effector import AmbiguousEndEffectorError
 from latentarm.robots.limits_file import limits_document, parse_limits
 from latentarm.robots.model_copy import COPIES, load_copy
 from latentarm.robots.robot import Robot
-from latentarm.tasks.catalogue import HELD_OUT, TASKS
+from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, TASKS
 from latentarm.types import Demonstrations, FloatArray, Goal, StatedLimits, StrPath
 from latentarm.untrusted.opening import is_missing, read_bytes
 
@@ -176,7 +176,7 @@ def read_run(folder: StrPath) -> Run:
         fingerprint=config.text("fingerprint"),
         limits=None if limits is None else parse_limits(limits, f"{path}, limits"),
         robot_model=config.choice("robot_model", COPIES) if "robot_model" in kept else None,
-        task=config.choice("task", (*TASKS, HELD_OUT)) if "task" in kept else None,
+        task=config.choice("task", (*TASKS, *SCENE_TASKS, HELD_OUT)) if "task" in kept else None,
         goals=goals,
         routes=routes,
         open_at=_open_at(config, routes or ()) if kept.get("open_at") else (),

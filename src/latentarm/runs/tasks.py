@@ -7,6 +7,7 @@ from typing import cast
 
 import numpy as np
 
+from latentarm.arms.catalogue import DEFAULT_ARM, PHYSICAL_ARM
 from latentarm.context import BELIEF, GRIPPER, Named, feature_names
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, opening_source
 from latentarm.demonstrations.split import select_episodes
@@ -14,7 +15,7 @@ from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, robot_of
-from latentarm.tasks.catalogue import HELD_OUT, TASKS
+from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, TASKS
 from latentarm.tasks.replay import Replay, gripper_routes_of, routes_of
 from latentarm.tasks.table_top import ITEMS
 from latentarm.tasks.task import Task
@@ -165,6 +166,15 @@ def routes_seen(
 def usual_task(goals: Sequence[Goal]) -> str:
     """The task of a dataset with these goals."""
     return "table_top" if {goal.name for goal in goals} == set(ITEMS) else HELD_OUT
+
+
+def usual_arm(task: str | None) -> str:
+    """The arm that moves where none is named: only in physics are things touched and held.
+
+    Args:
+        task: a name of the catalogue; None is not yet known, and has no things.
+    """
+    return PHYSICAL_ARM if task in SCENE_TASKS else DEFAULT_ARM
 
 
 def _check_goals(run: Run, task: Task) -> None:

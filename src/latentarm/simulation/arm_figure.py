@@ -8,7 +8,7 @@ import numpy as np
 from latentarm.robots.robot import Robot
 from latentarm.simulation.drive_figures import GOAL_COLOURS, GOAL_MARKERS
 from latentarm.style import SMALL_FONT_SIZE, legend_below, literal, new_figure, save_figure
-from latentarm.tasks.task import Task
+from latentarm.tasks.place import Place
 from latentarm.types import Demonstrations, FloatArray
 
 if TYPE_CHECKING:
@@ -21,13 +21,17 @@ ALONG = 5
 
 DRAWN_EPISODES = 24
 
+SHORTEST_M = 0.6
+"""Length of an axis, at least, m."""
 
-def draw_task(task: Task, demonstrations: Demonstrations, path: Path) -> None:
+
+def draw_task(task: Place, demonstrations: Demonstrations, path: Path) -> None:
     """Draw the arm at home, where the tool went in the demonstrations, and the goals.
 
     Args:
         task: its robot and goals.
-        demonstrations: of that task; the first `DRAWN_EPISODES` are drawn.
+        demonstrations: of that task, each with the name of its goal in its text; the first `DRAWN_EPISODES`
+            are drawn.
         path: the PNG to write.
 
     Raises:
@@ -38,8 +42,8 @@ def draw_task(task: Task, demonstrations: Demonstrations, path: Path) -> None:
     places = [draw_arm(axes, task.robot, task.robot.home)]
     for episode in demonstrations.episodes[:DRAWN_EPISODES]:
         way = task.robot.chain.forward(episode.state).position
-        ends = [np.linalg.norm(way - goal.pose.position, axis=1).min() for goal in task.goals]
-        colour = GOAL_COLOURS[int(np.argmin(ends)) % len(GOAL_COLOURS)]
+        meant = next(index for index, goal in enumerate(task.goals) if goal.name in episode.task)
+        colour = GOAL_COLOURS[meant % len(GOAL_COLOURS)]
         axes.plot(*way.T, color=colour, linewidth=0.7, alpha=0.55, zorder=3)
         places.append(way)
     for index, goal in enumerate(task.goals):
@@ -94,8 +98,10 @@ def _capsule(start: FloatArray, end: FloatArray, radius: float) -> tuple[FloatAr
 
 
 def frame(axes: "Axes3D", places: FloatArray) -> None:
-    """Equal scale on all axes, just around what is drawn."""
+    """Equal scale on all axes, around what is drawn; no axis is too short for its labels."""
     lowest, highest = places.min(axis=0) - 0.05, places.max(axis=0) + 0.05
+    short = np.maximum(SHORTEST_M - (highest - lowest), 0.0)
+    lowest, highest = lowest - short / 2, highest + short / 2
     axes.set_xlim(lowest[0], highest[0])
     axes.set_ylim(lowest[1], highest[1])
     axes.set_zlim(min(lowest[2], 0.0), highest[2])

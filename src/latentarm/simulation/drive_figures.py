@@ -1,15 +1,16 @@
 """Figures of drives: the tool's paths from above and from the side, and inputs over time."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal, Protocol, TypeVar, final
 
 import numpy as np
 
 from latentarm.metrics.looks import look_of
-from latentarm.simulation.drive import Trace
+from latentarm.simulation.task_drive import TaskTrace
 from latentarm.style import FONT_SIZE, legend_below, new_figure, save_figure, tidy
-from latentarm.tasks.task import Task
+from latentarm.types import FloatArray, Goal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,13 +24,88 @@ OUTCOMES: Final[dict[str, Literal["-", ":"]]] = {"goal reached": "-", "goal not 
 PANEL_MM = 51.0
 WIDTH_MM = 170.0
 
+TICKS: Final = 3
+"""Intervals across a panel, at most: a narrow one has no room for the labels of more."""
 
-def draw_drives(traces: Mapping[str, Sequence[Trace]], task: Task, path: Path) -> None:
+
+class Outcome(Protocol):
+    """Whether a drive did what it was for."""
+
+    @property
+    def success(self) -> bool:
+        """Whether it did."""
+        ...
+
+
+class Drawn(Protocol):
+    """A drive as figures show it, with things or without."""
+
+    @property
+    def figures(self) -> Outcome:
+        """What is measured of it."""
+        ...
+
+    @property
+    def goal(self) -> int:
+        """Index of what it was for."""
+        ...
+
+    @property
+    def time_s(self) -> FloatArray:
+        """(T,), s."""
+        ...
+
+    @property
+    def position(self) -> FloatArray:
+        """(T, 3), the tool, m."""
+        ...
+
+    @property
+    def input(self) -> FloatArray:
+        """(T, d)."""
+        ...
+
+    @property
+    def mode(self) -> FloatArray:
+        """(T,), index of the controller's mode."""
+        ...
+
+
+_Drive = TypeVar("_Drive", bound=Drawn)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """Where a drive led to, or was to.
+
+    Attributes:
+        name: for the legend, where it stands once.
+        goal: index of what it was for, which decides the colour.
+        position: (3,), m.
+    """
+
+    name: str
+    goal: int
+    position: FloatArray
+
+
+def marks_of_goals(goals: Sequence[Goal]) -> list[Mark]:
+    """Goals that lie in the same place in all drives."""
+    return [Mark(goal.name, index, goal.pose.position) for index, goal in enumerate(goals)]
+
+
+def marks_of_first_steps(traces: Sequence[TaskTrace]) -> list[Mark]:
+    """Where the first step of each drive leads, which lies elsewhere in each."""
+    return [Mark(trace.steps[0].name, trace.goal, trace.target) for trace in traces]
+
+
+def draw_drives(traces: Mapping[str, Sequence[Drawn]], marks: Sequence[Mark], path: Path) -> None:
     """Draw where the tool went, from above and from the side, one column per condition.
 
     Args:
         traces: drives by condition.
-        task: for its goals.
+        marks: what to mark in every panel.
         path: the PNG to write.
 
     Raises:
@@ -38,8 +114,8 @@ def draw_drives(traces: Mapping[str, Sequence[Trace]], task: Task, path: Path) -
     figure = new_figure(height_mm=2 * PANEL_MM, width_mm=max(WIDTH_MM * len(traces) / 3, 85.0))
     panels = figure.subplots(2, len(traces), squeeze=False, sharex="row", sharey="row")
     for column, (condition, drives) in enumerate(traces.items()):
-        _draw_view(panels[0, column], drives, task, across=1, up=0)
-        _draw_view(panels[1, column], drives, task, across=1, up=2)
+        _draw_view(panels[0, column], drives, marks, across=1, up=0)
+        _draw_view(panels[1, column], drives, marks, across=1, up=2)
         done = sum(trace.figures.success for trace in drives)
         panels[0, column].set_title(f"{look_of(condition).label}\n{done} of {len(drives)} drives succeed")
     panels[0, 0].set_ylabel("from above: x (m)")
@@ -48,6 +124,7 @@ def draw_drives(traces: Mapping[str, Sequence[Trace]], task: Task, path: Path) -
         axes.set_xlabel("y (m)")
     for axes in panels.flat:
         tidy(axes)
+        axes.locator_params(axis="x", nbins=TICKS)
     handles, labels = panels[0, 0].get_legend_handles_labels()
     legend_below(figure, [*handles, *outcome_lines()], [*labels, *OUTCOMES])
     save_figure(figure, path)
@@ -60,7 +137,7 @@ def outcome_lines() -> "list[Line2D]":
     return [Line2D([], [], color="black", linestyle=dash, linewidth=0.9) for dash in OUTCOMES.values()]
 
 
-def _draw_view(axes: "Axes", drives: Sequence[Trace], task: Task, across: int, up: int) -> None:
+def _draw_view(axes: "Axes", drives: Sequence[Drawn], marks: Sequence[Mark], across: int, up: int) -> None:
     for trace in drives:
         axes.plot(
             trace.position[:, across],
@@ -70,21 +147,23 @@ def _draw_view(axes: "Axes", drives: Sequence[Trace], task: Task, across: int, u
             linewidth=0.7,
             alpha=0.6,
         )
-    for index, goal in enumerate(task.goals):
+    named: set[str] = set()
+    for mark in marks:
         axes.plot(
-            goal.pose.position[across],
-            goal.pose.position[up],
-            marker=GOAL_MARKERS[index % len(GOAL_MARKERS)],
-            color=GOAL_COLOURS[index % len(GOAL_COLOURS)],
+            mark.position[across],
+            mark.position[up],
+            marker=GOAL_MARKERS[mark.goal % len(GOAL_MARKERS)],
+            color=GOAL_COLOURS[mark.goal % len(GOAL_COLOURS)],
             markeredgecolor="black",
             markersize=6,
             linestyle="none",
-            label=goal.name,
+            label=None if mark.name in named else mark.name,
         )
+        named.add(mark.name)
     axes.set_aspect("equal", adjustable="box")
 
 
-def draw_inputs(traces: Mapping[str, Sequence[Trace]], path: Path) -> None:
+def draw_inputs(traces: Mapping[str, Sequence[Drawn]], path: Path) -> None:
     """Draw the typical drive of each condition over time: what the person did, and when they changed modes.
 
     Typical is the drive that takes the median time.
@@ -131,6 +210,6 @@ def draw_inputs(traces: Mapping[str, Sequence[Trace]], path: Path) -> None:
     save_figure(figure, path)
 
 
-def median_drive(drives: Sequence[Trace]) -> Trace:
+def median_drive(drives: Sequence[_Drive]) -> _Drive:
     """The drive that takes the median time; of an even number, the shorter of the two in the middle."""
     return sorted(drives, key=lambda trace: float(trace.time_s[-1]))[(len(drives) - 1) // 2]

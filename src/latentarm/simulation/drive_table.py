@@ -97,11 +97,15 @@ def drive_entries(
 def write_drives_csv(path: Path, entries: Sequence[Mapping[str, object]]) -> None:
     """Write one line per drive under a line of column names, whole or not at all.
 
+    Args:
+        path: the file.
+        entries: of the drives, at least one; all have the same keys.
+
     Raises:
         UserError: the file cannot be written.
     """
     stream = io.StringIO()
-    table = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+    table = csv.DictWriter(stream, list(entries[0]), lineterminator="\n")
     table.writeheader()
     table.writerows(
         {name: str(value).lower() if isinstance(value, bool) else value for name, value in entry.items()}

@@ -68,9 +68,12 @@ class TaskTrace:
         choice: index into the task's choices.
         steps: what was to be done, in order.
         done_s: when each of the steps that were done was done, s.
+        target: (3,), where the tool was to go first, m.
         why: why the drive ended, in a few words.
         time_s: (T,), s.
         position: (T, 3), the tool, m.
+        input: (T, d).
+        mode: (T,), index of the controller's mode.
         states: how things stood, ten times per second, for film.
     """
 
@@ -78,15 +81,23 @@ class TaskTrace:
     choice: int
     steps: tuple[TaskStep, ...]
     done_s: tuple[float, ...]
+    target: FloatArray
     why: str
     time_s: FloatArray
     position: FloatArray
+    input: FloatArray
+    mode: FloatArray
     states: tuple[SceneState, ...]
 
     @property
     def figures(self) -> Drive:
         """Those that every drive has."""
         return self.measured.drive
+
+    @property
+    def goal(self) -> int:
+        """What the drive was for, as figures colour it: the choice."""
+        return self.choice
 
     @property
     def ended_in(self) -> str:
@@ -263,9 +274,12 @@ class _Watch:
             choice=choice,
             steps=self._begun.steps,
             done_s=tuple(self._done_s),
+            target=self._begun.steps[0].waypoints[0].pose(self._states[0]).position,
             why=self.ended or "out of time",
             time_s=np.array([record.time_s for record in self.records]),
             position=position,
+            input=np.stack([record.input for record in self.records]),
+            mode=np.array([record.mode for record in self.records]),
             states=tuple(self._states),
         )
 

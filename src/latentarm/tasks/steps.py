@@ -45,14 +45,22 @@ class Waypoint:
 
     def reached(self, state: SceneState) -> bool:
         """Whether the tool is there."""
-        return self.missed_by(state) <= 1.0
+        pose = self.pose(state)
+        # Far from it, as the tool mostly is, the angle need not be known.
+        return self._distance(state, pose) <= 1.0 and self._turn(state, pose) <= 1.0
 
     def missed_by(self, state: SceneState) -> float:
         """How far the tool is from there; 1 is the farthest that counts as reached."""
         pose = self.pose(state)
-        distance_m = float(np.linalg.norm(state.tool.position - pose.position))
-        angle_rad = float(angle_between(state.tool.rotation, pose.rotation))
-        return max(distance_m / self.within_m, angle_rad / self.within_rad)
+        return max(self._distance(state, pose), self._turn(state, pose))
+
+    def _distance(self, state: SceneState, pose: Pose) -> float:
+        """From the tool to a pose, in `within_m`."""
+        return float(np.linalg.norm(state.tool.position - pose.position)) / self.within_m
+
+    def _turn(self, state: SceneState, pose: Pose) -> float:
+        """The same for orientation, in `within_rad`."""
+        return float(angle_between(state.tool.rotation, pose.rotation)) / self.within_rad
 
 
 @final

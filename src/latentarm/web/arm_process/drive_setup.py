@@ -6,7 +6,7 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.catalogue import ARMS, DEFAULT_ARM, make_scene_arm
+from latentarm.arms.catalogue import ARMS, make_scene_arm
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
@@ -17,8 +17,8 @@ from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.joined import JoinedController
 from latentarm.controllers.latent import latent_controller
 from latentarm.errors import UserError
-from latentarm.runs.folder import read_run, weights_fingerprint
-from latentarm.runs.tasks import task_of_run, task_without_run
+from latentarm.runs.folder import Run, read_run, weights_fingerprint
+from latentarm.runs.tasks import task_of_run, task_without_run, usual_arm
 from latentarm.scene.scene import Scene
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.place import Place, ScenePlace
@@ -62,7 +62,7 @@ class Spec:
         seed: of where the arm starts.
         out: folder for recordings.
         journal: how much room a recording may take.
-        arm: what moves, a name of `latentarm.arms.catalogue`.
+        arm: what moves, a name of `latentarm.arms.catalogue`; None for the task's usual one.
         task: a name of `latentarm.tasks.catalogue`; None for the run's own, or the table-top task.
 
     Raises:
@@ -74,7 +74,7 @@ class Spec:
     seed: int = 0
     out: Path = Path("teleop")
     journal: JournalLimits = field(default_factory=JournalLimits)
-    arm: str = DEFAULT_ARM
+    arm: str | None = None
     task: str | None = None
 
     def __post_init__(self) -> None:
@@ -93,6 +93,7 @@ class DriveSetup:
 
     Attributes:
         spec: what was asked for.
+        arm: what moves, a name of `latentarm.arms.catalogue`.
         task: the robot, its goals and what it must keep clear of.
         controller: all modes: the latent actions first where there are any, then the pairs of axes of the
             end-effector.
@@ -105,6 +106,7 @@ class DriveSetup:
     """
 
     spec: Spec
+    arm: str
     task: Place
     controller: JoinedController
     latent_dim: int
@@ -192,8 +194,11 @@ def load_setup(spec: Spec) -> DriveSetup:
     Raises:
         UserError: the arm, the run, its dataset or the profile cannot be loaded, or do not fit each other.
     """
-    ARMS.find(spec.arm, "--arm")  # so that the error appears where the command was typed
-    task, start, scene = _begin(spec)
+    run = None if spec.run is None else read_run(spec.run)
+    name = spec.task or (None if run is None else run.task)
+    arm = spec.arm or usual_arm(name)
+    ARMS.find(arm, "--arm")  # so that the error appears where the command was typed
+    task, start, scene = _begin(run, name, arm, np.random.default_rng(spec.seed))
     latent = None if spec.run is None else latent_controller(spec.run, spec.profile, task.robot)
     if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
         raise UserError(
@@ -203,6 +208,7 @@ def load_setup(spec: Spec) -> DriveSetup:
     end_effector = EndEffectorController(task.robot)
     setup = DriveSetup(
         spec=spec,
+        arm=arm,
         task=task,
         controller=JoinedController([end_effector] if latent is None else [latent, end_effector]),
         latent_dim=0 if latent is None else latent.input_dim,
@@ -216,21 +222,19 @@ def load_setup(spec: Spec) -> DriveSetup:
     return setup
 
 
-def _begin(spec: Spec) -> tuple[Place, FloatArray, Scene | None]:
+def _begin(
+    run: Run | None, name: str | None, arm: str, rng: np.random.Generator
+) -> tuple[Place, FloatArray, Scene | None]:
     """Where the arm is driven, where it starts, (n,), rad, and what is about it: the same for equal specs."""
-    rng = np.random.default_rng(spec.seed)
-    if spec.task is not None and spec.task in SCENE_TASKS:
-        with_things = make_scene_task(spec.task)
+    if name is not None and name in SCENE_TASKS:
+        with_things = make_scene_task(name)
         begun = with_things.begin(0, rng)
-        _check_things(spec.task, begun.scene)
+        _check_things(name, begun.scene)
         # Made here too, so that an arm that can touch nothing is refused where the command was typed.
-        make_scene_arm(spec.arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
+        make_scene_arm(arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
         place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles, begun.objects)
         return place, begun.state, begun.scene
-    if spec.run is None:
-        task = task_without_run(spec.task)
-    else:
-        task = task_of_run(read_run(spec.run), spec.task, option=False)
+    task = task_without_run(name) if run is None else task_of_run(run, name, option=False)
     return task, task.sample_start(0, rng), None
 
 

@@ -110,7 +110,7 @@ def _ask_for_priority() -> None:
 
 
 def _arm(setup: DriveSetup, clock: Clock) -> Arm:
-    name, robot, scene = setup.spec.arm, setup.task.robot, setup.scene
+    name, robot, scene = setup.arm, setup.task.robot, setup.scene
     if scene is None:
         arm = make_arm(name, robot, setup.start, clock.now_s)
     else:

@@ -1,0 +1,121 @@
+"""What steers in `latentarm drive`, who gives inputs, and what the figures depend on."""
+
+from dataclasses import asdict, dataclass, replace
+
+from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
+from latentarm.commands.drive_options import DriveOptions
+from latentarm.control.controller import Controller
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.latent import latent_controller
+from latentarm.errors import UserError
+from latentarm.operators.catalogue import PEOPLE, OperatorName, usual_operator
+from latentarm.operators.person import Person
+from latentarm.robots.robot import Robot
+from latentarm.runs.folder import Run, weights_fingerprint
+from latentarm.runs.tasks import usual_arm
+
+
+@dataclass(frozen=True, eq=False)
+class Steering:
+    """What is the same in all drives of one command, whatever is done.
+
+    Attributes:
+        config: what was asked for.
+        task: name of the task.
+        robot: the arm.
+        run: the run that was named, or None.
+        controller: what the operator steers with.
+        arbitration: how much the robot helps, if it helps at all.
+    """
+
+    config: DriveOptions
+    task: str
+    robot: Robot
+    run: Run | None
+    controller: Controller
+    arbitration: FixedAlpha | ConfidenceAlpha | None
+
+    @property
+    def arm(self) -> str:
+        """What moves."""
+        return self.config.arm or usual_arm(self.task)
+
+    @property
+    def operator(self) -> OperatorName:
+        """Who gives inputs."""
+        return self.config.operator or usual_operator(self.task)
+
+    @property
+    def person(self) -> Person:
+        """The same, as rational as was asked for."""
+        person = PEOPLE[self.operator]
+        return replace(person, decides=replace(person.decides, beta=self.config.beta))
+
+    @property
+    def model(self) -> str | None:
+        """The model that steers; None with mode switching."""
+        return None if self.run is None or self.config.driver == "end_effector" else self.run.model
+
+    def about(self, time_limit_s: float) -> dict[str, object]:
+        """What the figures depend on.
+
+        Args:
+            time_limit_s: after which a drive has failed, s.
+
+        Raises:
+            UserError: the run has no model.
+        """
+        config, robot, run = self.config, self.robot, self.run
+        return {
+            "study": "drive",
+            "run": str(config.run),
+            "model": None if run is None or self.model is None else weights_fingerprint(run.folder),
+            "controller": config.driver,
+            "task": self.task,
+            "robot": robot.name,
+            "arm": self.arm,
+            "end_effector": robot.chain.tools[0].name,
+            "limit_sources": asdict(robot.limits.sources) | {"tool_speed": robot.tool_speed_source},
+            "profile": config.profile,
+            "drives_per_goal": config.drives,
+            "seed": config.seed,
+            "operator": "simulated",
+            "operator_name": self.operator,
+            "beta": config.beta,
+            "belief": config.belief,
+            "arbitration": None if self.arbitration is None else config.arbitration or "fixed",
+            "alpha": None if self.arbitration is None else asdict(self.arbitration),
+            "time_limit_s": time_limit_s,
+        }
+
+
+def steering_of(config: DriveOptions, run: Run | None, task: str, robot: Robot) -> Steering:
+    """What steers an arm as was asked for.
+
+    Args:
+        config: what was asked for.
+        run: the run that was named, or None.
+        task: name of the task.
+        robot: the arm.
+
+    Raises:
+        UserError: the run's model or profile cannot be used, or is for another arm.
+    """
+    arbitration = _arbitration(config)
+    return Steering(config, task, robot, run, _controller(config, robot), arbitration)
+
+
+def _arbitration(config: DriveOptions) -> FixedAlpha | ConfidenceAlpha | None:
+    if config.driver != "latent_assist":
+        return None
+    if config.arbitration == "confidence":
+        return ConfidenceAlpha() if config.alpha is None else ConfidenceAlpha(config.alpha)
+    return FixedAlpha() if config.alpha is None else FixedAlpha(config.alpha)
+
+
+def _controller(config: DriveOptions, robot: Robot) -> Controller:
+    if config.driver == "end_effector":
+        return EndEffectorController(robot)
+    if config.run is None:
+        raise UserError("Latent actions need a trained run: name one, as in `latentarm drive RUN`.")
+    return latent_controller(config.run, config.profile, robot)

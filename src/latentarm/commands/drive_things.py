@@ -1,0 +1,85 @@
+"""`latentarm drive` at a task with things: in physics, in steps."""
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from latentarm.commands.drive_options import Driven, DriveOptions
+from latentarm.commands.drive_steering import steering_of
+from latentarm.errors import UserError
+from latentarm.metrics.results import as_document
+from latentarm.metrics.summary import Subject
+from latentarm.metrics.task_drives import task_drive_rows
+from latentarm.robots.notices import notices
+from latentarm.runs.folder import Run
+from latentarm.runs.results_folder import ResultsFolder, write_json
+from latentarm.simulation.drive_figures import draw_drives, marks_of_first_steps
+from latentarm.simulation.drive_table import write_drives_csv
+from latentarm.simulation.task_drive import TaskSetup
+from latentarm.simulation.task_drive_table import task_drive_entries
+from latentarm.simulation.task_drives import Series, drive_series
+from latentarm.tasks.catalogue import make_scene_task
+
+MADE: Final = ("drives.json", "drives.csv", "paths.png")
+"""Every file of the folder except its options."""
+
+OF_THE_TASK: Final = {
+    "robot": "a robot of its own",
+    "end_effector": "a robot of its own",
+    "limits": "a robot of its own",
+    "time_limit_s": "a time limit of its own",
+}
+"""What such a task decides itself, by the option that decides it elsewhere."""
+
+
+def drive_with_things(
+    config: DriveOptions, run: Run | None, name: str, tell: Callable[[Sequence[str]], None]
+) -> Driven:
+    """Drive for every choice of a task several times and write ``drives.json``, ``drives.csv`` and a figure.
+
+    Args:
+        config: what was asked for.
+        run: the run that was named, or None.
+        name: of the task, one of `latentarm.tasks.catalogue.SCENE_TASKS`.
+        tell: called with notices about the robot before it moves.
+
+    Raises:
+        UserError: an option makes no sense at a task with things, the run does not fit the task, or the
+            folder holds something else.
+    """
+    _check(config, name)
+    task = make_scene_task(name)
+    tell(notices(task.robot))
+    steering = steering_of(config, run, name, task.robot)
+    about = steering.about(task.time_limit_s)
+    ResultsFolder("drive", MADE).claim(config.out, about)
+    setup = TaskSetup(task, steering.controller, steering.person, steering.arbitration, steering.arm)
+    series = Series([setup], config.drives)
+    (traces,) = drive_series([series], config.seed, config.jobs, bars=config.bars)
+    subject = Subject("drive", task=name, model=steering.model, condition=config.driver)
+    rows = task_drive_rows(subject, [trace.measured for trace in traces])
+    operator = steering.operator
+    entries = task_drive_entries(
+        task.choices,
+        traces,
+        drives=config.drives,
+        seed=config.seed,
+        controller=config.driver,
+        operator=operator,
+    )
+    write_json(config.out / "drives.json", as_document(rows, about) | {"drives": entries})
+    write_drives_csv(config.out / "drives.csv", entries)
+    draw_drives({config.driver: traces}, marks_of_first_steps(traces), config.out / "paths.png")
+    return Driven(rows, entries, config.driver, operator, name, task.time_limit_s)
+
+
+def _check(config: DriveOptions, name: str) -> None:
+    for option, its_own in OF_THE_TASK.items():
+        if getattr(config, option) is not None:
+            raise UserError(f"The task {name} has {its_own}: leave --{option.replace('_', '-')} out.")
+    if config.belief != "boltzmann":
+        raise UserError(f"The task {name} is driven with the belief boltzmann: leave --belief out.")
+    if config.record is not None:
+        raise UserError(
+            f"Drives at {name}, a task with things, are not recorded: leave --record out, or drive it on the"
+            " page of `latentarm teleop`, which records."
+        )

@@ -1,0 +1,83 @@
+"""One row per simulated drive at a task with things, for ``drives.json`` and ``drives.csv``."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from latentarm.simulation.task_drive import TaskTrace
+
+COLUMNS: Final[dict[str, str]] = {
+    "drive": "number of the drive, from 0",
+    "choice": "index of what was to be done, from 0",
+    "choice_name": "the same in words",
+    "repeat": "number of the drive for this choice, from 0",
+    "seed": "seed of the command; things, start and inputs depend on seed, choice and repeat alone",
+    "controller": "latent, latent_assist or end_effector",
+    "operator": "greedy, learning, unsteady or planning; all are simulated",
+    "success": "whether all steps were done and nothing went wrong",
+    "steps_done": "share of the steps that were done, 0 to 1",
+    "not_done": "the first step that was not done, in words",
+    "ended_in_words": "why the drive ended",
+    "time_s": "duration, s",
+    "idle_s": "time without input, s",
+    "input_magnitude_s": "integral of the input's length over time, s of full deflection",
+    "turned_round": "share of the time in which the stick is over 90 degrees from where it was within 0.5 s",
+    "mode_switches": "how often the controller's mode changed",
+    "path_length_m": "length of the tool's path, m",
+    "stops": "how often the arm was stopped and had to be enabled again",
+    "preference_alignment": "mean dot product of where the tool points and where it should",
+    "table_force_n": "largest force of the tool on the table or a dish, N",
+    "food_force_n": "largest force of the tool on food, N",
+    "spilled": "grains that were spilled",
+    "grains": "grains that there were",
+}
+"""What each column of ``drives.csv`` holds at a task with things; ``drives`` in ``drives.json`` has the same
+fields."""
+
+
+def task_drive_entries(
+    choices: Sequence[str],
+    traces: Sequence[TaskTrace],
+    *,
+    drives: int,
+    seed: int,
+    controller: str,
+    operator: str,
+) -> list[dict[str, object]]:
+    """One mapping per drive, with the keys of `COLUMNS` in that order.
+
+    Args:
+        choices: of the task, in words.
+        traces: what came of the drives, choice by choice.
+        drives: for each choice.
+        seed: of the command.
+        controller: what drove.
+        operator: who gave inputs.
+    """
+    return [
+        {
+            "drive": number,
+            "choice": trace.choice,
+            "choice_name": choices[trace.choice],
+            "repeat": number % drives,
+            "seed": seed,
+            "controller": controller,
+            "operator": operator,
+            "success": trace.figures.success,
+            "steps_done": trace.measured.steps_done,
+            "not_done": trace.ended_in,
+            "ended_in_words": trace.why,
+            "time_s": trace.figures.time_s,
+            "idle_s": trace.figures.idle_s,
+            "input_magnitude_s": trace.figures.input_magnitude,
+            "turned_round": trace.figures.turned_round,
+            "mode_switches": trace.figures.mode_switches,
+            "path_length_m": trace.figures.path_length,
+            "stops": trace.measured.stops,
+            "preference_alignment": trace.measured.preference_alignment,
+            "table_force_n": trace.measured.table_force_n,
+            "food_force_n": trace.measured.food_force_n,
+            "spilled": trace.measured.spilled,
+            "grains": trace.measured.grains,
+        }
+        for number, trace in enumerate(traces)
+    ]
