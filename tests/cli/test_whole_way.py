@@ -8,6 +8,7 @@ from unittest.mock import Mock
 import pytest
 
 from latentarm.demonstrations.dataset import read_dataset
+from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.models.catalogue import DEFAULT_MODEL
 from result_rows import rows_in
 
@@ -138,11 +139,18 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
         assert figure in page
         assert (Path("demo") / figure).stat().st_size > 10_000
     # The run is driven at the task that it learned, in physics.
-    driven = drive_run(DriveOptions(Path(f"demo/runs/{DEFAULT_MODEL}"), drives=1, jobs=1, out=Path("again")))
+    run = Path(f"demo/runs/{DEFAULT_MODEL}")
+    driven = drive_run(DriveOptions(run, drives=1, record=Path("stabbed"), out=Path("again")))
     assert {row.task for row in driven.rows} == {"marshmallows"}
     entries = json.loads(Path("again/drives.json").read_text())["drives"]
     assert [entry["choice_name"] for entry in entries] == list(Marshmallows().choices)
     assert Path("again/paths.png").exists()
+    recorded = read_dataset(Path("stabbed"))
+    assert len(recorded.episodes) == len(entries)
+    assert recorded.objects == Marshmallows().choices
+    assert {one.extras[ENVIRONMENT].shape for one in recorded.episodes} == {
+        (len(one.state), 7 * len(recorded.objects)) for one in recorded.episodes
+    }
     # A second time: the earlier demo makes room.
     monkeypatch.setattr(demo, "demonstrate", Mock(side_effect=InterruptedError))
     with pytest.raises(InterruptedError):

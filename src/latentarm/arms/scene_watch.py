@@ -35,7 +35,7 @@ class SceneWatch:
         scene: Scene,
     ) -> None:
         self._data, self._scene, self._chain = data, scene, robot.chain
-        self._names = (TOOL, TABLE, *(thing.name for thing in scene.things))
+        self._names = (TOOL, TABLE, *scene.names)
         self._group = np.full(model.ngeom, _UNNAMED, dtype=np.int64)
         carried = np.flatnonzero(body_link == robot.chain.tools[0].link)
         self._group[np.isin(model.geom_bodyid, carried)] = 0

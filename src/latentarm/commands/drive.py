@@ -1,33 +1,28 @@
 """`latentarm drive`: simulated operators drive a task, with latent actions or with mode switching."""
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.commands.configuration import write_options
 from latentarm.commands.drive_options import Driven, DriveOptions
+from latentarm.commands.drive_recording import check_recordable, counted, recording
 from latentarm.commands.drive_steering import steering_of
 from latentarm.commands.drive_things import drive_with_things
 from latentarm.commands.output import note, say, show
-from latentarm.control.export import export_journal
-from latentarm.control.recorder import EpisodeHeader, Recorder
-from latentarm.demonstrations.folders import check_vacant
-from latentarm.demonstrations.provenance import provenance_now
-from latentarm.errors import UserError
 from latentarm.metrics.drives import goal_drive_rows
 from latentarm.metrics.results import as_document
 from latentarm.metrics.summary import Subject
-from latentarm.parallel.grid import counting_bar
 from latentarm.robots.limits_file import read_limits
 from latentarm.robots.notices import notices
-from latentarm.runs.folder import Run, read_run, weights_fingerprint
+from latentarm.runs.folder import Run, read_run
 from latentarm.runs.results_folder import ResultsFolder, write_json
 from latentarm.runs.tasks import task_of_run, task_without_run
-from latentarm.simulation.drive import RATE_HZ, Setup, Trace, simulate
+from latentarm.simulation.drive import Setup, Trace, simulate
 from latentarm.simulation.drive_figures import draw_drives, marks_of_goals
 from latentarm.simulation.drive_table import Planned, drive_entries, endings_in_words, write_drives_csv
-from latentarm.simulation.drives import DrivePlan, drive_all, drive_plan
+from latentarm.simulation.drives import drive_all, drive_plan
 from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS
 from latentarm.tasks.task import Task
 
@@ -69,8 +64,7 @@ def drive_run(config: DriveOptions, tell: Callable[[Sequence[str]], None] = lamb
         arm=steering.arm,
     )
     about = steering.about(setup.time_limit_s)
-    if config.record is not None:
-        check_vacant(config.record)
+    check_recordable(config)
     ResultsFolder("drive", MADE).claim(config.out, about)
     if config.record is None:
         traces = drive_all([setup], config.drives, config.seed, config.jobs, bars=config.bars)
@@ -98,54 +92,16 @@ def _task(config: DriveOptions, run: Run | None) -> Task:
 
 
 def _record_all(setup: Setup, config: DriveOptions, dataset: Path) -> list[Trace]:
-    """Drive one after the other and record every step; then export the journal.
-
-    Raises:
-        UserError: a journal is there already, or a file cannot be written.
-    """
+    """Drive one after the other and record every step."""
     task = setup.task
-    journal = config.out / "journal.sqlite"
-    if journal.exists():
-        raise UserError(f"{journal} already exists: choose another folder with --out.")
-    recorder = Recorder(journal)
     traces: list[Trace] = []
-    try:
-        for goal, manner, rng in _counted(drive_plan(task, config.drives, config.seed), config.bars):
-            recorder.begin_episode(
-                EpisodeHeader(
-                    robot=task.robot.name,
-                    joint_names=task.robot.joint_names,
-                    joint_limits=task.robot.limits,
-                    rate_hz=RATE_HZ,
-                    task=f"{manner} {task.goals[goal].name}",
-                    goals=task.goals,
-                    modes=setup.controller.modes,
-                    provenance=provenance_now(
-                        run="" if config.run is None else config.run.name,
-                        run_fingerprint="" if config.run is None else weights_fingerprint(config.run),
-                        profile=config.profile or "",
-                        device="simulated",
-                        controller=config.driver,
-                    ),
-                    end_effector=task.robot.end_effector,
-                    limits=task.robot.stated_limits,
-                )
-            )
-            traces.append(simulate(setup, goal, manner, rng, recorder.record))
-            recorder.end_episode()
-    finally:
-        recorder.close()
-    export_journal(journal, dataset)
+    plan = drive_plan(task, config.drives, config.seed)
+    with recording(config, dataset, task.robot, setup.controller) as recorded:
+        for goal, manner, rng in counted(plan, config.bars):
+            recorded.begin(f"{manner} {task.goals[goal].name}", task.goals)
+            traces.append(simulate(setup, goal, manner, rng, recorded.step))
+            recorded.end()
     return traces
-
-
-def _counted(plan: Sequence[DrivePlan], bars: bool) -> Generator[DrivePlan]:
-    """The drives, one after the other, with a bar that counts those that are done."""
-    with counting_bar(bars) as bar:
-        task = bar.add_task("drives", total=len(plan))
-        for call in plan:
-            yield call
-            bar.advance(task)
 
 
 def drive(options: DriveOptions) -> int:

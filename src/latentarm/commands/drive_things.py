@@ -1,23 +1,29 @@
 """`latentarm drive` at a task with things: in physics, in steps."""
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Final
 
 from latentarm.commands.drive_options import Driven, DriveOptions
+from latentarm.commands.drive_recording import check_recordable, counted, recording
 from latentarm.commands.drive_steering import steering_of
+from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.metrics.results import as_document
 from latentarm.metrics.summary import Subject
 from latentarm.metrics.task_drives import task_drive_rows
 from latentarm.robots.notices import notices
+from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run
 from latentarm.runs.results_folder import ResultsFolder, write_json
 from latentarm.simulation.drive_figures import draw_drives, marks_of_first_steps
 from latentarm.simulation.drive_table import write_drives_csv
-from latentarm.simulation.task_drive import TaskSetup
+from latentarm.simulation.task_drive import TaskSetup, TaskTrace
 from latentarm.simulation.task_drive_table import task_drive_entries
-from latentarm.simulation.task_drives import Series, drive_series
+from latentarm.simulation.task_drives import Series, drive_again, drive_series
 from latentarm.tasks.catalogue import make_scene_task
+from latentarm.tasks.scene_task import Beginning
+from latentarm.types import StepRecord
 
 MADE: Final = ("drives.json", "drives.csv", "paths.png")
 """Every file of the folder except its options."""
@@ -51,10 +57,14 @@ def drive_with_things(
     tell(notices(task.robot))
     steering = steering_of(config, run, name, task.robot)
     about = steering.about(task.time_limit_s)
+    check_recordable(config)
     ResultsFolder("drive", MADE).claim(config.out, about)
     setup = TaskSetup(task, steering.controller, steering.person, steering.arbitration, steering.arm)
     series = Series([setup], config.drives)
-    (traces,) = drive_series([series], config.seed, config.jobs, bars=config.bars)
+    if config.record is None:
+        (traces,) = drive_series([series], config.seed, config.jobs, bars=config.bars)
+    else:
+        traces = _record_all(series, config, config.record, task.robot, steering.controller)
     subject = Subject("drive", task=name, model=steering.model, condition=config.driver)
     rows = task_drive_rows(subject, [trace.measured for trace in traces])
     operator = steering.operator
@@ -78,8 +88,20 @@ def _check(config: DriveOptions, name: str) -> None:
             raise UserError(f"The task {name} has {its_own}: leave --{option.replace('_', '-')} out.")
     if config.belief != "boltzmann":
         raise UserError(f"The task {name} is driven with the belief boltzmann: leave --belief out.")
-    if config.record is not None:
-        raise UserError(
-            f"Drives at {name}, a task with things, are not recorded: leave --record out, or drive it on the"
-            " page of `latentarm teleop`, which records."
-        )
+
+
+def _record_all(
+    series: Series, config: DriveOptions, dataset: Path, robot: Robot, controller: Controller
+) -> list[TaskTrace]:
+    """Drive one after the other and record every step, with where the things are."""
+    traces: list[TaskTrace] = []
+    with recording(config, dataset, robot, controller) as recorded:
+
+        def begin(begun: Beginning) -> Callable[[StepRecord], None]:
+            recorded.begin(begun.text, begun.goals, begun.scene.names, begun.objects)
+            return recorded.step
+
+        for index in counted(range(len(series.calls(config.seed))), config.bars):
+            traces.append(drive_again(series, config.seed, index, record=begin))
+            recorded.end()
+    return traces

@@ -44,7 +44,7 @@ class Scene:
         doubled = sorted({name for name in names if names.count(name) > 1} | ({TABLE, TOOL} & set(names)))
         if doubled:
             raise UserError(f"A scene has several things named {doubled[0]!r}: give each its own name.")
-        known = {thing.name for thing in self.things}
+        known = set(self.names)
         for bond in self.bonds:
             for name in (bond.first, bond.second):
                 if name not in known:
@@ -55,6 +55,11 @@ class Scene:
         """The table top, for safety filters."""
         return HalfSpace(TABLE, np.array([0.0, 0.0, self.table_m]), np.array([0.0, 0.0, 1.0]))
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the things, in order."""
+        return tuple(thing.name for thing in self.things)
+
     def thing(self, name: str) -> Thing:
         """The thing of that name.
 
@@ -64,7 +69,7 @@ class Scene:
         for thing in self.things:
             if thing.name == name:
                 return thing
-        raise UserError(f"The scene has no {name!r}; it has: {', '.join(t.name for t in self.things)}.")
+        raise UserError(f"The scene has no {name!r}; it has: {', '.join(self.names)}.")
 
 
 @final

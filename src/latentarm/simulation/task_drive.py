@@ -1,7 +1,7 @@
 """One simulated drive at a task with things, in physics: an operator, Algorithm 1, its filters, an arm."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
@@ -14,6 +14,7 @@ from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
+from latentarm.kinematics.pose_rows import thing_rows
 from latentarm.metrics.drives import Drive
 from latentarm.metrics.task_drives import TaskDrive, measure_task_drive, preference_alignment
 from latentarm.operators.loop_limits import LoopLimits
@@ -36,6 +37,10 @@ NEARER: Final = 0.1
 
 REARM_S: Final = 2.0
 """After a stop the simulated person lets go, and enables the arm again so much later, s."""
+
+
+Record = Callable[[Beginning], Callable[[StepRecord], None]]
+"""Begins to record a drive."""
 
 
 @final
@@ -111,6 +116,7 @@ def drive_task(
     choice: int,
     rng: np.random.Generator,
     watch: Callable[[SceneArm], None] | None = None,
+    record: Record | None = None,
 ) -> TaskTrace:
     """Drive once, until the task is done, has failed, or the time is over.
 
@@ -119,12 +125,15 @@ def drive_task(
         choice: index into the task's choices.
         rng: of the things' places and of the simulated operator.
         watch: sees the arm at every tick, such as a camera.
+        record: is told how the drive begins, and gives what is told every step, with where all things of the
+            scene are, in its order.
 
     Raises:
         UserError: the arm cannot be used.
     """
     task, controller = setup.task, setup.controller
     begun = task.begin(choice, rng)
+    note = None if record is None else record(begun)
     clock = SimulatedClock()
     follow = _Watch(begun)
     step = _step(setup, begun, follow)
@@ -151,9 +160,11 @@ def drive_task(
                 given = Input(np.zeros(controller.input_dim))
             else:
                 given = _given(operator, reading, state, follow.progress, step, controller, rng)
-            record = step(given, 0.0, reading, clock.now_s())
-            follow.records.append(record)
-            arm.send(record.command)
+            taken = step(given, 0.0, reading, clock.now_s())
+            follow.records.append(taken)
+            if note is not None:
+                note(replace(taken, things=thing_rows(state.poses, begun.scene.names)))
+            arm.send(taken.command)
     return follow.trace(choice, rearming.stops)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.arms.contract import SceneArm
 from latentarm.parallel.grid import run_grid
-from latentarm.simulation.task_drive import TaskSetup, TaskTrace, drive_task
+from latentarm.simulation.task_drive import Record, TaskSetup, TaskTrace, drive_task
 
 DRIVE_STREAM: Final = 12
 """Separates the drives' randomness from everything else drawn from the same seed."""
@@ -72,20 +72,27 @@ def drive_series(
     return [[next(traces) for _ in of_one] for of_one in calls]
 
 
-def drive_again(series: Series, seed: int, index: int, watch: Callable[[SceneArm], None]) -> TaskTrace:
-    """One drive of `drive_series` once more, the same to the bit, for a camera.
+def drive_again(
+    series: Series,
+    seed: int,
+    index: int,
+    watch: Callable[[SceneArm], None] | None = None,
+    record: Record | None = None,
+) -> TaskTrace:
+    """One drive of `drive_series`, the same to the bit, for a camera or a recorder.
 
     Args:
         series: as there.
         seed: as there.
         index: of the drive among those that came of it.
-        watch: sees the arm at every tick.
+        watch: see `drive_task`.
+        record: see `drive_task`.
 
     Raises:
         UserError: the arm cannot be used.
     """
     call = series.call(seed, index)
-    return drive_task(call.setup, call.choice, call.generator(), watch)
+    return drive_task(call.setup, call.choice, call.generator(), watch, record)
 
 
 @final

@@ -31,7 +31,7 @@ class Whereabouts:
         """The things that are seen, in the order of the scene."""
         if self._scene is None or self._arm is None:
             return ()
-        return tuple(thing.name for thing in self._scene.things)
+        return self._scene.names
 
     def rows(self) -> FloatArray:
         """Where they are now, (K, 7), see `StepRecord.things`."""
