@@ -117,7 +117,6 @@ def trained(place: Path) -> Path:
         ("train", ["straight", "two_buttons"]),
         ("drive", ["counting", "nearness", "two_buttons"]),
         ("teleop", ["counting"]),
-        ("demo", ["counting"]),
     ],
 )
 def test_the_commands_offer_them(place: Path, command: str, names: list[str]) -> None:

@@ -103,7 +103,7 @@ class Desk:
         self.channel = new_channel(reading)
         self.orphaned = False
         self.writer = EpisodeWriter(folder)
-        plant = make_arm(setup.spec.arm, setup.task.robot, setup.start, self.clock.now_s)
+        plant = make_arm(setup.arm, setup.task.robot, setup.start, self.clock.now_s)
         self.arm = FaultyArm(plant, self.clock.now_s)
         self.arm.connect()
         self.drive = Drive(
