@@ -113,7 +113,7 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
     from latentarm.tasks.eating.marshmallows import Marshmallows
 
     # Models of one epoch get nowhere; a demonstration takes 5 to 6 s.
-    monkeypatch.setattr(task_drive, "STUCK_S", 0.2)
+    monkeypatch.setattr(task_drive, "STUCK_S", 0.05)
     monkeypatch.setattr(Marshmallows, "time_limit_s", 6.5)
     monkeypatch.setattr(demo, "DRIVERS", drivers := ("greedy", "unsteady"))
     config = DemoOptions(Path("demo"), drives=1, jobs=1, json=True)
