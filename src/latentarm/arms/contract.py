@@ -150,7 +150,7 @@ class SceneArm(Arm, ABC):
         """How everything stands by now: the truth, whatever is read.
 
         Asked again in the same moment, it is the same state. Its forces are the largest since the state of an
-        earlier moment, so one alone who asks at every tick of the loop misses none.
+        earlier moment, so a single reader that asks at every tick misses none.
         """
 
 
