@@ -8,7 +8,7 @@ import pytest
 from documentation import ROOT
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.simulation.demonstrate import GRASP_N
-from latentarm.simulation.task_drive import STUCK_S
+from latentarm.simulation.task_drive import REARM_S, STUCK_S
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.eating import dessert, entree
 from latentarm.tasks.eating.stabbing import LIFTED_M as STABBED_M
@@ -90,6 +90,6 @@ def test_what_holds_food_and_what_parts_it_is_as_the_page_says():
     )
 
 
-def test_a_stuck_drive_ends_when_the_page_says():
+def test_a_drive_ends_and_a_stopped_arm_goes_on_when_the_page_says():
     prose = "\n".join(line for line in section("How a task is done").splitlines() if line[:1] != "|")
-    assert stated(prose) == {(STUCK_S, "s")}
+    assert stated(prose) == {(STUCK_S, "s"), (REARM_S, "s")}
