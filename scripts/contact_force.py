@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from latentarm.arms.mujoco import Imperfections, MujocoArm
+from latentarm.arms.mujoco import MujocoArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
@@ -27,13 +27,9 @@ from latentarm.robots.robot import Robot
 from latentarm.scene.scene import TABLE, TOOL, Scene
 from latentarm.tasks.inverse_kinematics import solve
 from latentarm.types import FloatArray, Input, Pose
+from physics_safety import LATE_TICKS, PERIOD_S, imperfect
 
-PERIOD_S: Final = 0.01
 PUSH_TICKS: Final = 300
-LATE_TICKS: Final = (0, 1, 2, 3)
-PAYLOAD_KG: Final = 1.0
-POSITION_NOISE_RAD: Final = 1e-4
-VELOCITY_NOISE_RAD_S: Final = 1e-3
 
 UP_AND_DOWN: Final = 1
 """The controller's mode whose first axis moves the tool up and down."""
@@ -71,14 +67,8 @@ def start(robot: Robot, rng: np.random.Generator) -> FloatArray:
 def drive(robot: Robot, late: int, known: bool, pressed: Pressed, rng: np.random.Generator) -> None:
     """Push down once."""
     scene, controller, clock = Scene(), EndEffectorController(robot), SimulatedClock()
-    imperfect = Imperfections(
-        position_noise_rad=POSITION_NOISE_RAD,
-        velocity_noise_rad_s=VELOCITY_NOISE_RAD_S,
-        delay_s=PERIOD_S * late,
-        payload_kg=PAYLOAD_KG,
-        seed=int(rng.integers(2**31)),
-    )
-    arm = MujocoArm(robot, start(robot, rng), clock.now_s, imperfect, scene)
+    imperfections = imperfect(late, rng)
+    arm = MujocoArm(robot, start(robot, rng), clock.now_s, imperfections, scene)
     config = SafetyConfig(obstacles=(scene.table,) if known else ())
     step = Step(robot, controller, config, dt_s=PERIOD_S)
     arm.connect()

@@ -94,6 +94,17 @@ class Seen:
     least_m: float = np.inf
 
 
+def imperfect(late_ticks: int, rng: np.random.Generator) -> Imperfections:
+    """An arm with a payload, and noise on readings that are so many ticks late."""
+    return Imperfections(
+        position_noise_rad=POSITION_NOISE_RAD,
+        velocity_noise_rad_s=VELOCITY_NOISE_RAD_S,
+        delay_s=PERIOD_S * late_ticks,
+        payload_kg=PAYLOAD_KG,
+        seed=int(rng.integers(2**31)),
+    )
+
+
 def ends(robot: Robot, q: FloatArray) -> FloatArray:
     """(2 K, 3), both ends of all capsules, m."""
     return np.concatenate(robot.capsules.placed(robot.chain, robot.chain.link_transforms(q)))
@@ -108,13 +119,7 @@ def drive(robot: Robot, harm: str, seen: Seen, rng: np.random.Generator) -> None
         robot,
         start,
         clock.now_s,
-        Imperfections(
-            position_noise_rad=POSITION_NOISE_RAD,
-            velocity_noise_rad_s=VELOCITY_NOISE_RAD_S,
-            delay_s=PERIOD_S * seen.late_ticks,
-            payload_kg=PAYLOAD_KG,
-            seed=int(rng.integers(2**31)),
-        ),
+        imperfect(seen.late_ticks, rng),
     )
     step = Step(robot, controller, config, dt_s=PERIOD_S)
     arm.connect()

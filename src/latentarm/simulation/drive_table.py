@@ -9,7 +9,18 @@ from pathlib import Path
 from typing import Final
 
 from latentarm.files import write_text
+from latentarm.metrics.drives import Drive
 from latentarm.simulation.drive import Trace
+
+EVERY_DRIVE: Final[dict[str, str]] = {
+    "time_s": "duration, s",
+    "idle_s": "time without input, s",
+    "input_magnitude_s": "integral of the input's length over time, s of full deflection",
+    "turned_round": "share of the time in which the stick is over 90 degrees from where it was within 0.5 s",
+    "mode_switches": "how often the controller's mode changed",
+    "path_length_m": "length of the tool's path, m",
+}
+"""Columns that the tables of all kinds of drives have, and what each holds."""
 
 COLUMNS: Final[dict[str, str]] = {
     "drive": "number of the drive, from 0",
@@ -23,12 +34,7 @@ COLUMNS: Final[dict[str, str]] = {
     "success": "whether all waypoints were reached",
     "ended_because": "reached, time_limit, operator_stuck, held_back or safety_stop",
     "ended_in_words": "the same as a sentence",
-    "time_s": "duration, s",
-    "idle_s": "time without input, s",
-    "input_magnitude_s": "integral of the input's length over time, s of full deflection",
-    "turned_round": "share of the time in which the stick is over 90 degrees from where it was within 0.5 s",
-    "mode_switches": "how often the controller's mode changed",
-    "path_length_m": "length of the tool's path, m",
+    **EVERY_DRIVE,
     "goal_error_m_s": "integral over time of the tool's distance to the closest goal, m s",
     "goal_error_m": "mean of the same distance over time, m",
     "final_distance_m": "tool from the last waypoint at the end, m",
@@ -78,12 +84,7 @@ def drive_entries(
             "success": trace.figures.success,
             "ended_because": trace.ending.reason,
             "ended_in_words": trace.ending.detail,
-            "time_s": trace.figures.time_s,
-            "idle_s": trace.figures.idle_s,
-            "input_magnitude_s": trace.figures.input_magnitude,
-            "turned_round": trace.figures.turned_round,
-            "mode_switches": trace.figures.mode_switches,
-            "path_length_m": trace.figures.path_length,
+            **every_drive(trace.figures),
             "goal_error_m_s": trace.measured.goal_error_m_s,
             "goal_error_m": trace.measured.goal_error_m,
             "final_distance_m": trace.measured.final_distance,
@@ -92,6 +93,22 @@ def drive_entries(
         }
         for number, (plan, trace) in enumerate(zip(planned, traces, strict=True))
     ]
+
+
+def every_drive(figures: Drive) -> dict[str, object]:
+    """The cells of `EVERY_DRIVE`.
+
+    Args:
+        figures: of one drive.
+    """
+    return {
+        "time_s": figures.time_s,
+        "idle_s": figures.idle_s,
+        "input_magnitude_s": figures.input_magnitude,
+        "turned_round": figures.turned_round,
+        "mode_switches": figures.mode_switches,
+        "path_length_m": figures.path_length,
+    }
 
 
 def write_drives_csv(path: Path, entries: Sequence[Mapping[str, object]]) -> None:

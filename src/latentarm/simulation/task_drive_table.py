@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Final
 
+from latentarm.simulation.drive_table import EVERY_DRIVE, every_drive
 from latentarm.simulation.task_drive import TaskTrace
 
 COLUMNS: Final[dict[str, str]] = {
@@ -17,12 +18,7 @@ COLUMNS: Final[dict[str, str]] = {
     "steps_done": "share of the steps that were done, 0 to 1",
     "not_done": "the first step that was not done, in words",
     "ended_in_words": "why the drive ended",
-    "time_s": "duration, s",
-    "idle_s": "time without input, s",
-    "input_magnitude_s": "integral of the input's length over time, s of full deflection",
-    "turned_round": "share of the time in which the stick is over 90 degrees from where it was within 0.5 s",
-    "mode_switches": "how often the controller's mode changed",
-    "path_length_m": "length of the tool's path, m",
+    **EVERY_DRIVE,
     "stops": "how often the arm was stopped and had to be enabled again",
     "preference_alignment": "mean dot product of where the tool points and where it should",
     "table_force_n": "largest force of the tool on the table or a dish, N",
@@ -66,12 +62,7 @@ def task_drive_entries(
             "steps_done": trace.measured.steps_done,
             "not_done": trace.ended_in,
             "ended_in_words": trace.why,
-            "time_s": trace.figures.time_s,
-            "idle_s": trace.figures.idle_s,
-            "input_magnitude_s": trace.figures.input_magnitude,
-            "turned_round": trace.figures.turned_round,
-            "mode_switches": trace.figures.mode_switches,
-            "path_length_m": trace.figures.path_length,
+            **every_drive(trace.figures),
             "stops": trace.measured.stops,
             "preference_alignment": trace.measured.preference_alignment,
             "table_force_n": trace.measured.table_force_n,
