@@ -67,7 +67,7 @@ def settings(page: Page) -> None:
 def recorded(page: Page) -> None:
     """The Teach page with episodes to learn from: the same few seconds, driven three times."""
     page.get_by_role("radio", name="Straight lines").check()
-    page.get_by_label("What is being done").fill("towards the table")
+    page.get_by_label("What you are doing").fill("towards the table")
     while page.get_by_role("link", name="Teach the arm").is_hidden() or episodes(page) < EPISODES:
         before = episodes(page)
         page.get_by_role("button", name="Arm back to start").click()
@@ -80,7 +80,7 @@ def recorded(page: Page) -> None:
             "n => parseInt(document.querySelector('#record-text').textContent) > n", arg=before
         )
     page.get_by_role("link", name="Teach the arm").click()
-    page.get_by_role("checkbox", name="Episode 3").wait_for()
+    page.get_by_role("checkbox", name="Recording 3").wait_for()
 
 
 def push_for(page: Page, moving_ms: int) -> None:
@@ -122,7 +122,7 @@ def asked(page: Page) -> None:
     """A question, and an answer that is still held."""
     personalise(page)
     page.get_by_label("Your name").fill("Ada")
-    page.get_by_label("Maximum number of motions").select_option("5")
+    page.get_by_label("Most motions to answer for").select_option("5")
     page.get_by_role("button", name="Begin").click()
     page.get_by_role("heading", name="Question 1").wait_for(timeout=LEARNING_MS)
     push_aside(page)

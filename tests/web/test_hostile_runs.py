@@ -73,7 +73,7 @@ def test_a_hostile_run_is_refused_and_driving_goes_on(tmp_path, serve, trained, 
         assert set(names) <= set(page.learning["runs"])
         for name in names:
             page.send(type="run", run=name)
-            page.wait(lambda state, name=name: f"Checking the run {name}" in said(state), within_s=20.0)
+            page.wait(lambda state, name=name: f"Checking {name}" in said(state), within_s=20.0)
             page.wait(lambda state: "Checking" not in said(state), within_s=60.0)
             why = said(page.state)
             assert why.count("\n") == 0

@@ -93,7 +93,7 @@ def test_episodes_that_are_too_short_are_named_in_a_sentence_and_nothing_is_left
     assert failed.phase == "failed"
     (why,) = failed.why
     assert why.code == "episodes_too_short"
-    assert "Only 2 of the 3 chosen episodes" in why.text
+    assert "Only 2 of the 3 chosen recordings" in why.text
     assert not list(tmp_path.glob("*/waving"))
 
 
@@ -143,9 +143,9 @@ def test_a_name_that_is_no_folder_is_refused(tmp_path, name):
 
 def test_a_name_that_is_taken_and_too_few_episodes_are_refused(tmp_path):
     (tmp_path / "runs" / "waving").mkdir(parents=True)
-    with pytest.raises(UserError, match="already exists: choose another name"):
+    with pytest.raises(UserError, match="is there already"):
         planned(tmp_path)
-    with pytest.raises(UserError, match="Training needs at least 3 episodes, and only one is chosen"):
+    with pytest.raises(UserError, match="Training needs at least 3 recordings, and only one is chosen"):
         planned(tmp_path, name="other", episodes=(2, 2, 2))
 
 

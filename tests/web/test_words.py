@@ -57,5 +57,5 @@ def test_a_language_has_every_text_with_the_same_parameters(language):
 
 def test_a_notice_is_a_sentence_in_english():
     notice = Notice(code="too_few_episodes", parameters={"least": 3, "count": 1})
-    assert notice.text.startswith("Training needs at least 3 episodes, and only one is chosen")
+    assert notice.text.startswith("Training needs at least 3 recordings, and only one is chosen")
     assert Notice(code="stop_pressed_by", parameters={"name": "{x}"}).text == "{x} pressed Stop."

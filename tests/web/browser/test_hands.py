@@ -66,7 +66,7 @@ def test_swapped_axes_turn_the_way_of_the_tool(page, arm, press_enable, way):
     sideways = way(page, "ArrowRight")
     assert sideways[1] > 0.01 > abs(sideways[0])
     page.keyboard.press("Escape")
-    settle(page, arm, press_enable, "Swap the two axes")
+    settle(page, arm, press_enable, "Swap up and down with left and right")
     along = way(page, "ArrowRight")
     assert abs(along[0]) > 0.01 > abs(along[1])
 

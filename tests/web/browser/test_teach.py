@@ -66,7 +66,7 @@ def record(page, arm, push, number):
     arm.comes_to_rest()
     way = arm.tool - begin
     page.get_by_role("button", name="Stop recording").click()
-    expect(page.locator("#record-text")).to_have_text(re.compile(f"^{number} episodes? recorded"))
+    expect(page.locator("#record-text")).to_have_text(re.compile(f"^{number} recordings? kept"))
     page.get_by_role("button", name="Arm back to start").click()
     arm.wait(lambda: np.linalg.norm(arm.tool - begin) < 0.001)
     return way
@@ -76,33 +76,33 @@ def test_the_arm_learns_on_the_page_what_it_was_shown(open_page, arm, push, tmp_
     page = open_page()
     page.get_by_role("button", name="Ask to drive").click()
     assert arm.welcome["run"] is None
-    page.get_by_label("What is being done").fill("push")
+    page.get_by_label("What you are doing").fill("push")
     ways = [record(page, arm, push, number) for number in (1, 2, 3)]
 
     page.get_by_role("link", name="Teach the arm from these").click()
-    expect(page.get_by_role("checkbox", name=re.compile("Episode 3: push"))).to_be_checked()
+    expect(page.get_by_role("checkbox", name=re.compile("Recording 3: push"))).to_be_checked()
     train = page.get_by_role("button", name="Train", exact=True)
     expect(train).to_be_enabled()
-    page.get_by_role("checkbox", name=re.compile("Episode 3")).uncheck()
+    page.get_by_role("checkbox", name=re.compile("Recording 3")).uncheck()
     expect(train).to_be_disabled()
-    page.get_by_role("checkbox", name=re.compile("Episode 3")).check()
+    page.get_by_role("checkbox", name=re.compile("Recording 3")).check()
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         assert found(page) == []
-    page.get_by_label("Name for the result").fill("pushing")
-    page.get_by_role("radio", name="One axis").check()
+    page.get_by_label("Name for what it learns").fill("pushing")
+    page.get_by_role("radio", name="Left and right only").check()
     page.evaluate(WATCH_PROGRESS)
     train.click()
     expect(page.get_by_role("progressbar")).to_have_attribute(
         "aria-valuenow", re.compile("[1-9]"), timeout=60_000
     )
-    expect(page.locator("#training-title")).to_have_text("pushing is trained.", timeout=60_000)
+    expect(page.locator("#training-title")).to_have_text("The arm has learned pushing.", timeout=60_000)
     # It may be over before anybody looks.
     assert any(re.match(r"Pass \d+ of", said) for said in page.evaluate("said"))
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         assert found(page) == []
-    expect(page.get_by_label("Name for the result")).to_have_value("pushing-1")
+    expect(page.get_by_label("Name for what it learns")).to_have_value("pushing-1")
     assert (tmp_path / "runs" / "pushing" / "config.json").is_file()
 
     page.get_by_role("button", name="Drive it", exact=True).click()

@@ -41,10 +41,10 @@ test("a goal is marked as the likeliest only where it stands out", () => {
 for (const [recording, you, words] of [
   [null, true, "Nothing recorded yet."],
   [null, false, "Only the driver can record."],
-  [{ on: false, samples: 0, episodes: 1, problem: null }, true, "1 episode recorded."],
-  [{ on: false, samples: 0, episodes: 2, problem: null }, true, "2 episodes recorded."],
-  [{ on: true, samples: 250, episodes: 2, problem: null }, true, "Recording episode 3: 2 s."],
-  [{ on: true, samples: 250, episodes: 2, problem: null }, false, "Recording episode 3: 2 s."],
+  [{ on: false, samples: 0, episodes: 1, problem: null }, true, "1 recording kept."],
+  [{ on: false, samples: 0, episodes: 2, problem: null }, true, "2 recordings kept."],
+  [{ on: true, samples: 250, episodes: 2, problem: null }, true, "Recording 3: 2 s."],
+  [{ on: true, samples: 250, episodes: 2, problem: null }, false, "Recording 3: 2 s."],
 ]) {
   test(`recording: ${words}`, () => assert.equal(recordingWords({ recording, you }), words));
 }

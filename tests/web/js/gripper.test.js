@@ -95,7 +95,7 @@ for (const [state, words] of [
   [at(0.05), "Partly open, 50 mm."],
   [at(0.0005), "Closed, 1 mm."],
   [at(0.0621, { holding: true }), "Holding something, 62 mm."],
-  [null, "The opening is not known."],
+  [null, "The robot does not know how far it is open."],
 ]) {
   test(`its state in words: ${words}`, () => assert.equal(gripperWords(state, WIDE), words));
 }
