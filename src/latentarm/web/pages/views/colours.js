@@ -4,6 +4,8 @@
 export function colour(name) {
   const probe = document.createElement("i");
   probe.style.color = `var(--${name})`;
+  // Where the system forces its colours on text, all of them would be the same.
+  probe.style.setProperty("forced-color-adjust", "none");
   document.body.append(probe);
   const found = getComputedStyle(probe).color;
   probe.remove();
