@@ -26,7 +26,9 @@ class ThroughThePlate(SceneTask):
         state = min(begun.goals, key=lambda goal: np.linalg.norm(goal.pose.position - place)).configuration
         below = Waypoint(lambda _: fork(place, -0.1), within_m=0.01)
         return replace(
-            begun, state=state, steps=(TaskStep("reached", "below the plate", lambda _: False, (below,)),)
+            begun,
+            state=state,
+            steps=(TaskStep("reached", "plate", "below the plate", lambda _: False, (below,)),),
         )
 
 

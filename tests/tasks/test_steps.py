@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from latentarm.tasks.mishap import Mishap
 from latentarm.tasks.steps import RETRY_S, Progress, TaskStep, Waypoint
 from scene_states import at, standing
 
@@ -19,7 +20,7 @@ def point(x, **changes):
 
 def done_when_gripped(name, *waypoints):
     """A step that is done where the state's gripped things name it."""
-    return TaskStep("holding", name, lambda state: name in state.gripped, waypoints or (point(0.0),))
+    return TaskStep("holding", name, name, lambda state: name in state.gripped, waypoints or (point(0.0),))
 
 
 def now(time_s=0.0, x=99.0, *gripped, **changes):
@@ -92,14 +93,14 @@ def test_a_wait_is_over_when_the_step_is_done():
 
 def test_what_goes_wrong_is_said_and_stays():
     def fallen(state):
-        return "knocked over the cup" if state.tool.position[0] > 5.0 else None
+        return Mishap("knocked_over", "cup") if state.tool.position[0] > 5.0 else None
 
     progress = Progress([done_when_gripped("cup")], [lambda state: None, fallen])
     progress.update(now(0.0, 0.0))
     assert progress.failure is None
     progress.update(now(0.1, 9.0))
     progress.update(now(0.2, 0.0, "cup"))
-    assert progress.failure == "knocked over the cup"
+    assert progress.failure == Mishap("knocked_over", "cup")
     assert (progress.done, progress.succeeded) == (1, False)
 
 

@@ -256,7 +256,7 @@ class _Watch:
         self._position.append(state.tool.position)
         waypoint = self.progress.waypoint
         if self.progress.failure is not None:
-            self.ended = self.progress.failure
+            self.ended = self.progress.failure.text
         elif waypoint is None:
             self.ended = "done"
         else:

@@ -7,6 +7,7 @@ import numpy as np
 
 from latentarm.scene.interior import Interior
 from latentarm.scene.scene import TOOL, SceneState
+from latentarm.tasks.mishap import Mishap
 from latentarm.types import FloatArray
 
 
@@ -268,10 +269,10 @@ class Dropped:
     thing: str
     below_m: float
 
-    def __call__(self, state: SceneState) -> str | None:
+    def __call__(self, state: SceneState) -> Mishap | None:
         """That it has."""
         fell = state.poses[self.thing].position[2] < self.below_m
-        return f"dropped the {self.thing}" if fell else None
+        return Mishap("dropped", self.thing) if fell else None
 
 
 @final
@@ -287,11 +288,11 @@ class KnockedOver:
     thing: str
     angle_rad: float = float(np.deg2rad(60.0))
 
-    def __call__(self, state: SceneState) -> str | None:
+    def __call__(self, state: SceneState) -> Mishap | None:
         """That it does."""
         up = state.poses[self.thing].rotation[2, 2]
         fallen = up < np.cos(self.angle_rad) and self.thing not in state.gripped
-        return f"knocked over the {self.thing}" if fallen else None
+        return Mishap("knocked_over", self.thing) if fallen else None
 
 
 @final
@@ -311,10 +312,10 @@ class Spilled:
     containers: tuple[tuple[str, Interior], ...]
     share: float
 
-    def __call__(self, state: SceneState) -> str | None:
+    def __call__(self, state: SceneState) -> Mishap | None:
         """That they are."""
         most = self.share * len(state.grains[self.grains])
-        return f"spilled the {self.grains}" if self.count(state) > most else None
+        return Mishap("spilled", self.grains) if self.count(state) > most else None
 
     def count(self, state: SceneState) -> int:
         """How many grains are spilled."""
@@ -337,8 +338,8 @@ class Pressed:
     thing: str
     most_n: float
 
-    def __call__(self, state: SceneState) -> str | None:
+    def __call__(self, state: SceneState) -> Mishap | None:
         """That it does."""
         first, second = sorted((self.thing, TOOL))
         pressed = state.force_n.get((first, second), 0.0) > self.most_n
-        return f"pressed too hard on the {self.thing}" if pressed else None
+        return Mishap("pressed", self.thing) if pressed else None

@@ -8,18 +8,29 @@ import numpy as np
 
 from latentarm.kinematics.rotations import angle_between
 from latentarm.scene.scene import SceneState
+from latentarm.tasks.mishap import Mishap
 from latentarm.types import GripperAsk, Pose
 
 StepKind = Literal[
-    "reached", "holding", "stabbed", "above", "poured", "cut", "scooped", "dipped", "stirred", "placed"
+    "reached",
+    "passed",
+    "holding",
+    "stabbed",
+    "above",
+    "poured",
+    "cut",
+    "scooped",
+    "dipped",
+    "stirred",
+    "placed",
 ]
 """What is done in a step."""
 
 Predicate = Callable[[SceneState], bool]
 """Whether something holds of the things at one moment. One that remembers is made anew for every run."""
 
-Failure = Callable[[SceneState], str | None]
-"""Why a run has failed for good, in a few words, or None."""
+Failure = Callable[[SceneState], Mishap | None]
+"""What has gone wrong for good, or None."""
 
 
 @final
@@ -70,12 +81,14 @@ class TaskStep:
 
     Attributes:
         kind: what is done.
-        name: the same in words, with the thing that it is done to.
+        thing: name of the thing that it is done to, or where it is done.
+        name: both in words.
         done: whether it has been done.
         waypoints: how a person does it; tried again from the first if it is not done after the last.
     """
 
     kind: StepKind
+    thing: str
     name: str
     done: Predicate
     waypoints: tuple[Waypoint, ...]
@@ -99,7 +112,7 @@ class Progress:
         self._failures = tuple(failures)
         self._done = self._waypoint = self._tries = 0
         self._arrived_s: float | None = None
-        self._failure: str | None = None
+        self._failure: Mishap | None = None
 
     @property
     def steps(self) -> tuple[TaskStep, ...]:
@@ -122,8 +135,8 @@ class Progress:
         return self._done == len(self._steps) and self._failure is None
 
     @property
-    def failure(self) -> str | None:
-        """What has gone wrong for good, in a few words."""
+    def failure(self) -> Mishap | None:
+        """What has gone wrong for good."""
         return self._failure
 
     @property
@@ -160,7 +173,7 @@ class Progress:
             state: at every tick of the loop.
         """
         if self._failure is None:
-            self._failure = next((said for fails in self._failures if (said := fails(state))), None)
+            self._failure = next((found for fails in self._failures if (found := fails(state))), None)
         while (step := self.step) is not None and step.done(state):
             self._done += 1
             self._waypoint, self._arrived_s = 0, None

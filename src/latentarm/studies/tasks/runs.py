@@ -127,7 +127,7 @@ def shown_run(task: SceneTask, number: int, shown: Demonstration) -> Run:
         done=progress.done,
         success=progress.succeeded,
         ended_in="" if progress.step is None else progress.step.name,
-        why=progress.failure or ("done" if progress.succeeded else "out of time"),
+        why=progress.failure.text if progress.failure else ("done" if progress.succeeded else "out of time"),
         time_s=shown.seconds,
     )
 

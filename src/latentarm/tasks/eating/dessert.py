@@ -154,12 +154,20 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
     return (
         above(MARSHMALLOW),
         stab(MARSHMALLOW),
-        TaskStep("above", "over the icing", CarriedOver(MARSHMALLOW, "icing", 0.05), through[:1]),
-        TaskStep("scooped", "drawn through the icing", Swept(MARSHMALLOW, "icing", WET, SWEEP_M), through),
-        TaskStep("above", "over the rice", CarriedOver(MARSHMALLOW, "rice bowl", 0.03), into[:1]),
-        TaskStep("dipped", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),
+        TaskStep("above", "icing", "over the icing", CarriedOver(MARSHMALLOW, "icing", 0.05), through[:1]),
         TaskStep(
-            "above", "over the own plate", CarriedOver(MARSHMALLOW, "own plate", 0.03), (*into[:1], high)
+            "scooped", "icing", "drawn through the icing", Swept(MARSHMALLOW, "icing", WET, SWEEP_M), through
         ),
-        TaskStep("placed", "set down", laid, (high, down)),
+        TaskStep(
+            "above", "rice bowl", "over the rice", CarriedOver(MARSHMALLOW, "rice bowl", 0.03), into[:1]
+        ),
+        TaskStep("dipped", "rice bowl", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),
+        TaskStep(
+            "above",
+            "own plate",
+            "over the own plate",
+            CarriedOver(MARSHMALLOW, "own plate", 0.03),
+            (*into[:1], high),
+        ),
+        TaskStep("placed", "own plate", "set down", laid, (high, down)),
     )

@@ -97,10 +97,12 @@ class Entree(ForkTask):
         laid = Placed("slice", centre, np.array([*(2 * [0.7 * PLATE_RADIUS_M]), 0.015]), let_go=False)
         return (
             above("slice", along),
-            TaskStep("cut", "a slice cut off", Apart("tofu", "slice"), (ready, through, out)),
+            TaskStep("cut", "slice", "a slice cut off", Apart("tofu", "slice"), (ready, through, out)),
             stab("slice", along, HALF_M[2]),
-            TaskStep("above", "above the plate", CarriedOver("slice", "own plate", 0.03), (high,)),
-            TaskStep("placed", "the slice on the plate", laid, (high, down)),
+            TaskStep(
+                "above", "own plate", "above the plate", CarriedOver("slice", "own plate", 0.03), (high,)
+            ),
+            TaskStep("placed", "own plate", "the slice on the plate", laid, (high, down)),
         )
 
 

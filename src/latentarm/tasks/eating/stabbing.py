@@ -29,7 +29,7 @@ def above(thing: str, turn_rad: float | None = None) -> TaskStep:
         turn_rad: see `latentarm.tasks.eating.table.fork`.
     """
     high = Waypoint(partial(over, thing=thing, height_m=HOVER_M, turn_rad=turn_rad))
-    return TaskStep("above", f"above the {thing}", Above(thing, 0.02, 0.05, 0.2), (high,))
+    return TaskStep("above", thing, f"above the {thing}", Above(thing, 0.02, 0.05, 0.2), (high,))
 
 
 def stab(thing: str, turn_rad: float | None = None, half_m: float = MARSHMALLOW_HALF_M) -> TaskStep:
@@ -46,7 +46,7 @@ def stab(thing: str, turn_rad: float | None = None, half_m: float = MARSHMALLOW_
     into = Waypoint(partial(above_it, height_m=-INTO_M), within_m=0.008, wait_s=0.1, speed=0.4)
     lifted = Waypoint(partial(_over_plate, thing=thing, height_m=lying_m + HOVER_M, turn_rad=turn_rad))
     done = Stabbed(thing, lying_m + LIFTED_M)
-    return TaskStep("stabbed", f"the {thing} on the fork", done, (near, into, lifted))
+    return TaskStep("stabbed", thing, f"the {thing} on the fork", done, (near, into, lifted))
 
 
 def over(

@@ -198,11 +198,13 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
     stirred = Stirred("spoon", "bowl", rooms["bowl"], STIR_TURNS)
     return (
         *take("apple", TOP_M + SHELF_M + STAND_M, APPLE_RADIUS_M),
-        TaskStep("above", "the apple over the bowl", CarriedOver("apple", "bowl", 0.04), (carry,)),
-        TaskStep("placed", "the apple in the bowl", Within("apple", "bowl", rooms["bowl"]), (carry, drop)),
+        TaskStep("above", "bowl", "the apple over the bowl", CarriedOver("apple", "bowl", 0.04), (carry,)),
+        TaskStep(
+            "placed", "bowl", "the apple in the bowl", Within("apple", "bowl", rooms["bowl"]), (carry, drop)
+        ),
         *take("spoon", TOP_M, spoon_up),
-        TaskStep("above", "the spoon over the bowl", CarriedOver("spoon", "bowl", 0.04), (above,)),
-        TaskStep("stirred", "stirred", stirred, (enter, *to_and_fro)),
+        TaskStep("above", "bowl", "the spoon over the bowl", CarriedOver("spoon", "bowl", 0.04), (above,)),
+        TaskStep("stirred", "bowl", "stirred", stirred, (enter, *to_and_fro)),
     )
 
 
@@ -211,7 +213,9 @@ def _away(cup: str, room: Interior) -> TaskStep:
     upright = Waypoint(partial(over, thing="bowl", height_m=0.20), within_rad=0.5)
     above = Waypoint(partial(over, thing="bin", height_m=0.22))
     let_go = Waypoint(partial(over, thing="bin", height_m=0.17), gripper="open", wait_s=0.8)
-    return TaskStep("placed", f"the {cup} in the bin", Within(cup, "bin", room), (upright, above, let_go))
+    return TaskStep(
+        "placed", "bin", f"the {cup} in the bin", Within(cup, "bin", room), (upright, above, let_go)
+    )
 
 
 def _back(cup: str, place: FloatArray) -> TaskStep:
@@ -223,7 +227,7 @@ def _back(cup: str, place: FloatArray) -> TaskStep:
     down = Waypoint(partial(at_place, place=grip), within_m=0.012, gripper="open", wait_s=0.8, speed=0.5)
     clear = Waypoint(partial(at_place, place=grip, back_m=0.08), speed=0.6)
     done = Placed(cup, place, np.array([0.05, 0.05, 0.015]), let_go=True)
-    return TaskStep("placed", f"the {cup} back on the shelf", done, (upright, above, down, clear))
+    return TaskStep("placed", "shelf", f"the {cup} back on the shelf", done, (upright, above, down, clear))
 
 
 @final

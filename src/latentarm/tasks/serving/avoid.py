@@ -69,8 +69,8 @@ class Avoid(CounterTask):
             state=self.reaching(place),
             scene=Scene((counter(), bottle)),
             steps=(
-                TaskStep("reached", "past the bottle", _past, (past, there)),
-                TaskStep("reached", "at the place", there.reached, (there,)),
+                TaskStep("passed", "bottle", "past the bottle", _past, (past, there)),
+                TaskStep("reached", "place", "at the place", there.reached, (there,)),
             ),
             failures=(Pressed("bottle", TOUCHED_N), KnockedOver("bottle")),
             goals=(Goal("place", self.reaching(goal), hand(goal, bearing_of(goal))),),

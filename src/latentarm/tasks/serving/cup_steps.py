@@ -45,8 +45,10 @@ def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[Tas
     )
     lifted = Waypoint(partial(_lifted, cup=cup, height_m=stands_m + grip_m + LIFT_M))
     return (
-        TaskStep("reached", f"at the {cup}", before.reached, (before,)),
-        TaskStep("holding", f"holding the {cup}", Holding(cup, stands_m + LIFTED_M), (before, about, lifted)),
+        TaskStep("reached", cup, f"at the {cup}", before.reached, (before,)),
+        TaskStep(
+            "holding", cup, f"holding the {cup}", Holding(cup, stands_m + LIFTED_M), (before, about, lifted)
+        ),
     )
 
 
@@ -80,8 +82,8 @@ def pour(
         before = (Waypoint(partial(_over, bowl=leaving[0], tilt_rad=0.05 * leaving[1])),)
     enough = Poured(grains, bowl, interior, share)
     return (
-        TaskStep("above", f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (*before, upright)),
-        TaskStep("poured", f"{grains} in the {bowl}", enough, (upright, half, tilted)),
+        TaskStep("above", bowl, f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (*before, upright)),
+        TaskStep("poured", bowl, f"{grains} in the {bowl}", enough, (upright, half, tilted)),
     )
 
 

@@ -1,0 +1,33 @@
+"""What can go wrong for good in a run of a task with things."""
+
+from dataclasses import dataclass
+from typing import Final, Literal, final
+
+MishapKind = Literal["dropped", "knocked_over", "spilled", "pressed"]
+"""What went wrong."""
+
+_SAID: Final[dict[MishapKind, str]] = {
+    "dropped": "dropped the",
+    "knocked_over": "knocked over the",
+    "spilled": "spilled the",
+    "pressed": "pressed too hard on the",
+}
+
+
+@final
+@dataclass(frozen=True)
+class Mishap:
+    """Something that has gone wrong for good.
+
+    Attributes:
+        kind: what.
+        thing: name of the thing or of the grains that it happened to.
+    """
+
+    kind: MishapKind
+    thing: str
+
+    @property
+    def text(self) -> str:
+        """In a few words, for tables and films: "dropped the cup"."""
+        return f"{_SAID[self.kind]} {self.thing}"
