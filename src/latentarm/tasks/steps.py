@@ -12,6 +12,7 @@ from latentarm.tasks.mishap import Mishap
 from latentarm.types import GripperAsk, Pose
 
 StepKind = Literal[
+    "approached",
     "reached",
     "passed",
     "holding",

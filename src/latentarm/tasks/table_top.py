@@ -9,8 +9,10 @@ from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import HalfSpace, Obstacle
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.robot import Robot
+from latentarm.scene.scene import Scene
 from latentarm.tasks.demonstrator import Hand, demonstrate, demonstrations_of
 from latentarm.tasks.inverse_kinematics import solve
+from latentarm.tasks.table_food import food_on_dishes
 from latentarm.tasks.task import Task, within
 from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Pose
 
@@ -71,6 +73,11 @@ class TableTop(Task):
     def obstacles(self) -> tuple[Obstacle, ...]:
         """The table; the food and its dishes are soft and may be touched."""
         return (HalfSpace("table", np.array([0.0, 0.0, TABLE_HEIGHT]), np.array([0.0, 0.0, 1.0])),)
+
+    @property
+    def shown(self) -> Scene:
+        """The food on its dishes."""
+        return food_on_dishes(ITEMS, TABLE_HEIGHT + ITEM_HEIGHT)
 
     @property
     def goals(self) -> tuple[Goal, ...]:

@@ -10,6 +10,7 @@ from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.kinematics.rotations import angle_between
 from latentarm.robots.robot import Robot
+from latentarm.scene.scene import Scene
 from latentarm.types import Demonstrations, FloatArray, Goal, GripperAsk, Pose
 
 
@@ -47,6 +48,11 @@ class Task(ABC):
     @abstractmethod
     def obstacles(self) -> Sequence[Obstacle]:
         """What the arm must keep clear of."""
+
+    @property
+    def shown(self) -> Scene:
+        """What stands about the arm, to be drawn; it is never touched. Nothing, unless a task says otherwise."""
+        return Scene()
 
     @abstractmethod
     def sample_start(self, goal: int, rng: np.random.Generator) -> FloatArray:

@@ -17,8 +17,10 @@ from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process.task_run import TaskRun
 from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import (
+    BeginTask,
     Channel,
     ChooseMode,
     ChooseProfile,
@@ -42,7 +44,7 @@ ENABLE_WAITS_S: Final = 0.3
 NOTE_S: Final = 6.0
 """How long a refusal is shown instead of the arm's state, s."""
 
-Change = ChooseProfile | ChooseRun | Reset
+Change = ChooseProfile | ChooseRun | Reset | BeginTask
 """Orders that end the loop so that it can start again with another setup."""
 
 _HELD_BACK: Final[dict[str, HeldBack]] = {
@@ -70,12 +72,14 @@ class Steering:
         axes: which pair of the end-effector's axes.
         tick: counts the ticks of all drives.
         ending_episode: whether the episode ends as soon as the arm is at rest.
+        run: of the task, as far as it has come; None where it is to begin.
     """
 
     mode: ModeName
     axes: int = 0
     tick: int = 0
     ending_episode: bool = False
+    run: TaskRun | None = None
 
 
 @final
@@ -132,6 +136,8 @@ class Drive:
         self._seen = setup.start
         self._gripper: GripperState | None = None
         self._whereabouts = Whereabouts(setup.scene, arm)
+        self._run = steering.run or TaskRun(setup.todo, arm, setup.task.robot.chain)
+        steering.run = self._run
         self._late_share = self._late_p99_ms = 0.0
         self._note = note
         self._note_until_s = -math.inf if note is None else clock.now_s() + NOTE_S
@@ -156,6 +162,7 @@ class Drive:
         if not math.isnan(record.state[0]):
             self._seen = record.state
         self._note_gripper(record)
+        self._run.see(record.time_s, self._seen, enabled=self._step.stopped is None)
         # Only a recording is worth the look: some 0.1 ms.
         self._writer.add(replace(record, things=self._whereabouts.rows()) if self._writer.on else record)
         if self._steering.ending_episode and self._step.at_rest:
@@ -220,7 +227,9 @@ class Drive:
                 self._steering.ending_episode = True
             case ChooseProfile(name=name) if name == self._setup.spec.profile:
                 pass
-            case ChooseProfile() | ChooseRun() | Reset():
+            case BeginTask(choice=int(choice)) if not 0 <= choice < len(self._setup.todo.choices):
+                pass
+            case ChooseProfile() | ChooseRun() | Reset() | BeginTask():
                 self._change_to(order)
 
     def _change_to(self, change: Change) -> None:
@@ -331,12 +340,14 @@ class Drive:
             mode=self._steering.mode,
             axes=self._steering.axes,
             run=None if spec.run is None else str(spec.run),
+            seed=spec.seed,
             profile=spec.profile,
             loading=self.change is not None,
             q=tuple(self._seen.tolist()),
             speed=float(np.abs(self._arm.read().dq).max()),
             tool=(tool[0], tool[1], tool[2]),
             gripper=self._gripper,
+            task=self._run.state,
             things=self._whereabouts.look(self._steering.tick),
             ghosts=self._ghosts.newest,
             belief=tuple(record.belief.tolist()),

@@ -1,5 +1,6 @@
 """What a page drives: the task, its modes and their controllers. Used by both processes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final, final
@@ -23,10 +24,15 @@ from latentarm.scene.scene import Scene
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.place import Place, ScenePlace
 from latentarm.tasks.surroundings import surroundings_of, watched
+from latentarm.tasks.task import Task
 from latentarm.types import FloatArray
 from latentarm.web.arm_process.ghosts import Help
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
+from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
 from latentarm.web.protocol.channel import ModeName
+
+SEEDS: Final = 2**31
+"""How many seeds there are."""
 
 PERIOD_S: Final = 0.01
 """Period of the control loop: 100 Hz, the highest rate at which a real arm is driven from Python."""
@@ -59,11 +65,12 @@ class Spec:
     Attributes:
         run: a trained run, or None for end-effector control alone at the table-top task.
         profile: the person whose alignment is used; z = u where None.
-        seed: of where the arm starts.
+        seed: of where the arm starts and where things stand.
         out: folder for recordings.
         journal: how much room a recording may take.
         arm: what moves, a name of `latentarm.arms.catalogue`; None for the task's usual one.
         task: a name of `latentarm.tasks.catalogue`; None for the run's own, or the table-top task.
+        choice: index of what is done first, of the task's choices or goals.
 
     Raises:
         UserError: the seed is out of range, or a profile is named without a run.
@@ -76,10 +83,11 @@ class Spec:
     journal: JournalLimits = field(default_factory=JournalLimits)
     arm: str | None = None
     task: str | None = None
+    choice: int = 0
 
     def __post_init__(self) -> None:
-        if not 0 <= self.seed < 2**31:
-            raise UserError(f"The seed is {self.seed}: it must be from 0 to {2**31 - 1}.")
+        if not 0 <= self.seed < SEEDS:
+            raise UserError(f"The seed is {self.seed}: it must be from 0 to {SEEDS - 1}.")
         if self.run is None and self.profile is not None:
             raise UserError(
                 "A profile belongs to a run: name one, as in `latentarm teleop RUN --profile NAME`."
@@ -101,6 +109,7 @@ class DriveSetup:
         axes: names of the pairs of axes of end-effector control.
         help: whether and how much the robot helps.
         start: (n,), where the arm starts, rad.
+        todo: what is to be done.
         run_fingerprint: of the run's weights; "" without a run.
         scene: what stands about the arm, or None where things are of no account.
     """
@@ -113,6 +122,7 @@ class DriveSetup:
     axes: tuple[str, ...]
     help: Help
     start: FloatArray
+    todo: Todo
     run_fingerprint: str = ""
     scene: Scene | None = None
 
@@ -127,6 +137,11 @@ class DriveSetup:
     def objects(self) -> tuple[str, ...]:
         """Names of the things that matter for the task; empty where it does not say."""
         return self.task.objects if isinstance(self.task, ScenePlace) else ()
+
+    @property
+    def shown(self) -> Scene | None:
+        """What pages draw about the arm: what is in physics, or else what the task says stands there."""
+        return self.task.shown if self.scene is None and isinstance(self.task, Task) else self.scene
 
     def mode_index(self, mode: ModeName, axes: int) -> int:
         """Index into the controller's modes.
@@ -198,7 +213,8 @@ def load_setup(spec: Spec) -> DriveSetup:
     name = spec.task or (None if run is None else run.task)
     arm = spec.arm or usual_arm(name)
     ARMS.find(arm, "--arm")  # so that the error appears where the command was typed
-    task, start, scene = _begin(run, name, arm, np.random.default_rng(spec.seed))
+    begun = _begin(run, name, arm, spec.choice, np.random.default_rng(spec.seed))
+    task = begun.place
     latent = None if spec.run is None else latent_controller(spec.run, spec.profile, task.robot)
     if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
         raise UserError(
@@ -214,28 +230,45 @@ def load_setup(spec: Spec) -> DriveSetup:
         latent_dim=0 if latent is None else latent.input_dim,
         axes=end_effector.modes,
         help=Help(FixedAlpha()),
-        start=start,
+        start=begun.start,
+        todo=begun.todo,
         run_fingerprint="" if spec.run is None else weights_fingerprint(spec.run),
-        scene=scene,
+        scene=begun.scene,
     )
     setup.step()  # what cannot be driven fails now rather than later
     return setup
 
 
-def _begin(
-    run: Run | None, name: str | None, arm: str, rng: np.random.Generator
-) -> tuple[Place, FloatArray, Scene | None]:
-    """Where the arm is driven, where it starts, (n,), rad, and what is about it: the same for equal specs."""
+@final
+@dataclass(frozen=True, eq=False)
+class _Begun:
+    """How a run of a task begins: where the arm is and starts, (n,), rad, what is about it and to be done."""
+
+    place: Place
+    start: FloatArray
+    todo: Todo
+    scene: Scene | None = None
+
+
+def _begin(run: Run | None, name: str | None, arm: str, choice: int, rng: np.random.Generator) -> _Begun:
+    """The same for equal specs."""
     if name is not None and name in SCENE_TASKS:
         with_things = make_scene_task(name)
-        begun = with_things.begin(0, rng)
+        _check_choice(choice, with_things.choices)
+        begun = with_things.begin(choice, rng)
         _check_things(name, begun.scene)
         # Made here too, so that an arm that can touch nothing is refused where the command was typed.
         make_scene_arm(arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
         place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles, begun.objects)
-        return place, begun.state, begun.scene
+        return _Begun(place, begun.state, things_to_do(with_things, choice, begun), begun.scene)
     task = task_without_run(name) if run is None else task_of_run(run, name, option=False)
-    return task, task.sample_start(0, rng), None
+    _check_choice(choice, task.goals)
+    return _Begun(task, task.sample_start(choice, rng), goal_to_reach(task, choice))
+
+
+def _check_choice(choice: int, choices: Sequence[object]) -> None:
+    if not 0 <= choice < max(len(choices), 1):
+        raise UserError(f"There are {len(choices)} things to choose from, from 0 on, and no choice {choice}.")
 
 
 def _check_things(task: str, scene: Scene) -> None:

@@ -24,10 +24,11 @@ from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.errors import UserError
 from latentarm.web.arm_process.drive import Drive, Steering
-from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup, with_profile
+from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.protocol.channel import (
     ORDER_LIMIT,
+    BeginTask,
     Channel,
     ChooseProfile,
     ChooseRun,
@@ -86,17 +87,21 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                     case None:
                         break
                     case Reset():
-                        arm.close()
-                        arm = _arm(setup, clock)
+                        setup, arm, note = _begun_again(setup, arm, BeginTask(choice=None, anew=False), clock)
+                        steering.run = None
+                    case BeginTask() as order:
+                        setup, arm, note = _begun_again(setup, arm, order, clock)
+                        steering.run = None
                     case ChooseProfile(name=name):
                         setup, note = _loaded(partial(_other_profile, setup, name), setup)
                     case ChooseRun(run=run):
-                        spec = replace(setup.spec, run=Path(run), profile=None)
+                        spec = replace(setup.spec, run=Path(run), profile=None, choice=0)
                         before = arm
                         (setup, arm), note = _loaded(partial(_other_run, spec, clock), (setup, arm))
                         if note is None:
                             before.close()
                             steering.mode, steering.axes = setup.modes[0], 0
+                            steering.run = None
         finally:
             arm.close()
             writer.close()
@@ -123,6 +128,22 @@ def _other_profile(setup: DriveSetup, name: str | None) -> DriveSetup:
     other = with_profile(setup, name)
     other.step()
     return other
+
+
+def _begun_again(
+    setup: DriveSetup, arm: Arm, order: BeginTask, clock: Clock
+) -> tuple[DriveSetup, Arm, Notice | None]:
+    """The task from its start; or as before, and why not."""
+    spec = setup.spec
+    begun = replace(
+        spec,
+        choice=spec.choice if order.choice is None else order.choice,
+        seed=(spec.seed + order.anew) % SEEDS,
+    )
+    (after, moved), note = _loaded(partial(_other_run, begun, clock), (setup, arm))
+    if moved is not arm:
+        arm.close()
+    return after, moved, note
 
 
 def _other_run(spec: Spec, clock: Clock) -> tuple[DriveSetup, Arm]:

@@ -10,6 +10,7 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter, ValidationError
 
+from latentarm.tasks.mishap import MishapKind
 from latentarm.types import GripperAsk
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.shared_memory import Flag, LatestSlot
@@ -126,7 +127,21 @@ class Reset(Message):
     order: Literal["reset"] = "reset"
 
 
-Order = Enable | ChooseMode | ChooseProfile | ChooseRun | Record | Reset
+@final
+class BeginTask(Message):
+    """Begin a run of the task from its start; only while the arm stands disengaged.
+
+    Attributes:
+        choice: index of what is to be done; None for the same again.
+        anew: whether things are placed anew; else they stand where they stood in the beginning.
+    """
+
+    order: Literal["begin"] = "begin"
+    choice: int | None
+    anew: bool
+
+
+Order = Enable | ChooseMode | ChooseProfile | ChooseRun | Record | Reset | BeginTask
 _ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="order")])
 
 
@@ -188,6 +203,38 @@ class Things(Message):
 
 
 @final
+class Why(Message):
+    """Why a run of a task has failed.
+
+    Attributes:
+        code: what went wrong.
+        thing: name of the thing, or of the grains, that it happened to.
+    """
+
+    code: MishapKind
+    thing: str
+
+
+@final
+class TaskState(Message):
+    """How far a run of the task has come.
+
+    Attributes:
+        choice: index of what is to be done.
+        done: how many of its steps have been done.
+        outcome: null while it goes on.
+        why: why it has failed.
+        time_s: since the arm was first enabled in this run, until its outcome, s.
+    """
+
+    choice: int
+    done: int
+    outcome: Literal["success", "failure"] | None
+    why: Why | None
+    time_s: float
+
+
+@final
 class Report(Message):
     """Report of the control process in every tick.
 
@@ -204,12 +251,14 @@ class Report(Message):
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
         run: path of the run that is driven, as it was named; None without one.
+        seed: says where things were placed and where the arm started.
         profile: whose alignment.
         loading: whether something else is being loaded; there are no further reports until it is.
         q: (n,), joint positions as they were last read, rad.
         speed: the fastest joint's, rad/s.
         tool: the tool's position, m.
         gripper: as it was last read; None without one.
+        task: how far it has come.
         things: where they are, sent in every few reports; None in the others and in an empty scene.
         ghosts: what each direction would do now.
         belief: over the goals; empty where there are none.
@@ -231,12 +280,14 @@ class Report(Message):
     mode: ModeName
     axes: int
     run: str | None
+    seed: int
     profile: str | None
     loading: bool
     q: tuple[float, ...]
     speed: float
     tool: Point
     gripper: GripperState | None
+    task: TaskState
     things: Things | None
     ghosts: Ghosts | None
     belief: tuple[float, ...]

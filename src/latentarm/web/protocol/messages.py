@@ -9,8 +9,18 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter
 
+from latentarm.tasks.steps import StepKind
 from latentarm.types import GripperAsk
-from latentarm.web.protocol.channel import Ghosts, GripperState, HeldBack, ModeName, Phase, Point, Things
+from latentarm.web.protocol.channel import (
+    Ghosts,
+    GripperState,
+    HeldBack,
+    ModeName,
+    Phase,
+    Point,
+    TaskState,
+    Things,
+)
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
@@ -131,6 +141,20 @@ class ResetArm(Message):
     type: Literal["reset"]
 
 
+@final
+class BeginRun(Message):
+    """Begin the task from its start, while the arm is not enabled.
+
+    Attributes:
+        choice: index of what is to be done; null for the same again.
+        anew: whether things are placed anew.
+    """
+
+    type: Literal["begin_run"]
+    choice: Annotated[int, Field(ge=0, le=10_000)] | None = None
+    anew: bool
+
+
 ClientMessage = (
     Hello
     | DriverInput
@@ -144,6 +168,7 @@ ClientMessage = (
     | TrailClear
     | RecordEpisode
     | ResetArm
+    | BeginRun
     | Train
     | CancelTraining
     | PickRun
@@ -170,6 +195,38 @@ class Limits(Message):
 
 
 @final
+class StepToDo(Message):
+    """A step of the task.
+
+    Attributes:
+        kind: what is done; texts have the key ``task.step.<kind>``.
+        thing: name of the thing that it is done to, or where it is done.
+    """
+
+    kind: StepKind
+    thing: str
+
+
+@final
+class TaskToDo(Message):
+    """What is to be done.
+
+    Attributes:
+        name: of the task.
+        seed: says where things were placed: with another one they are placed otherwise.
+        choices: what a person may choose to do: names of things or goals.
+        choice: index of what is done in this run.
+        steps: in order; empty where nothing counts as done.
+    """
+
+    name: str
+    seed: int
+    choices: tuple[str, ...]
+    choice: int
+    steps: tuple[StepToDo, ...]
+
+
+@final
 class Welcome(Message):
     """What is driven.
 
@@ -185,6 +242,7 @@ class Welcome(Message):
         end_effector_modes: names of the pairs of axes.
         limits: see `Limits`.
         gripper_width_m: how wide its gripper opens, m, or null where it has none that can be driven.
+        task: see `TaskToDo`.
     """
 
     type: Literal["welcome"] = "welcome"
@@ -200,6 +258,7 @@ class Welcome(Message):
     end_effector_modes: tuple[str, ...]
     limits: Limits
     gripper_width_m: float | None
+    task: TaskToDo
 
 
 @final
@@ -229,6 +288,7 @@ class State(Message):
         bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
         tool: m.
         gripper: null where it has none, or before it was read.
+        task: how far it has come.
         things: where they are; null if the scene has no things, or nothing has moved since the last.
         ghosts: where each direction would take the tool; null if nothing has moved by 1 mm since the last.
         belief: over the goals, or null where there are none.
@@ -258,6 +318,7 @@ class State(Message):
     bodies: tuple[tuple[float, ...], ...]
     tool: Point
     gripper: GripperState | None
+    task: TaskState
     things: Things | None
     ghosts: Ghosts | None
     belief: tuple[float, ...] | None

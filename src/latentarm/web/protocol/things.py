@@ -25,13 +25,19 @@ def described(scene: Scene) -> dict[str, object]:
         scene: what stands about the arm when it begins.
 
     Returns:
-        ``things``, each with its name, its ``pose`` at first, and ``geoms`` like those of the robot's bodies;
-        and ``grains``, each kind with its name, ``radius`` (m), ``rgba`` and first ``positions`` (m).
+        ``things``, each with its name, its ``pose`` at first, whether it is ``fixed`` there, and ``geoms``
+        like those of the robot's bodies; and ``grains``, each kind with its name, ``radius`` (m), ``rgba`` and
+        first ``positions`` (m).
     """
     first = _rows([thing.pose for thing in scene.things])
     return {
         "things": [
-            {"name": thing.name, "pose": pose, "geoms": [_geom(part) for part in thing.parts]}
+            {
+                "name": thing.name,
+                "pose": pose,
+                "fixed": thing.fixed,
+                "geoms": [_geom(part) for part in thing.parts],
+            }
             for thing, pose in zip(scene.things, first, strict=True)
         ],
         "grains": [_grains(one) for one in scene.grains],

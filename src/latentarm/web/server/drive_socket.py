@@ -9,6 +9,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.protocol.channel import (
     AskedGripper,
+    BeginTask,
     ChooseMode,
     ChooseProfile,
     Enable,
@@ -20,6 +21,7 @@ from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Tr
 from latentarm.web.protocol.messages import (
     FRAME_LIMIT,
     AskToDrive,
+    BeginRun,
     ClientMessage,
     DriverInput,
     HandOver,
@@ -197,6 +199,8 @@ class DriveSocket:
                 self._control.order(Record(on=on, task=task, person=page.name))
             case ResetArm():
                 self._control.order(Reset())
+            case BeginRun(choice=choice, anew=anew):
+                self._control.order(BeginTask(choice=choice, anew=anew))
             case Train():
                 self._learning.train(message)
             case CancelTraining():

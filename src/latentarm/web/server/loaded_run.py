@@ -10,8 +10,16 @@ from latentarm.alignment.profile import profile_names
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.channel import Report
-from latentarm.web.protocol.messages import Limits, NamedGoal, Welcome
+from latentarm.web.protocol.messages import Limits, NamedGoal, StepToDo, TaskToDo, Welcome
 from latentarm.web.protocol.scene import drawable
+
+Beginning = tuple[str | None, int, int]
+"""The run that is driven, its seed, and what is to be done: they decide how everything stands at first."""
+
+
+def beginning_of(report: Report) -> Beginning:
+    """What a report is about."""
+    return report.run, report.seed, report.task.choice
 
 
 @final
@@ -26,7 +34,7 @@ class LoadedRun:
     def __init__(self, setup: DriveSetup, name: str | None) -> None:
         self.name = name
         self.spec = setup.spec
-        self.scene = drawable(setup.task, setup.scene)
+        self.scene = drawable(setup.task, setup.shown)
         self.chain = setup.task.robot.chain
         self.input_dim = setup.controller.input_dim
         self.latent_dim = setup.latent_dim
@@ -42,8 +50,9 @@ class LoadedRun:
         return () if self.spec.run is None else profile_names(self.spec.run)
 
     def shows(self, report: Report) -> bool:
-        """Whether a report is about this run."""
-        return report.run == (None if self.spec.run is None else str(self.spec.run))
+        """Whether a report is about this run from this beginning."""
+        run = None if self.spec.run is None else str(self.spec.run)
+        return beginning_of(report) == (run, self.spec.seed, self.spec.choice)
 
     def welcome(self, page: str) -> Welcome:
         """What a page is told first.
@@ -68,6 +77,13 @@ class LoadedRun:
             end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),
             gripper_width_m=None if gripper is None else gripper.width_m,
+            task=TaskToDo(
+                name=setup.todo.task,
+                seed=setup.spec.seed,
+                choices=setup.todo.choices,
+                choice=setup.todo.choice,
+                steps=tuple(StepToDo(kind=step.kind, thing=step.thing) for step in setup.todo.steps),
+            ),
         )
 
 
@@ -83,7 +99,8 @@ def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun
         UserError: see `load_setup`.
     """
     run = None if report.run is None else Path(report.run)
-    return LoadedRun(load_setup(replace(spec, run=run, profile=None)), name)
+    begun = replace(spec, run=run, profile=None, seed=report.seed, choice=report.task.choice)
+    return LoadedRun(load_setup(begun), name)
 
 
 @final

@@ -17,7 +17,13 @@ from latentarm.web.protocol.channel import Ghosts, GripperState, Report, Things
 from latentarm.web.protocol.messages import RecordingState, State
 from latentarm.web.protocol.notice import Notice, notice_of, sentence
 from latentarm.web.protocol.scene import pose_of
-from latentarm.web.server.loaded_run import LoadedRun, RunList, load_reported_run
+from latentarm.web.server.loaded_run import (
+    Beginning,
+    LoadedRun,
+    RunList,
+    beginning_of,
+    load_reported_run,
+)
 from latentarm.web.server.sessions import Page, Sessions
 
 POLL_S: Final = 0.0025
@@ -80,7 +86,7 @@ class States:
         self.standstill: Notice | None = None
         self._run_list = run_list
         self._loading = False
-        self._failed: tuple[str | None, Notice] | None = None
+        self._failed: tuple[Beginning, Notice] | None = None
         self._changing: asyncio.Task[None] | None = None
         self._report: Report | None = None
         self._heard_s = time.monotonic()
@@ -175,7 +181,7 @@ class States:
         return f'{texts[new]},"you":{json.dumps(drives)}}}'
 
     def _take(self, report: Report) -> None:
-        """Keep a report; if it is about another run, load that run here first."""
+        """Keep a report; if it is about another run or beginning, load that here first."""
         if self._loaded.shows(report):
             moved = self._report is not None and _rounded(report.tool) != _rounded(self._report.tool)
             if moved and not self._moves:
@@ -186,7 +192,7 @@ class States:
             self._things = report.things or self._things
             self._loading = report.loading
             self._failed = None
-        elif self._changing is None and (self._failed is None or self._failed[0] != report.run):
+        elif self._changing is None and (self._failed is None or self._failed[0] != beginning_of(report)):
             self._failed = None
             self._loading = True
             self._changing = asyncio.create_task(self._change(report))
@@ -198,10 +204,10 @@ class States:
             self._report = report
             self._things = None
         except UserError as error:
-            self._failed = report.run, notice_of(error)
+            self._failed = beginning_of(report), notice_of(error)
         except Exception as error:  # noqa: BLE001 - otherwise pages would wait for ever
             self._failed = (
-                report.run,
+                beginning_of(report),
                 sentence(f"The run cannot be shown ({error!r}): choose another one."),
             )
         finally:
@@ -229,6 +235,7 @@ class States:
             bodies=self._bodies(report),
             tool=_rounded(report.tool),
             gripper=report.gripper and _shown_gripper(report.gripper),
+            task=report.task,
             things=self._things if things else None,
             ghosts=report.ghosts if ghosts else None,
             belief=tuple(round(share, 4) for share in report.belief) or None,

@@ -16,6 +16,12 @@ export interface BeginPersonalise {
   questions: number;
 }
 
+export interface BeginRun {
+  type: "begin_run";
+  choice?: number | null;
+  anew: boolean;
+}
+
 export interface CancelPersonalise {
   type: "cancel_personalise";
 }
@@ -191,6 +197,7 @@ export interface State {
   bodies: number[][];
   tool: [number, number, number];
   gripper: GripperState | null;
+  task: TaskState;
   things: Things | null;
   ghosts: Ghosts | null;
   belief: number[] | null;
@@ -205,6 +212,27 @@ export interface State {
   trail: number;
   late_share: number;
   you: boolean;
+}
+
+export interface StepToDo {
+  kind: "approached" | "reached" | "passed" | "holding" | "stabbed" | "above" | "poured" | "cut" | "scooped" | "dipped" | "stirred" | "placed";
+  thing: string;
+}
+
+export interface TaskState {
+  choice: number;
+  done: number;
+  outcome: "success" | "failure" | null;
+  why: Why | null;
+  time_s: number;
+}
+
+export interface TaskToDo {
+  name: string;
+  seed: number;
+  choices: string[];
+  choice: number;
+  steps: StepToDo[];
 }
 
 export interface Things {
@@ -252,8 +280,14 @@ export interface Welcome {
   end_effector_modes: string[];
   limits: Limits;
   gripper_width_m: number | null;
+  task: TaskToDo;
 }
 
-export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ResetArm | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment;
+export interface Why {
+  code: "dropped" | "knocked_over" | "spilled" | "pressed";
+  thing: string;
+}
+
+export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ResetArm | BeginRun | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment;
 
 export type ServerMessage = Welcome | State | LearningState | Refused;

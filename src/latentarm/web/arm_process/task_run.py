@@ -1,0 +1,150 @@
+"""One run of a task, as pages follow it: its steps tick off until it has succeeded or failed."""
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Final, final
+
+from latentarm.arms.contract import Arm, SceneArm
+from latentarm.kinematics.chain import Chain
+from latentarm.scene.scene import SceneState
+from latentarm.tasks.scene_task import Beginning, SceneTask
+from latentarm.tasks.steps import Failure, Progress, StepKind, TaskStep, Waypoint
+from latentarm.tasks.task import Task
+from latentarm.types import FloatArray, Pose
+from latentarm.web.protocol.channel import TaskState, Why
+
+_FEW: Final = 2
+"""Waypoints that a person can be told one by one; of a longer way only the end counts."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Todo:
+    """What is to be done in a run.
+
+    Attributes:
+        task: its name.
+        choices: what a person may choose to do, names of things or goals.
+        choice: index of what is done in this run.
+        steps: in order; empty where nothing counts as done.
+        failures: what ends the run.
+    """
+
+    task: str
+    choices: tuple[str, ...]
+    choice: int
+    steps: tuple[TaskStep, ...]
+    failures: tuple[Failure, ...] = ()
+
+
+def things_to_do(task: SceneTask, choice: int, begun: Beginning) -> Todo:
+    """What is to be done at a task with things.
+
+    Args:
+        task: the task.
+        choice: index into its choices.
+        begun: how the run begins.
+    """
+    return Todo(task.name, task.choices, choice, begun.steps, begun.failures)
+
+
+def goal_to_reach(task: Task, choice: int) -> Todo:
+    """What is to be done at a task without things: to bring the tool to a goal, as simulated drives do.
+
+    Args:
+        task: the task; its first manner counts.
+        choice: index of the goal.
+    """
+    names = tuple(goal.name for goal in task.goals)
+    if not names:
+        return Todo(task.name, (), choice, ())
+    waypoints = task.waypoints(choice, task.manners[0])
+    told = waypoints if len(waypoints) <= _FEW else waypoints[-1:]
+    kinds: tuple[StepKind, ...] = ("approached", "reached")
+    steps = [
+        _coming_to(task, kind, names[choice], waypoint)
+        for kind, waypoint in zip(kinds[-len(told) :], told, strict=True)
+    ]
+    return Todo(task.name, names, choice, tuple(steps))
+
+
+@final
+class TaskRun:
+    """Follows one run: from when the arm is enabled first until its outcome is known.
+
+    It sees how everything stands in every tick, as simulated drives do: what has been stirred adds up, and a
+    force is seen only once. That takes some 0.2 ms.
+
+    Args:
+        todo: what is to be done.
+        arm: tells where things are, where it knows of any.
+        chain: tells where the tool is.
+    """
+
+    def __init__(self, todo: Todo, arm: Arm, chain: Chain) -> None:
+        self._todo = todo
+        self._arm = arm if isinstance(arm, SceneArm) else None
+        self._chain = chain
+        self._progress = Progress(todo.steps, todo.failures)
+        self._began_s: float | None = None
+        self._time_s = 0.0
+
+    @property
+    def state(self) -> TaskState:
+        """How far it has come."""
+        failure = self._progress.failure
+        return TaskState(
+            choice=self._todo.choice,
+            done=self._progress.done,
+            outcome="failure" if failure else "success" if self._succeeded else None,
+            why=None if failure is None else Why(code=failure.kind, thing=failure.thing),
+            time_s=round(self._time_s, 2),
+        )
+
+    def see(self, time_s: float, q: FloatArray, *, enabled: bool) -> None:
+        """Take how things stand, in every tick.
+
+        Args:
+            time_s: the clock, s.
+            q: (n,), where the joints are, rad.
+            enabled: whether the arm may move.
+        """
+        if not self._todo.steps or self._progress.failure or self._succeeded:
+            return
+        if self._began_s is None:
+            if not enabled:
+                return
+            self._began_s = time_s
+        self._time_s = time_s - self._began_s
+        self._progress.update(self._scene_state(q))
+
+    @property
+    def _succeeded(self) -> bool:
+        return bool(self._todo.steps) and self._progress.succeeded
+
+    def _scene_state(self, q: FloatArray) -> SceneState:
+        return _alone(self._chain.forward(q), self._time_s) if self._arm is None else self._arm.scene_state()
+
+
+def _coming_to(task: Task, kind: StepKind, goal: str, waypoint: Pose) -> TaskStep:
+    done = partial(_reached, task=task, waypoint=waypoint)
+    return TaskStep(kind, goal, f"{kind} the {goal}", done, (Waypoint(lambda _: waypoint),))
+
+
+def _reached(state: SceneState, task: Task, waypoint: Pose) -> bool:
+    return task.reached(state.tool, waypoint)
+
+
+def _alone(tool: Pose, time_s: float) -> SceneState:
+    """How things stand where there are none."""
+    return SceneState(
+        time_s=time_s,
+        tool=tool,
+        poses={},
+        speed_m_s={},
+        stabbed=frozenset(),
+        gripped=frozenset(),
+        bonds=frozenset(),
+        grains={},
+        force_n={},
+    )
