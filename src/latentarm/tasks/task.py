@@ -51,7 +51,7 @@ class Task(ABC):
 
     @property
     def shown(self) -> Scene:
-        """What stands about the arm, to be drawn; it is never touched. Nothing, unless a task says otherwise."""
+        """What stands about the arm, to be drawn and never touched; a task says what."""
         return Scene()
 
     @abstractmethod

@@ -65,6 +65,28 @@ export class FakeElement extends EventTarget {
     this.dataset = {};
     this.textContent = "";
     this.hidden = false;
+    this.children = [];
+    this.attributes = new Map();
+  }
+
+  append(...children) {
+    this.children.push(...children);
+  }
+
+  replaceChildren(...children) {
+    this.children = children;
+  }
+
+  setAttribute(name, value) {
+    this.attributes.set(name, value);
+  }
+
+  getAttribute(name) {
+    return this.attributes.get(name) ?? null;
+  }
+
+  removeAttribute(name) {
+    this.attributes.delete(name);
   }
 
   matches(selector) {
@@ -107,7 +129,7 @@ export function newBrowser() {
   FakeSocket.all = [];
   const fakes = {
     window: new EventTarget(),
-    document: Object.assign(new EventTarget(), { hidden: false, getElementById: () => null }),
+    document: Object.assign(new EventTarget(), { hidden: false, getElementById: () => null, createElement: () => new FakeElement() }),
     localStorage: new FakeStorage(),
     location: { protocol: "https:", host: "arm.local" },
     WebSocket: FakeSocket,
@@ -139,7 +161,7 @@ export function key(type, code, fields = {}) {
 
 const STATE = {
   type: "state", nonce: "n", tick: 0, phase: "disengaged", note: null, reason: null, held_back: null, mode: "latent", axes: 0, profile: null, bodies: [], tool: [0, 0, 0],
-  gripper: null, things: null, ghosts: null, belief: null, alpha: 0, bound_m: null, driver: null, driver_name: null, watchers: 0, asking: null,
+  gripper: null, task: { choice: 0, done: 0, outcome: null, why: null, time_s: 0 }, things: null, ghosts: null, belief: null, alpha: 0, bound_m: null, driver: null, driver_name: null, watchers: 0, asking: null,
   asking_name: null, recording: null, trail: 0, late_share: 0, you: false,
 };
 
@@ -153,6 +175,7 @@ export function welcomeOf(fields = {}) {
   return {
     type: "welcome", version: 1, id: "me", dof: 7, latent_dim: 2, robot: "panda", run: "one", profiles: [],
     modes: ["latent", "assisted", "end_effector"], goals: [], end_effector_modes: ["x-y", "z-yaw", "roll-pitch"],
-    limits: { latch_max_s: 5 }, gripper_width_m: null, ...fields,
+    limits: { latch_max_s: 5 }, gripper_width_m: null, things: [],
+    task: { name: "reach", seed: 0, choices: [], choice: 0, steps: [] }, ...fields,
   };
 }

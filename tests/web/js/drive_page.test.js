@@ -3,13 +3,14 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
-import { isLikeliest } from "#pages/drive/belief.js";
 import { nextSteering } from "#pages/drive/modes.js";
 import { attachProfileChoice } from "#pages/drive/profile_choice.js";
 import { recordingWords } from "#pages/drive/recording.js";
+import { whereWords } from "#pages/drive/where_words.js";
 import { deflectionWords } from "#pages/inputs/stick.js";
 import { NO_PROFILE, Settings } from "#pages/settings/settings.js";
-import { motionWords, placeWords } from "#pages/views/directions.js";
+import { motionWords } from "#pages/views/directions.js";
+import { isLikeliest } from "#pages/views/likeliest.js";
 import { personalPaths } from "#pages/views/predictions.js";
 import { newBrowser, stateOf, welcomeOf } from "./browser.js";
 
@@ -67,10 +68,22 @@ test("a motion is named by its large parts, the largest first", () => {
   assert.equal(motionWords([0, 0, 0.004], "facing"), "hardly moves, or only turns");
 });
 
+const WHERE = { tool: [0.5, 0.1, 0.2], belief: null, things: null };
+const GOALS = [{ name: "tofu", position: [1, 0, 0] }, { name: "tea", position: [0.5, 0, 0.2] }];
+
 test("the tool's place is said from the table and from the nearest goal", () => {
-  const goals = [{ name: "tofu", position: [1, 0, 0] }, { name: "tea", position: [0.5, 0, 0.2] }];
-  assert.equal(placeWords([0.5, 0.1, 0.2], goals), "The tool is 20 cm up, 10 cm from tea.");
-  assert.equal(placeWords([0.5, 0.1, 0.2], []), "The tool is 20 cm up.");
+  assert.equal(whereWords({ goals: GOALS, things: [] }, WHERE), "The tool is 20 cm up, 10 cm from tea.");
+  assert.equal(whereWords({ goals: [], things: [] }, WHERE), "The tool is 20 cm up.");
+});
+
+test("what the robot thinks is meant is named with its distance, to where the food lies now", () => {
+  const state = { ...WHERE, belief: [0.98, 0.02] };
+  const things = [{ name: "dish", position: [0, 0, 0] }, { name: "tofu", position: [0.5, 0.1, 0.1] }];
+  const said = (centimetres) => `The tool is 20 cm up. The robot thinks you want: tofu, ${centimetres} cm away.`;
+  assert.equal(whereWords({ goals: GOALS, things: [] }, state), said(55));
+  assert.equal(whereWords({ goals: GOALS, things }, state), said(10));
+  const moved = { grains: [], poses: [[0, 0, 0, 1, 0, 0, 0], [0.5, 0.4, 0.2, 1, 0, 0, 0]] };
+  assert.equal(whereWords({ goals: GOALS, things }, { ...state, things: moved }), said(30));
 });
 
 const GHOSTS = {

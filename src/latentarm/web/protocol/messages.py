@@ -188,6 +188,14 @@ class NamedGoal(Message):
 
 
 @final
+class NamedThing(Message):
+    """A thing about the arm: its name and where it is in the beginning, m."""
+
+    name: str
+    position: Point
+
+
+@final
 class Limits(Message):
     """Limits that a page must know."""
 
@@ -239,6 +247,7 @@ class Welcome(Message):
         profiles: people whose alignment can be chosen.
         modes: how the arm can be steered.
         goals: in the order of the belief.
+        things: what stands about the arm, in the order of `State.things`.
         end_effector_modes: names of the pairs of axes.
         limits: see `Limits`.
         gripper_width_m: how wide its gripper opens, m, or null where it has none that can be driven.
@@ -255,6 +264,7 @@ class Welcome(Message):
     profiles: tuple[str, ...]
     modes: tuple[ModeName, ...]
     goals: tuple[NamedGoal, ...]
+    things: tuple[NamedThing, ...]
     end_effector_modes: tuple[str, ...]
     limits: Limits
     gripper_width_m: float | None

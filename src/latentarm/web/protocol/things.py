@@ -26,8 +26,8 @@ def described(scene: Scene) -> dict[str, object]:
 
     Returns:
         ``things``, each with its name, its ``pose`` at first, whether it is ``fixed`` there, and ``geoms``
-        like those of the robot's bodies; and ``grains``, each kind with its name, ``radius`` (m), ``rgba`` and
-        first ``positions`` (m).
+        like those of the robot's bodies; and ``grains``, each kind with its name, ``radius`` (m), ``rgba``
+        and first ``positions`` (m).
     """
     first = _rows([thing.pose for thing in scene.things])
     return {

@@ -10,7 +10,7 @@ from latentarm.alignment.profile import profile_names
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.channel import Report
-from latentarm.web.protocol.messages import Limits, NamedGoal, StepToDo, TaskToDo, Welcome
+from latentarm.web.protocol.messages import Limits, NamedGoal, NamedThing, StepToDo, TaskToDo, Welcome
 from latentarm.web.protocol.scene import drawable
 
 Beginning = tuple[str | None, int, int]
@@ -73,6 +73,10 @@ class LoadedRun:
             goals=tuple(
                 NamedGoal(name=goal.name, position=tuple(goal.pose.position.tolist()))
                 for goal in setup.task.goals
+            ),
+            things=tuple(
+                NamedThing(name=thing.name, position=tuple(thing.pose.position.tolist()))
+                for thing in (() if setup.shown is None else setup.shown.things)
             ),
             end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),

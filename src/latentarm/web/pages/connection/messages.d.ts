@@ -97,6 +97,11 @@ export interface NamedGoal {
   position: [number, number, number];
 }
 
+export interface NamedThing {
+  name: string;
+  position: [number, number, number];
+}
+
 export interface Notice {
   code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "checking_run" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "handed_over" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "one_axis_weak" | "page_refused" | "profile_exists" | "question_began" | "recording_ended" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "work_broke_off";
   parameters: Record<string, string | number>;
@@ -277,6 +282,7 @@ export interface Welcome {
   profiles: string[];
   modes: ("latent" | "assisted" | "end_effector")[];
   goals: NamedGoal[];
+  things: NamedThing[];
   end_effector_modes: string[];
   limits: Limits;
   gripper_width_m: number | null;

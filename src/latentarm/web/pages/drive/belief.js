@@ -1,17 +1,10 @@
 /** The belief over goals as labelled bars, and how much the robot helps. */
 
 import { create, fillBar } from "../layout/dom.js";
+import { thingWords } from "../layout/thing_words.js";
 import { sayPercent } from "../layout/words.js";
-
-/** A goal is called the likeliest where its share is so many times that of a belief which prefers none. */
-const CLEARLY = 1.2;
-
-/** Whether a goal is what the robot takes to be meant. @param {number[] | null} belief @param {number} index */
-export function isLikeliest(belief, index) {
-  if (belief === null || belief.length < 2) return false;
-  const most = Math.max(...belief);
-  return belief[index] === most && most > CLEARLY / belief.length;
-}
+import { isLikeliest } from "../views/likeliest.js";
+import { colourOf, symbolOf } from "../views/symbols.js";
 
 /**
  * @param {{list: HTMLElement, none: HTMLElement, alpha: HTMLElement, alphaText: HTMLElement, level: HTMLElement}} parts
@@ -24,7 +17,7 @@ export function attachBelief(parts) {
     /** @param {{name: string}[]} goals */
     name(goals) {
       rows = goals.map(({ name }, index) => {
-        const label = create("span", { textContent: name, id: `goal-${index}` });
+        const label = create("span", { textContent: `${symbolOf(index)} ${thingWords(name)}`, id: `goal-${index}` });
         const bar = create("span", { className: "bar" });
         bar.setAttribute("role", "meter");
         bar.setAttribute("aria-labelledby", label.id);
@@ -32,6 +25,7 @@ export function attachBelief(parts) {
         bar.append(create("span", { className: "bar-fill" }));
         const value = create("span", { className: "bar-value" });
         const item = create("li");
+        label.dataset.thing = String(colourOf(index));
         item.append(label, bar, value);
         return { item, bar, value };
       });

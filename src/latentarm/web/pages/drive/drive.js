@@ -14,13 +14,18 @@ import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
 import { attachTrialBanner } from "../personalise/trial.js";
 import { attachViews } from "../views/attach_views.js";
-import { motionWords, placeWords } from "../views/directions.js";
+import { motionWords } from "../views/directions.js";
 import { attachPredictions, personalPaths } from "../views/predictions.js";
 import { attachBelief } from "./belief.js";
 import { attachModes } from "./modes.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
+import { attachSounds } from "./sounds.js";
+import { attachTask } from "./task_panel.js";
+import { wantedThing } from "./task_words.js";
+import { whereWords } from "./where_words.js";
 
+/** @import {Welcome} from "../connection/messages.js" */
 /** @import {Drawing} from "../views/drawing.js" */
 
 /** Words next to the views change no more often than this, ms. */
@@ -55,6 +60,13 @@ attachRecording({
   teach: byId("record-teach"),
 }, connection);
 
+const sounds = attachSounds(settings);
+const task = attachTask({
+  panel: byId("task"), steps: byId("task-steps"), said: byId("task-said"), time: byId("task-time"), why: byId("task-why"),
+  chooser: byId("task-chooser"), choice: byId("task-choice", HTMLSelectElement),
+  next: byId("task-next", HTMLButtonElement), again: byId("task-again", HTMLButtonElement),
+}, connection, (outcome) => sounds.play(outcome));
+
 const gripper = attachGripper({
   panel: byId("gripper"),
   open: byId("gripper-open", HTMLButtonElement),
@@ -71,7 +83,7 @@ const scanner = attachScanning({
 }, input, settings, () => {
   const mode = { id: "mode", label: say("scanning.other_mode"), act: modes.next };
   return input.live ? [...directionChoices(), ...gripper.choices(), mode, { id: "stop", label: say("layout.stop"), act: stop }]
-    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode];
+    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices()];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, {
@@ -95,12 +107,12 @@ function show() {
   if (!state || !welcome) return;
   const { pressed } = input;
   const paths = personalPaths(state.ghosts, state.tool, shaped);
-  drawing?.show(state, paths, pressed, settings.values);
+  drawing?.show(state, paths, pressed, settings.values, wantedThing(welcome, state));
   belief.show(state.belief, state.alpha);
   if (performance.now() - wordsAt < WORDS_MS) return;
   wordsAt = performance.now();
   predictions.show(paths, pressed, (motion) => motionWords(motion, settings.values.seat));
-  setText(byId("scene-text"), placeWords(state.tool, welcome.goals));
+  setText(byId("scene-text"), whereWords(welcome, state));
   byId("bound-text").hidden = !settings.values.showBound || state.bound_m === null;
   if (state.bound_m !== null) setText(byId("bound-text"), say("drive.bound", { centimetres: Math.round(100 * state.bound_m) }));
   byId("reset", HTMLButtonElement).disabled = connection.engaged;
@@ -115,7 +127,15 @@ function showSettings() {
 settings.addEventListener("change", showSettings);
 showSettings();
 
-connection.addEventListener("welcome", () => belief.name(connection.welcome?.goals ?? []));
+let placed = "";
+connection.addEventListener("welcome", () => {
+  const { goals, task: todo } = /** @type {Welcome} */ (connection.welcome);
+  belief.name(goals);
+  const now = JSON.stringify([todo.name, todo.seed, todo.choice]);
+  // What stands about the arm is drawn anew where it was placed anew.
+  if (placed && placed !== now) void drawing?.renew();
+  placed = now;
+});
 let trail = 0;
 connection.addEventListener("state", () => {
   if (connection.state && connection.state.trail !== trail) {

@@ -3,7 +3,7 @@
 import { setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
-/** @import {PersonInput} from "./deflection.js" */
+/** @import {Direction, PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -121,14 +121,12 @@ function draw(element) {
   const knob = part("g", {});
   knob.append(part("circle", { class: "knob", r: 31 }));
   svg.append(dead, arm);
-  for (const [text, x, y] of /** @type {[string, number, number][]} */ ([
-    [say("directions.up"), 0, 5 - REACH - 14], [say("directions.down"), 0, REACH + 22],
-  ])) {
-    svg.append(part("text", { x, y, "text-anchor": "middle" }, text));
+  for (const [name, y] of /** @type {[Direction, number][]} */ ([["up", 5 - REACH - 14], ["down", REACH + 22]])) {
+    svg.append(part("text", { x: 0, y, "text-anchor": "middle", "data-ghost": name }, say(`directions.${name}`)));
   }
-  for (const [text, side] of /** @type {[string, number][]} */ ([[say("directions.left"), -1], [say("directions.right"), 1]])) {
-    const x = side * (REACH + 17);
-    svg.append(part("text", { x, y: 5, "text-anchor": "middle", transform: `rotate(${side * 90} ${x} 0)` }, text));
+  for (const [name, side] of /** @type {[Direction, number][]} */ ([["left", -1], ["right", 1]])) {
+    const turn = { x: side * (REACH + 17), y: 5, transform: `rotate(${side * 90} ${side * (REACH + 17)} 0)` };
+    svg.append(part("text", { ...turn, "text-anchor": "middle", "data-ghost": name }, say(`directions.${name}`)));
   }
   const mark = part("g", { class: "mark", visibility: "hidden" });
   mark.append(part("circle", { class: "mark-edge", r: 13 }), part("circle", { class: "mark-dot", r: 8 }));

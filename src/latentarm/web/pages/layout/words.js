@@ -40,6 +40,11 @@ export function say(key, parameters = {}) {
   return text.replace(/\{(\w+)\}/g, (_, name) => String(parameters[name]));
 }
 
+/** Whether the catalogue has a text. @param {string} key */
+export function knows(key) {
+  return Object.hasOwn(catalogue, key);
+}
+
 /**
  * What the server tells people: a code with its parameters.
  *

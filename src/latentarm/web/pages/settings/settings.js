@@ -23,6 +23,7 @@ import * as storage from "./storage.js";
  * @property {boolean} showGhosts
  * @property {boolean} showTrail
  * @property {boolean} showBound
+ * @property {boolean} sounds whether the end of a task is heard
  * @property {"auto" | "light" | "dark"} theme
  */
 
@@ -47,6 +48,7 @@ export const DEFAULTS = Object.freeze({
   showGhosts: true,
   showTrail: true,
   showBound: false,
+  sounds: true,
   theme: "auto",
 });
 

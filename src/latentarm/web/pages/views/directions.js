@@ -1,8 +1,7 @@
-/** Directions and places in the words of the person, who sits facing the arm or behind it. */
+/** Directions in the words of the person, who sits facing the arm or behind it. */
 
 import { say } from "../layout/words.js";
 
-/** @import {NamedGoal} from "../connection/messages.js" */
 /** @import {Values} from "../settings/settings.js" */
 
 const LEAST_M = 0.01;
@@ -25,17 +24,4 @@ export function motionWords(motion, seat) {
   ].sort((a, b) => b.size - a.size);
   const named = parts.filter(({ size }) => size >= NAMED_SHARE * parts[0].size).map(({ word }) => word);
   return say("motion.length", { directions: named.join(", "), centimetres: Math.round(length * 100) });
-}
-
-/**
- * @param {number[]} tool m
- * @param {NamedGoal[]} goals
- */
-export function placeWords(tool, goals) {
-  const height = Math.round(tool[2] * 100);
-  const [nearest] = goals
-    .map(({ name, position }) => ({ name, away: Math.hypot(...position.map((at, axis) => at - tool[axis])) }))
-    .sort((a, b) => a.away - b.away);
-  if (!nearest) return say("place.height", { height });
-  return say("place.near", { height, away: Math.round(nearest.away * 100), name: nearest.name });
 }

@@ -1,10 +1,13 @@
 /** All that is drawn in three dimensions: the arm in two views, with goals, ghosts, trail and labels. */
 
 import { THREE } from "../three/index.js";
-import { sayPercent } from "../layout/words.js";
+import { thingWords } from "../layout/thing_words.js";
+import { say, sayPercent } from "../layout/words.js";
 import { Ghosts } from "./ghosts.js";
 import { Labels } from "./labels.js";
+import { isLikeliest } from "./likeliest.js";
 import { ArmScene } from "./scene.js";
+import { colourOf, symbolOf } from "./symbols.js";
 import { ToolPaths } from "./tool_paths.js";
 import { Views } from "./views.js";
 
@@ -12,6 +15,10 @@ import { Views } from "./views.js";
 /** @import {Direction} from "../inputs/deflection.js" */
 /** @import {Values} from "../settings/settings.js" */
 /** @import {Paths} from "./predictions.js" */
+
+/** Arrows fade between these distances from what is wanted, m, to this share. */
+const FADE_M = [0.05, 0.14];
+const FADED = 0.2;
 
 export class Drawing {
   /**
@@ -50,11 +57,12 @@ export class Drawing {
    * @param {Paths} paths
    * @param {Direction[]} pressed
    * @param {Values} wanted
+   * @param {string | null} [thing] what the task is about now
    */
-  show(state, paths, pressed, wanted) {
+  show(state, paths, pressed, wanted, thing = null) {
     // An arm at rest needs no new frame; a press or a new belief none that would be in the way of its motion.
     const pose = JSON.stringify([state.bodies, state.gripper?.width_m]);
-    const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted]);
+    const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted, thing]);
     const moved = pose !== this._pose || state.things !== this._things;
     if (!moved && around === this._around) return;
     this._pose = pose;
@@ -64,11 +72,13 @@ export class Drawing {
     this._scene.take(state, this._views.smooth && !this._still.matches);
     this._scene.markers.believe(state.belief);
     const likeliest = state.belief ? state.belief.indexOf(Math.max(...state.belief)) : -1;
+    const tool = new THREE.Vector3(...state.tool);
     this._scene.markers.bound(wanted.showBound ? state.bound_m : null, likeliest);
     this._scene.showTrail(wanted.showTrail);
     this._scene.markTool(true);
-    this._nameGoals(state.belief);
-    this._ghosts.show(paths, pressed, wanted.showGhosts);
+    this._nameGoals(state.belief, tool, thing);
+    this._nameThing(thing, tool);
+    this._ghosts.show(paths, pressed, wanted.showGhosts, this._clearOf(tool, thing));
     this._lookFrom(wanted.seat);
     if (moved) this._views.invalidate();
     else this._views.invalidateSoon();
@@ -87,9 +97,19 @@ export class Drawing {
     this._scene.take({ bodies, tool: this._scene.tool.toArray() }, false);
     this._scene.markers.believe(null);
     this._scene.markers.bound(null, -1);
-    this._nameGoals(null, false);
+    this._nameGoals(null, null, null);
+    this._nameThing(null, null);
     this._lookFrom(seat);
     this._views.invalidate();
+  }
+
+  /** Things were placed anew: draw them where they stand now. */
+  async renew() {
+    this._nameGoals(null, null, null);
+    await this._scene.renew();
+    this._pose = "";
+    this._scene.trail.clear();
+    this._views.forget();
   }
 
   /** A second arm that can be seen through, or none. @param {number[][] | null} bodies */
@@ -116,12 +136,36 @@ export class Drawing {
     this._views.invalidate();
   }
 
-  /** @param {number[] | null} belief @param {boolean} [shown] */
-  _nameGoals(belief, shown = true) {
-    this._scene.goals.forEach((goal, index) => {
-      const share = belief ? sayPercent(belief[index]) : undefined;
-      this._labels.set(`goal-${index}`, new THREE.Vector3(...goal.position), goal.name, { share, shown });
+  /**
+   * @param {number[] | null} belief
+   * @param {THREE.Vector3 | null} tool null for no names
+   * @param {string | null} thing what the task is about: its distance is told, like that of the likeliest goal
+   */
+  _nameGoals(belief, tool, thing) {
+    this._scene.goals.forEach(({ name }, index) => {
+      const place = this._scene.markers.placeOf(index);
+      const told = tool !== null && (name === thing || isLikeliest(belief, index));
+      const shares = [...(belief ? [sayPercent(belief[index])] : []), ...(told ? [away(tool, place)] : [])];
+      const look = { shown: tool !== null, share: shares.join(" · ") || undefined, thing: colourOf(index) };
+      this._labels.set(`goal-${index}`, place, `${symbolOf(index)} ${thingWords(name)}`, look);
     });
+  }
+
+  /** What the task is about now, where it is no goal, which has a name of its own. @param {string | null} name @param {THREE.Vector3 | null} tool */
+  _nameThing(name, tool) {
+    const known = name === null || this._scene.goals.some((goal) => goal.name === name);
+    const place = known || name === null ? null : this._scene.things.placeOf(name);
+    const share = place && tool ? away(tool, place) : undefined;
+    this._labels.set("wanted", place, place && name ? thingWords(name) : "", { shown: place !== null, share });
+  }
+
+  /** How much of the arrows is to be seen with the tool there. @param {THREE.Vector3} tool @param {string | null} thing */
+  _clearOf(tool, thing) {
+    const places = this._scene.goals.map((_, index) => this._scene.markers.placeOf(index));
+    const wanted = thing === null ? null : this._scene.things.placeOf(thing);
+    const nearest = Math.min(...[...places, ...(wanted ? [wanted] : [])].map((place) => place.distanceTo(tool)));
+    const [faded, clear] = FADE_M;
+    return FADED + (1 - FADED) * Math.min(Math.max((nearest - faded) / (clear - faded), 0), 1);
   }
 
   /** @param {Values["seat"]} seat */
@@ -132,4 +176,9 @@ export class Drawing {
     this._scene.advance(performance.now());
     this._views.layOut();
   }
+}
+
+/** How far it is from one to the other, in words. @param {THREE.Vector3} from @param {THREE.Vector3} to */
+function away(from, to) {
+  return say("place.away", { centimetres: Math.round(100 * from.distanceTo(to)) });
 }

@@ -15,6 +15,8 @@ const THICK_M = 0.006;
 /** A path shorter than this, m, is not drawn. */
 const SHORT_M = 0.006;
 const BEADS = 9;
+const CLEAR = 0.95;
+const STEPPED_BACK = 0.3;
 
 export class Ghosts {
   /**
@@ -36,17 +38,19 @@ export class Ghosts {
    * @param {Paths} paths for the person's own directions
    * @param {Direction[]} pressed the directions that are pressed now; the others step back
    * @param {boolean} shown
+   * @param {number} share how much of them is to be seen, in [0, 1]: near what is wanted they would cover it
    */
-  show(paths, pressed, shown) {
+  show(paths, pressed, shown, share) {
     for (const ghost of this._ghosts) {
       const path = paths[ghost.direction];
       const visible = shown && path !== null && lengthOf(path) > SHORT_M;
       ghost.body.visible = visible && isUpright(ghost.direction);
       ghost.beads.visible = visible && !isUpright(ghost.direction);
       ghost.head.visible = visible;
-      ghost.material.opacity = pressed.length === 0 || pressed.includes(ghost.direction) ? 0.95 : 0.3;
+      const clear = pressed.length === 0 || pressed.includes(ghost.direction);
+      ghost.material.opacity = share * (clear ? CLEAR : STEPPED_BACK);
       this._labels.set(`ghost-${ghost.direction}`, visible ? this._lay(ghost, path) : null,
-        MARKS[ghost.direction], { shown: visible, ghost: ghost.direction });
+        MARKS[ghost.direction], { shown: visible, ghost: ghost.direction, opacity: share });
     }
   }
 

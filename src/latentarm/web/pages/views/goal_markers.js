@@ -1,44 +1,65 @@
-/** The goals: a spot each, a ring as large as the robot's belief in it, and the ball that help holds the arm in. */
+/**
+ * The goals. About each thing that may be meant there is a ring, as large as the robot's belief in it; a dashed ring
+ * over it is where the tool is to come to. Each goal has a shape and a colour of its own.
+ */
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
+import { Dashes } from "./dashes.js";
+import { colourOf, shapeOf } from "./symbols.js";
 
 /** @import {Goal} from "./scene_description.js" */
 
+const HOVER_M = 0.024;
+const HOVER_DASHES = 8;
+const LINE_DASHES = 32;
+
 export class GoalMarkers {
-  /** @param {Goal[]} goals */
-  constructor(goals) {
+  /**
+   * @param {Goal[]} goals
+   * @param {(goal: Goal) => THREE.Vector3 | null} placeOf where the goal's thing is now; null for a place alone
+   * @param {number} tableHeight m
+   */
+  constructor(goals, placeOf, tableHeight) {
     this._goals = goals;
-    this._spots = goals.map((goal) => {
-      const spot = new THREE.Mesh(new THREE.SphereGeometry(0.016, 16, 12), new THREE.MeshLambertMaterial());
-      spot.position.set(...goal.position);
-      return spot;
-    });
-    this._rings = goals.map((goal) => {
-      const ring = new THREE.Mesh(new THREE.TorusGeometry(1, 0.07, 5, 36), new THREE.MeshBasicMaterial({ transparent: true }));
-      ring.position.set(...goal.position);
-      // Faces whichever view is being drawn.
-      ring.onBeforeRender = (_renderer, _scene, camera) => {
-        ring.quaternion.copy(camera.quaternion);
-        ring.updateMatrixWorld(true);
-      };
-      return ring;
+    this._placeOf = placeOf;
+    this._materials = goals.map(() => new THREE.MeshBasicMaterial());
+    this._rings = goals.map((goal, index) => ring(index));
+    const dashes = goals.map((goal, index) => {
+      const made = new Dashes(this._materials[index], HOVER_DASHES + LINE_DASHES);
+      const hover = new THREE.Vector3(...goal.position);
+      made.ring(hover, HOVER_M, HOVER_DASHES);
+      made.line(hover, new THREE.Vector3(hover.x, hover.y, tableHeight));
+      return made.object;
     });
     this._ball = new THREE.Mesh(
       new THREE.SphereGeometry(1, 24, 16),
       new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.18, depthWrite: false, side: THREE.DoubleSide }),
     );
     this._ball.visible = false;
-    this.objects = [...this._spots, ...this._rings, this._ball];
+    this.objects = [...this._rings, ...dashes, this._ball];
+    this.follow();
+    this.repaint();
+  }
+
+  /** Where a goal is marked, m: at its thing. @param {number} index */
+  placeOf(index) {
+    const goal = this._goals[index];
+    return this._placeOf(goal) ?? new THREE.Vector3(...goal.position);
+  }
+
+  /** Go where the things have gone. */
+  follow() {
+    this._rings.forEach((one, index) => one.position.copy(this.placeOf(index)));
   }
 
   /** How sure the robot is of each goal: the size of its ring. @param {number[] | null} belief */
   believe(belief) {
-    this._rings.forEach((ring, index) => {
+    this._rings.forEach((one, index) => {
       const share = belief?.[index] ?? 0;
-      ring.visible = belief !== null;
-      ring.scale.setScalar(0.03 + 0.06 * share);
-      ring.material.opacity = 0.45 + 0.55 * share;
+      one.visible = belief !== null;
+      one.scale.setScalar(0.03 + 0.05 * share);
+      one.material.opacity = 0.5 + 0.5 * share;
     });
   }
 
@@ -52,7 +73,19 @@ export class GoalMarkers {
 
   repaint() {
     this._ball.material.color.set(colour("ring"));
-    for (const ring of this._rings) ring.material.color.set(colour("ring"));
-    for (const spot of this._spots) spot.material.color.set(colour("food"));
+    this._rings.forEach((one, index) => one.material.color.set(colour(`thing-${colourOf(index)}`)));
+    this._materials.forEach((one, index) => one.color.set(colour(`thing-${colourOf(index)}`)));
   }
+}
+
+/** A ring of a goal's shape, which faces whichever view is being drawn. @param {number} index */
+function ring(index) {
+  const { corners, turn } = shapeOf(index);
+  const made = new THREE.Mesh(new THREE.TorusGeometry(1, 0.08, 4, corners), new THREE.MeshBasicMaterial({ transparent: true }));
+  const turned = new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), turn);
+  made.onBeforeRender = (_renderer, _scene, camera) => {
+    made.quaternion.copy(camera.quaternion).multiply(turned);
+    made.updateMatrixWorld(true);
+  };
+  return made;
 }

@@ -19,15 +19,16 @@ export class Labels {
    * @param {string} key
    * @param {THREE.Vector3 | null} point
    * @param {string} text
-   * @param {{shown?: boolean, ghost?: string, share?: string}} [look] a share is left out where there is little room
+   * @param {{shown?: boolean, ghost?: string, thing?: number, share?: string, opacity?: number}} [look] a share is left out where there is little room
    */
-  set(key, point, text, { shown = true, ghost, share } = {}) {
+  set(key, point, text, { shown = true, ghost, thing, share, opacity = 1 } = {}) {
     let label = this._all.get(key);
     if (!label) {
       const elements = this._views.views.map((view) => {
         const element = document.createElement("span");
         element.className = ghost ? "label ghost" : "label";
         if (ghost) element.dataset.ghost = ghost;
+        if (thing) element.dataset.thing = String(thing);
         view.labels.append(element);
         return element;
       });
@@ -36,6 +37,7 @@ export class Labels {
     }
     label.point = point?.clone() ?? null;
     label.shown = shown && point !== null;
+    for (const { style } of label.elements) style.opacity = String(opacity);
     const [first] = label.elements;
     if (first.textContent === text && first.dataset.share === share) return;
     for (const element of label.elements) {

@@ -21,13 +21,12 @@ export class ArmScene {
   /** @param {SceneDescription} description @param {Meshes} meshes */
   constructor(description, meshes) {
     this.scene = new THREE.Scene();
-    this.goals = description.goals;
+    this._meshes = meshes;
     /** Where the tool is shown, m. */
     this.tool = new THREE.Vector3();
     this.trail = new Trail();
-    this.markers = new GoalMarkers(description.goals);
     this._table = new Table(description.obstacles);
-    this._marker = new ToolMarker(this._table.height);
+    this._marker = new ToolMarker();
     this._bodies = description.bodies.map(({ geoms }) => groupOf(geoms, meshes));
     this._fingers = description.fingers.map(({ body, opens, at, geoms }) => {
       const finger = { group: groupOf(geoms, meshes), opens: new THREE.Vector3(...opens) };
@@ -35,7 +34,9 @@ export class ArmScene {
       this._bodies[body].add(finger.group);
       return finger;
     });
-    this._things = new Things(description.things, description.grains, meshes);
+    this.goals = description.goals;
+    this.things = this._thingsOf(description);
+    this.markers = this._markersOf(description);
     this._shadowMaterial = new THREE.MeshLambertMaterial({
       // Behind what it coincides with.
       transparent: true, opacity: 0.4, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
@@ -54,14 +55,13 @@ export class ArmScene {
     const sun = new THREE.DirectionalLight(0xffffff, 1.7);
     sun.position.set(0.6, -0.8, 1.6);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8a98a0, 2.1), sun);
-    this.scene.add(...this._bodies, ...this._things.objects, ...this._table.objects, this._marker.object, ...this.markers.objects, this.trail.object);
+    this.scene.add(...this._bodies, ...this.things.objects, ...this._table.objects, this._marker.object, ...this.markers.objects, this.trail.object);
     this.repaint();
   }
 
   /** Fetch the description and its meshes. @returns {Promise<ArmScene>} */
   static async load() {
-    /** @type {SceneDescription} */
-    const description = await (await fetch("/scene.json")).json();
+    const description = await describe();
     const numbers = new Set(description.bodies.flatMap((body) => body.geoms).map((geom) => geom.mesh));
     numbers.delete(null);
     /** @type {Meshes} */
@@ -70,6 +70,26 @@ export class ArmScene {
       meshes.set(number, meshGeometry(await (await fetch(`/mesh/${number}`)).arrayBuffer()));
     }));
     return new ArmScene(description, meshes);
+  }
+
+  /** Things have been placed anew, and goals are elsewhere: fetch where. */
+  async renew() {
+    const description = await describe();
+    this.scene.remove(...this.things.objects, ...this.markers.objects);
+    this.goals = description.goals;
+    this.things = this._thingsOf(description);
+    this.markers = this._markersOf(description);
+    this.scene.add(...this.things.objects, ...this.markers.objects);
+  }
+
+  /** @param {SceneDescription} description */
+  _thingsOf({ things, grains }) {
+    return new Things(things, grains, this._meshes);
+  }
+
+  /** @param {SceneDescription} description */
+  _markersOf({ goals }) {
+    return new GoalMarkers(goals, ({ name }) => this.things.placeOf(name), this._table.height);
   }
 
   /**
@@ -90,7 +110,7 @@ export class ArmScene {
     this._began = now - FRAME_MS;
     this._to = state.bodies;
     if (state.gripper) this._spread(state.gripper.width_m);
-    this._things.take(state.things ?? null);
+    this.things.take(state.things ?? null);
     this.trail.extend(this._toolTo);
   }
 
@@ -107,9 +127,10 @@ export class ArmScene {
       body.position.lerpVectors(from.position, body.position, share);
       body.quaternion.slerpQuaternions(from.quaternion, body.quaternion.clone(), share);
     });
-    this._things.advance(share);
+    this.things.advance(share);
+    this.markers.follow();
     this.tool.lerpVectors(this._toolFrom, this._toolTo, share);
-    this._marker.moveTo(this.tool);
+    this._marker.moveTo(this.tool, this.things.heightUnder(this.tool, this._table.height));
     return share < 1;
   }
 
@@ -154,6 +175,11 @@ export class ArmScene {
   /** Points that a view must hold. */
   extent() {
     const goals = this.goals.map((goal) => new THREE.Vector3(...goal.position));
-    return [...this._bodies.map((body) => body.position.clone()), ...this._things.extent, ...goals, this.tool.clone()];
+    return [...this._bodies.map((body) => body.position.clone()), ...this.things.extent, ...goals, this.tool.clone()];
   }
+}
+
+/** What there is to draw, as the server has it now. @returns {Promise<SceneDescription>} */
+async function describe() {
+  return (await fetch("/scene.json", { cache: "no-store" })).json();
 }

@@ -37,6 +37,8 @@ export interface Thing {
   name: string;
   /** At first: x, y, z and a quaternion. */
   pose: [number, number, number, number, number, number, number];
+  /** Whether it stands where it is. */
+  fixed: boolean;
   geoms: Geom[];
 }
 

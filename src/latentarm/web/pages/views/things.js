@@ -23,13 +23,27 @@ export class Things {
       return balls;
     });
     this.objects = [...this._things, ...this._grains];
+    this._names = things.map(({ name }) => name);
     const boxes = this._things.map((thing) => new THREE.Box3().setFromObject(thing));
     /** Corners of what there is at first: a thing that falls off the table does not take the view along. */
     this.extent = boxes.flatMap(({ min, max }) => [min, max]);
+    /** What stands where it is. */
+    this._standing = boxes.filter((_, index) => things[index].fixed);
     /** @type {{position: THREE.Vector3, quaternion: THREE.Quaternion}[]} */
     this._from = [];
     /** @type {State["things"]} */
     this._to = null;
+  }
+
+  /** Where a thing is shown now, m; null where there is none of that name. @param {string} name */
+  placeOf(name) {
+    return this._things[this._names.indexOf(name)]?.position ?? null;
+  }
+
+  /** How high what stands under a point is, m; the table where nothing does. @param {THREE.Vector3} point @param {number} table m */
+  heightUnder({ x, y, z }, table) {
+    const under = this._standing.filter(({ min, max }) => min.x < x && x < max.x && min.y < y && y < max.y && max.z < z);
+    return Math.max(table, ...under.map(({ max }) => max.z));
   }
 
   /** Where things go from what is shown now; null for no news. @param {State["things"]} things */

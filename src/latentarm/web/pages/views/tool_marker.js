@@ -1,12 +1,10 @@
-/** The tool as a dot, with a plumb line down to the table. */
+/** The tool as a dot, with a plumb line down to the table or to what stands under it. */
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
 
 export class ToolMarker {
-  /** @param {number} tableHeight m */
-  constructor(tableHeight) {
-    this._height = tableHeight;
+  constructor() {
     this._dot = new THREE.Mesh(new THREE.SphereGeometry(0.014, 16, 12), new THREE.MeshBasicMaterial());
     const line = new THREE.CylinderGeometry(0.0022, 0.0022, 1, 6).rotateX(Math.PI / 2).translate(0, 0, 0.5);
     this._plumb = new THREE.Mesh(line, new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.55 }));
@@ -14,12 +12,12 @@ export class ToolMarker {
     this.object = new THREE.Group().add(this._dot, this._plumb, this._foot);
   }
 
-  /** @param {THREE.Vector3} tool m */
-  moveTo(tool) {
+  /** @param {THREE.Vector3} tool m @param {number} height of what is under it, m */
+  moveTo(tool, height) {
     this._dot.position.copy(tool);
-    this._plumb.position.set(tool.x, tool.y, this._height);
-    this._plumb.scale.z = Math.max(tool.z - this._height, 1e-3);
-    this._foot.position.set(tool.x, tool.y, this._height + 0.002);
+    this._plumb.position.set(tool.x, tool.y, height);
+    this._plumb.scale.z = Math.max(tool.z - height, 1e-3);
+    this._foot.position.set(tool.x, tool.y, height + 0.002);
   }
 
   repaint() {

@@ -8,6 +8,8 @@ const MARGIN_M = 0.13;
 /** So many more frames that had to wait than frames that were drawn, and the drawing gets coarser. */
 const MOST_HELD = 40;
 const COARSEST = 0.5;
+/** So far out, as a share of half a view, the tool is about to leave it. */
+const EDGE = 0.92;
 /** Without a graphics processor, pixels are dear from the start. */
 const SOFTWARE_SHARE = 0.7;
 
@@ -58,6 +60,8 @@ export class Views {
       camera: new THREE.PerspectiveCamera(FOV_DEG, 1, 0.05, 20),
     }));
     for (const view of this.views) view.camera.up.set(0, 0, 1);
+    /** @type {THREE.Vector3[]} Where the tool was when it would have left a view, m: cameras hold these too. */
+    this._reached = [];
     /** @type {(() => void)[]} Called before each frame, to move labels. */
     this.beforeFrame = [];
     /** @type {(() => void)[]} Called after each frame. */
@@ -76,6 +80,12 @@ export class Views {
   invalidateSoon() {
     if (this.smooth) this.invalidate();
     else this._soon ??= setTimeout(() => this.invalidate(), SOON_MS);
+  }
+
+  /** The tool is somewhere else altogether: forget where it has been. */
+  forget() {
+    this._reached = [];
+    this.layOut();
   }
 
   /** Fit the canvas and the cameras to the page. */
@@ -104,7 +114,7 @@ export class Views {
 
   /** Turn both cameras to the scene, as near as holds all of it. */
   _aim() {
-    const points = this._scene.extent();
+    const points = [...this._scene.extent(), ...this._reached];
     const size = new THREE.Box3().setFromPoints(points).getSize(new THREE.Vector3());
     const flat = size.z < 0.1 * Math.max(size.x, size.y);
     const directions = DIRECTIONS[flat ? "flat" : this.seat];
@@ -131,6 +141,17 @@ export class Views {
     }
   }
 
+  /** Step back where a point would leave a view. @param {THREE.Vector3} point m */
+  _keepInView(point) {
+    const seen = this.views.every(({ camera }) => {
+      const { x, y } = point.clone().project(camera);
+      return Math.max(Math.abs(x), Math.abs(y)) < EDGE;
+    });
+    if (seen) return;
+    this._reached.push(point.clone());
+    this._aim();
+  }
+
   /** @param {number} now */
   _frame(now) {
     this._pending = 0;
@@ -143,6 +164,7 @@ export class Views {
     clearTimeout(this._soon);
     this._soon = undefined;
     const gliding = this._scene.advance(now);
+    this._keepInView(this._scene.tool);
     for (const call of this.beforeFrame) call();
     const canvas = this._canvas.getBoundingClientRect();
     for (const { element, camera } of this.views) {

@@ -1,0 +1,122 @@
+/** The task: its steps tick off, its end is said and heard, and another run is begun. */
+
+import { create, setText } from "../layout/dom.js";
+import { thingWords } from "../layout/thing_words.js";
+import { say } from "../layout/words.js";
+import { awayWords, blockedWords, outcomeWords, stepWords, wholeSeconds } from "./task_words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {TaskState} from "../connection/messages.js" */
+/** @import {Choice} from "../inputs/scanner.js" */
+
+/** Words that change all the time change no more often than this, ms. */
+const WORDS_MS = 250;
+const MARKS = { done: "✓", now: "▸", later: "○" };
+
+/**
+ * @typedef {object} Parts
+ * @property {HTMLElement} panel
+ * @property {HTMLElement} steps
+ * @property {HTMLElement} said live: steps as they are done, and the end
+ * @property {HTMLElement} time
+ * @property {HTMLElement} why why nothing can be begun now
+ * @property {HTMLElement} chooser around `choice`
+ * @property {HTMLSelectElement} choice
+ * @property {HTMLButtonElement} next
+ * @property {HTMLButtonElement} again
+ */
+
+/**
+ * @param {Parts} parts
+ * @param {Connection} connection
+ * @param {(outcome: "success" | "failure") => void} ended when a run ends while this page looks on
+ */
+export function attachTask(parts, connection, ended) {
+  /** @type {TaskState | null} */
+  let before = null;
+  let wordsAt = -Infinity;
+
+  const blocked = () => (connection.state ? blockedWords(connection.state) : say("status.connecting"));
+  const begin = (/** @type {{choice: number | null, anew: boolean}} */ what) => {
+    if (!blocked()) connection.send({ type: "begin_run", ...what });
+  };
+  const next = () => {
+    const { state, welcome } = connection;
+    if (state && welcome) begin({ choice: (state.task.choice + 1) % welcome.task.choices.length, anew: true });
+  };
+  const again = () => begin({ choice: null, anew: false });
+  parts.next.addEventListener("click", next);
+  parts.again.addEventListener("click", again);
+  parts.choice.addEventListener("change", () => {
+    begin({ choice: Number(parts.choice.value), anew: false });
+    parts.choice.value = String(connection.state?.task.choice ?? 0);
+  });
+
+  connection.addEventListener("welcome", () => {
+    const { task } = /** @type {NonNullable<Connection["welcome"]>} */ (connection.welcome);
+    parts.panel.hidden = task.steps.length === 0;
+    parts.steps.replaceChildren(...task.steps.map((step) => {
+      const item = create("li");
+      const mark = create("span", { className: "step-mark" });
+      mark.setAttribute("aria-hidden", "true");
+      const spoken = create("span", { className: "visually-hidden" });
+      item.append(mark, create("span", { textContent: stepWords(step) }), spoken, create("span", { className: "step-away" }));
+      return item;
+    }));
+    parts.chooser.hidden = task.choices.length < 2;
+    parts.choice.replaceChildren(...task.choices.map((name, index) =>
+      create("option", { value: String(index), textContent: thingWords(name), selected: index === task.choice })));
+    before = null;
+    wordsAt = -Infinity;
+    setText(parts.said, "");
+  });
+
+  const showSteps = (/** @type {TaskState} */ { done, outcome }) => {
+    [...parts.steps.children].forEach((item, index) => {
+      const state = index < done ? "done" : index === done && outcome === null ? "now" : "later";
+      const step = /** @type {HTMLElement} */ (item);
+      if (step.dataset.step === state) return;
+      step.dataset.step = state;
+      if (state === "now") step.setAttribute("aria-current", "step");
+      else step.removeAttribute("aria-current");
+      setText(step.children[0], MARKS[state]);
+      setText(step.children[2], say("task.step_state", { state: say(`task.state.${state}`) }));
+    });
+  };
+
+  connection.addEventListener("state", () => {
+    const { state, welcome } = connection;
+    if (!state || !welcome?.task.steps.length) return;
+    const { task } = state;
+    // A new run is told of by a welcome first.
+    if (task.choice !== welcome.task.choice) return;
+    showSteps(task);
+    parts.panel.dataset.outcome = task.outcome ?? "";
+    if (task.outcome !== null) setText(parts.said, outcomeWords(task));
+    else if (before !== null && task.done > before.done) {
+      const step = stepWords(welcome.task.steps[task.done]);
+      setText(parts.said, say("task.step_done", { number: task.done, all: welcome.task.steps.length, step }));
+    } else if (task.done === 0) setText(parts.said, "");
+    if (before !== null && before.outcome === null && task.outcome !== null) ended(task.outcome);
+    before = task;
+    const why = blocked();
+    setText(parts.why, why);
+    for (const button of [parts.next, parts.again]) button.setAttribute("aria-disabled", String(why !== ""));
+    parts.choice.disabled = why !== "";
+    if (performance.now() - wordsAt < WORDS_MS) return;
+    wordsAt = performance.now();
+    setText(parts.time, say("task.time", { seconds: wholeSeconds(task.time_s) }));
+    const away = awayWords(welcome, state);
+    [...parts.steps.children].forEach((item, index) => setText(item.children[3], index === task.done ? away : ""));
+  });
+
+  return {
+    /** What people who press one switch may choose from here. @returns {Choice[]} */
+    choices() {
+      const { state, welcome } = connection;
+      if (!state || !welcome?.task.steps.length || blocked()) return [];
+      const go = { id: "next", label: say("task.next_scan"), act: next };
+      return state.task.outcome === null ? [go] : [go, { id: "again", label: say("task.again"), act: again }];
+    },
+  };
+}

@@ -1,0 +1,78 @@
+/** Steps, outcome and time of a task in words, and where the thing of a step is. */
+
+import { capital, intoThing, theThing } from "../layout/thing_words.js";
+import { say } from "../layout/words.js";
+
+/** @import {State, StepToDo, TaskState, Welcome} from "../connection/messages.js" */
+
+/** Steps for which it helps to know how far away the thing is. */
+const FAR = new Set(["approached", "reached", "above", "holding", "stabbed"]);
+
+/** What is to be done in a step. @param {StepToDo} step */
+export function stepWords({ kind, thing }) {
+  return capital(say(`task.step.${kind}`, { thing: kind === "placed" ? intoThing(thing) : theThing(thing) }));
+}
+
+/** Whole seconds that are shown. @param {number} time s */
+export function wholeSeconds(time) {
+  return Math.round(time);
+}
+
+/** How a run has ended; empty while it goes on. @param {TaskState} task */
+export function outcomeWords({ outcome, why, time_s }) {
+  if (outcome === "success") return say("task.success", { seconds: wholeSeconds(time_s) });
+  if (why === null) return "";
+  return say("task.failure", { what: say(`task.failed.${why.code}`, { thing: theThing(why.thing) }) });
+}
+
+/**
+ * Why another run cannot be begun now; empty if it can.
+ *
+ * @param {Pick<State, "you" | "phase">} state
+ */
+export function blockedWords({ you, phase }) {
+  if (!you) return say("task.blocked.watching");
+  if (phase === "ready" || phase === "moving") return say("task.blocked.engaged");
+  return phase === "stopping" ? say("task.blocked.stopping") : "";
+}
+
+/**
+ * Where a thing is now, m, or where the tool goes for a goal that is no thing; null for neither.
+ *
+ * @param {string} name
+ * @param {Pick<Welcome, "things" | "goals">} welcome
+ * @param {Pick<State, "things">} state
+ * @returns {number[] | null}
+ */
+export function placeOf(name, welcome, state) {
+  const index = welcome.things.findIndex((thing) => thing.name === name);
+  if (index >= 0) return state.things?.poses[index]?.slice(0, 3) ?? welcome.things[index].position;
+  return welcome.goals.find((goal) => goal.name === name)?.position ?? null;
+}
+
+/**
+ * What the step that is to be done now is about; null where nothing is left to do.
+ *
+ * @param {Welcome} welcome
+ * @param {State} state
+ */
+export function wantedThing(welcome, state) {
+  return state.task.outcome === null ? welcome.task.steps[state.task.done]?.thing ?? null : null;
+}
+
+/** From the tool to a place, m. @param {number[]} tool @param {number[]} place */
+export function distance(tool, place) {
+  return Math.hypot(...tool.map((at, axis) => at - place[axis]));
+}
+
+/**
+ * How far the tool has to go in the step that is to be done now, in words; empty where that says nothing.
+ *
+ * @param {Welcome} welcome
+ * @param {State} state
+ */
+export function awayWords(welcome, state) {
+  const step = welcome.task.steps[state.task.done];
+  const place = step && state.task.outcome === null && FAR.has(step.kind) ? placeOf(step.thing, welcome, state) : null;
+  return place ? say("task.away", { centimetres: Math.round(100 * distance(state.tool, place)) }) : "";
+}

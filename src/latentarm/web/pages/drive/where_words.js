@@ -1,0 +1,26 @@
+/** Where the tool is: how high, and how far from the food that the robot thinks is meant, in words. */
+
+import { thingWords } from "../layout/thing_words.js";
+import { say } from "../layout/words.js";
+import { isLikeliest } from "../views/likeliest.js";
+import { distance, placeOf } from "./task_words.js";
+
+/** @import {State, Welcome} from "../connection/messages.js" */
+
+/**
+ * @param {Pick<Welcome, "goals" | "things">} welcome
+ * @param {Pick<State, "tool" | "belief" | "things">} state
+ */
+export function whereWords(welcome, state) {
+  const height = Math.round(100 * state.tool[2]);
+  const goals = welcome.goals.map(({ name }, index) => ({
+    name: thingWords(name),
+    away: distance(state.tool, placeOf(name, welcome, state) ?? state.tool),
+    likeliest: isLikeliest(state.belief, index),
+  }));
+  const wanted = goals.find(({ likeliest }) => likeliest);
+  const [nearest] = [...goals].sort((a, b) => a.away - b.away);
+  const said = wanted ?? nearest;
+  if (!said) return say("place.height", { height });
+  return say(wanted ? "place.wanted" : "place.near", { height, away: Math.round(100 * said.away), name: said.name });
+}

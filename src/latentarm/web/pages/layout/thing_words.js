@@ -1,0 +1,32 @@
+/** Things and goals in words. What no catalogue knows, such as a plug-in's things, is called by its own name. */
+
+import { knows, say } from "./words.js";
+
+/** @import {WordKey} from "./words.js" */
+
+/** How it is called next to it. @param {string} name as in the scene */
+export function thingWords(name) {
+  return inWords(name, "");
+}
+
+/** How it is called in a sentence about what is done with it: "the left cup". @param {string} name */
+export function theThing(name) {
+  return inWords(name, ".the");
+}
+
+/** Where something is put: "in the bin". @param {string} name */
+export function intoThing(name) {
+  return inWords(name, ".into");
+}
+
+/** @param {string} name @param {string} form */
+function inWords(name, form) {
+  const key = `thing.${name.toLowerCase().replace(/\W+/g, "_")}`;
+  const found = [key + form, key].find(knows);
+  return found ? say(/** @type {WordKey} */ (found)) : name;
+}
+
+/** A sentence's first letter. @param {string} text */
+export function capital(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

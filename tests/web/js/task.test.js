@@ -1,0 +1,203 @@
+/** The task's panel: steps tick off, the end is said, heard and timed, and another run begins only with the arm at rest. */
+
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+
+import { attachSounds } from "#pages/drive/sounds.js";
+import { attachTask } from "#pages/drive/task_panel.js";
+import { blockedWords, outcomeWords, stepWords } from "#pages/drive/task_words.js";
+import { theThing, thingWords } from "#pages/layout/thing_words.js";
+import { useWords } from "#pages/layout/words.js";
+import { Settings } from "#pages/settings/settings.js";
+import german from "../../../src/latentarm/web/words/de.json" with { type: "json" };
+import { event, FakeElement, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
+
+const MARSHMALLOWS = ["left marshmallow", "middle marshmallow", "right marshmallow"];
+const STEPS = [{ kind: "above", thing: MARSHMALLOWS[0] }, { kind: "stabbed", thing: MARSHMALLOWS[0] }];
+const RUN = { choice: 0, done: 0, outcome: null, why: null, time_s: 0 };
+
+let fakes;
+let parts;
+let connection;
+let sent;
+let heard;
+let task;
+
+function welcomes(fields = {}) {
+  const todo = { name: "marshmallows", seed: 0, choices: MARSHMALLOWS, choice: 0, steps: STEPS, ...fields };
+  const things = [{ name: MARSHMALLOWS[0], position: [0.5, 0, 0.1] }];
+  connection.welcome = welcomeOf({ task: todo, things });
+  connection.dispatchEvent(new Event("welcome"));
+}
+
+/** The server says how far the run has come. */
+function hears(run = {}, fields = {}) {
+  connection.state = stateOf({ task: { ...RUN, ...run }, tool: [0.5, 0, 0.3], you: true, ...fields });
+  connection.dispatchEvent(new Event("state"));
+  pass(300);
+}
+
+beforeEach(() => {
+  fakes = newBrowser();
+  const names = ["panel", "steps", "said", "time", "why", "chooser", "choice", "next", "again"];
+  parts = Object.fromEntries(names.map((name) => [name, new FakeElement()]));
+  parts.panel.hidden = true;
+  sent = [];
+  heard = [];
+  connection = Object.assign(new EventTarget(), { welcome: null, state: null, send: (message) => sent.push(message) });
+  task = attachTask(parts, connection, (outcome) => heard.push(outcome));
+});
+
+const marks = () => parts.steps.children.map((item) => item.children[0].textContent).join("");
+const press = (part) => parts[part].dispatchEvent(event("click"));
+
+test("without steps there is no panel, and nothing to choose", () => {
+  welcomes({ steps: [] });
+  hears();
+  assert.ok(parts.panel.hidden);
+  assert.deepEqual(task.choices(), []);
+});
+
+test("steps tick off, and each is said with the next", () => {
+  welcomes();
+  hears();
+  assert.ok(!parts.panel.hidden);
+  assert.equal(marks(), "▸○");
+  assert.equal(parts.said.textContent, "");
+  hears({ done: 1, time_s: 3.4 });
+  assert.equal(marks(), "✓▸");
+  assert.equal(parts.said.textContent, "Step 1 of 2 is done. Now: Stab the left marshmallow and lift it.");
+  assert.deepEqual(heard, []);
+});
+
+test("the distance that is left is told at the step that is to be done", () => {
+  welcomes();
+  hears();
+  const away = () => parts.steps.children.map((item) => item.children[3].textContent);
+  assert.deepEqual(away(), ["20 cm to go", ""]);
+  hears({}, { tool: [0.5, 0, 0.15] });
+  assert.deepEqual(away(), ["5 cm to go", ""]);
+});
+
+test("success is said with its time, and heard once", () => {
+  welcomes();
+  hears({ done: 1 });
+  hears({ done: 2, outcome: "success", time_s: 12.6 });
+  hears({ done: 2, outcome: "success", time_s: 12.6 });
+  assert.equal(parts.said.textContent, "Done! Well driven. It took 13 s.");
+  assert.equal(parts.panel.dataset.outcome, "success");
+  assert.equal(parts.time.textContent, "Time: 13 s");
+  assert.equal(marks(), "✓✓");
+  assert.deepEqual(heard, ["success"]);
+});
+
+test("a page that comes when all is over makes no sound", () => {
+  welcomes();
+  hears({ done: 2, outcome: "success" });
+  assert.deepEqual(heard, []);
+});
+
+test("failure says what happened", () => {
+  welcomes();
+  hears({ done: 1 });
+  hears({ done: 1, outcome: "failure", why: { code: "dropped", thing: MARSHMALLOWS[0] } });
+  assert.equal(parts.said.textContent, "The arm dropped the left marshmallow. You can try again.");
+  assert.deepEqual(heard, ["failure"]);
+  hears();
+  assert.equal(parts.said.textContent, "");
+});
+
+for (const [fields, why] of [
+  [{ you: true, phase: "ready" }, "Press Stop first. Then you can go on."],
+  [{ you: true, phase: "moving" }, "Press Stop first. Then you can go on."],
+  [{ you: true, phase: "stopping" }, "Wait until the arm stands still."],
+  [{ you: false, phase: "disengaged" }, "Only the person who drives can go on."],
+]) {
+  test(`nothing begins, and it is said why: ${why} (${fields.phase})`, () => {
+    welcomes();
+    hears({}, fields);
+    press("next");
+    press("again");
+    assert.deepEqual(sent, []);
+    assert.equal(parts.why.textContent, why);
+    assert.equal(parts.next.getAttribute("aria-disabled"), "true");
+    assert.deepEqual(task.choices(), []);
+    assert.equal(blockedWords(fields), why);
+  });
+}
+
+test("Next is the next choice placed anew, after the last the first; Again is the same", () => {
+  welcomes();
+  hears();
+  press("next");
+  press("again");
+  welcomes({ choice: 2 });
+  hears({ choice: 2 });
+  press("next");
+  assert.deepEqual(sent, [
+    { type: "begin_run", choice: 1, anew: true },
+    { type: "begin_run", choice: null, anew: false },
+    { type: "begin_run", choice: 0, anew: true },
+  ]);
+});
+
+test("another thing can be chosen", () => {
+  welcomes();
+  hears();
+  parts.choice.value = "2";
+  parts.choice.dispatchEvent(event("change"));
+  assert.deepEqual(sent, [{ type: "begin_run", choice: 2, anew: false }]);
+});
+
+test("one switch reaches Next, and Again once it is over", () => {
+  welcomes();
+  hears();
+  assert.deepEqual(task.choices().map(({ id }) => id), ["next"]);
+  hears({ done: 2, outcome: "success" });
+  assert.deepEqual(task.choices().map(({ id }) => id), ["next", "again"]);
+  task.choices()[0].act();
+  assert.deepEqual(sent, [{ type: "begin_run", choice: 1, anew: true }]);
+});
+
+test("every language says what is done with what", () => {
+  const put = { kind: "placed", thing: "own plate" };
+  assert.equal(stepWords(put), "Put it on your plate");
+  const why = { code: "spilled", thing: "grains" };
+  useWords("de", german);
+  assert.equal(stepWords(STEPS[0]), "Über das linke Marshmallow fahren");
+  assert.equal(stepWords(put), "Auf Ihren Teller legen");
+  assert.match(outcomeWords({ ...RUN, outcome: "failure", why }), /^Der Arm hat die Körner verschüttet\./);
+});
+
+test("a thing of a plug-in is called by its own name", () => {
+  assert.equal(thingWords("Blue Lid"), "Blue Lid");
+  assert.equal(theThing("constructor"), "constructor");
+});
+
+test("sounds are made after a first press, unless they are turned off", () => {
+  const tones = [];
+  class Context {
+    constructor() {
+      Object.assign(this, { state: "running", currentTime: 0, destination: null });
+    }
+
+    createOscillator() {
+      const tone = { frequency: {}, connect: (next) => next, start: (at) => tones.push(at), stop() {} };
+      return tone;
+    }
+
+    createGain() {
+      return { gain: { setValueAtTime() {}, exponentialRampToValueAtTime() {} }, connect: (next) => next };
+    }
+  }
+  const settings = new Settings();
+  const sounds = attachSounds(settings, Context);
+  sounds.play("success");
+  assert.equal(tones.length, 0);
+  fakes.window.dispatchEvent(event("keydown"));
+  sounds.play("success");
+  assert.equal(tones.length, 3);
+  settings.change({ sounds: false });
+  sounds.play("failure");
+  assert.equal(tones.length, 3);
+});
