@@ -107,12 +107,13 @@ function show() {
   if (!state || !welcome) return;
   const { pressed } = input;
   const paths = personalPaths(state.ghosts, state.tool, shaped);
-  drawing?.show(state, paths, pressed, settings.values, wantedThing(welcome, state));
+  const wanted = wantedThing(welcome, state);
+  drawing?.show(state, paths, pressed, settings.values, wanted);
   belief.show(state.belief, state.alpha);
   if (performance.now() - wordsAt < WORDS_MS) return;
   wordsAt = performance.now();
   predictions.show(paths, pressed, (motion) => motionWords(motion, settings.values.seat));
-  setText(byId("scene-text"), whereWords(welcome, state));
+  setText(byId("scene-text"), whereWords(welcome, state, wanted));
   byId("bound-text").hidden = !settings.values.showBound || state.bound_m === null;
   if (state.bound_m !== null) setText(byId("bound-text"), say("drive.bound", { centimetres: Math.round(100 * state.bound_m) }));
   byId("reset", HTMLButtonElement).disabled = connection.engaged;

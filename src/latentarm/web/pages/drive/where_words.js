@@ -10,17 +10,19 @@ import { distance, placeOf } from "./task_words.js";
 /**
  * @param {Pick<Welcome, "goals" | "things">} welcome
  * @param {Pick<State, "tool" | "belief" | "things">} state
+ * @param {string | null} [thing] what the task is about now
  */
-export function whereWords(welcome, state) {
+export function whereWords(welcome, state, thing = null) {
   const height = Math.round(100 * state.tool[2]);
   const goals = welcome.goals.map(({ name }, index) => ({
     name: thingWords(name),
+    asked: name === thing,
     away: distance(state.tool, placeOf(name, welcome, state) ?? state.tool),
     likeliest: isLikeliest(state.belief, index),
   }));
   const wanted = goals.find(({ likeliest }) => likeliest);
   const [nearest] = [...goals].sort((a, b) => a.away - b.away);
-  const said = wanted ?? nearest;
+  const said = wanted ?? goals.find(({ asked }) => asked) ?? nearest;
   if (!said) return say("place.height", { height });
   return say(wanted ? "place.wanted" : "place.near", { height, away: Math.round(100 * said.away), name: said.name });
 }

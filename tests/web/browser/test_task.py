@@ -1,0 +1,190 @@
+"""A person does a task, or fails in it, by what the page shows: steps, distance, end, time and the next one.
+
+On a busy computer the arm stops now and then, and a person enables it again.
+"""
+
+import io
+import os
+import re
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+SOUNDS = """
+window.tones = 0;
+const made = AudioContext.prototype.createOscillator;
+AudioContext.prototype.createOscillator = function () { window.tones += 1; return made.call(this); };
+"""
+PATIENCE_S = 60.0
+RAISED_PX = 24
+"""A name is so far over what it names."""
+
+NEAR_PX = 12
+
+
+@pytest.fixture(scope="module")
+def stabbing(start_server, tmp_path_factory):
+    """Where a server with the marshmallow, registered by another distribution, serves its page."""
+    folder = tmp_path_factory.mktemp("stab")
+    info = folder / "stab_task-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: stab-task\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("[latentarm.scene_tasks]\nstab_below = stab_task:StabBelow\n")
+    path = [str(folder), str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", os.pathsep.join(path))
+        with start_server(folder, "--task", "stab_below") as address:
+            yield address
+
+
+def outcome(arm):
+    return arm.state["task"]["outcome"]
+
+
+def drive(page, arm, press_enable, key, until):
+    """Hold a key until then, and let go."""
+    end_s = time.monotonic() + PATIENCE_S
+    while not until():
+        assert time.monotonic() < end_s, (arm.state["task"], arm.tool, arm.state["reason"])
+        if not arm.enabled:
+            press_enable(page, arm)
+        page.locator("#stick").focus()
+        page.keyboard.down(key)
+        arm.comes_to(lambda: until() or not arm.enabled, 5.0)
+        page.keyboard.up(key)
+    arm.wait(lambda: arm.state["phase"] not in ("moving", "stopping"), 1.0)
+
+
+def centimetres(text):
+    return int(re.search(r"(\d+) cm", text).group(1))
+
+
+class TestStabbing:
+    @pytest.fixture
+    def address(self, stabbing):
+        return stabbing
+
+    @pytest.fixture
+    def arm(self, watch, address):
+        with watch(address) as arm:
+            yield arm
+
+    @pytest.fixture
+    def page(self, open_page, arm):
+        page = open_page(SOUNDS)
+        page.get_by_role("button", name="Ask to drive").click()
+        page.get_by_role("button", name="Let others drive").wait_for()
+        if arm.state["task"]["choice"]:
+            page.get_by_label("What to do").select_option(label="marshmallow")
+            arm.wait(lambda: arm.state["task"]["choice"] == 0)
+        page.get_by_role("button", name="Again", exact=True).click()
+        arm.wait(lambda: arm.state["task"]["done"] == 0 and arm.state["task"]["outcome"] is None)
+        page.get_by_role("radio", name="Height, turn").check()
+        arm.wait(lambda: arm.state["axes"] == 1)
+        return page
+
+    def test_a_marshmallow_is_stabbed_and_the_next_one_is_somewhere_else(self, page, arm, press_enable):
+        said, why = page.locator("#task-said"), page.locator("#task-why")
+        steps = page.locator("#task-steps li")
+        assert "Go over the marshmallow" in steps.nth(0).inner_text()
+        lay = np.array(arm.things["poses"][1][:3])
+        press_enable(page, arm)
+        why.get_by_text("Press Stop first").wait_for()
+        said.get_by_text("Step 1 of 2 is done. Now: Stab the marshmallow and lift it.").wait_for()
+        steps.nth(0).get_by_text("✓").wait_for()
+        away = page.locator("#task-steps .step-away").nth(1)
+        far = centimetres(away.inner_text())
+        assert abs(far - 8) <= 1
+
+        drive(page, arm, press_enable, "ArrowDown", lambda: arm.tool[2] < lay[2] - 0.003)
+        page.wait_for_timeout(400)
+        assert centimetres(away.inner_text()) <= 2
+        drive(page, arm, press_enable, "ArrowUp", lambda: outcome(arm))
+        assert outcome(arm) == "success"
+        # Food is drawn where physics has it by now: on the fork.
+        assert arm.things["poses"][1][2] > lay[2] + 0.035
+
+        said.get_by_text(re.compile(r"^Done! .* \d+ s\.$")).wait_for()
+        assert said.get_attribute("role") == "status"
+        seconds = round(arm.state["task"]["time_s"])
+        assert page.locator("#task-time").inner_text() == f"Time: {seconds} s"
+        assert page.evaluate("tones") == 3
+        assert page.locator("#task").get_attribute("data-outcome") == "success"
+
+        following = page.get_by_role("button", name="Next", exact=True)
+        assert following.get_attribute("aria-disabled") == "true"
+        following.click(force=True)
+        assert arm.state["task"]["choice"] == 0
+        page.keyboard.press("Escape")
+        arm.comes_to_rest()
+        seed = arm.welcome["task"]["seed"]
+        following.click()
+        arm.wait(lambda: arm.state["task"]["choice"] == 1 and outcome(arm) is None)
+        arm.wait(lambda: arm.welcome["task"]["seed"] == seed + 1)
+        arm.wait(lambda: np.abs(np.array(arm.things["poses"][1][:2]) - lay[:2]).max() > 1e-3)
+        said.get_by_text("Done!").wait_for(state="detached")
+
+    def test_a_fork_on_the_plate_fails_and_it_is_said_why(self, page, arm, press_enable):
+        page.get_by_label("What to do").select_option(label="plate")
+        arm.wait(lambda: arm.state["task"]["choice"] == 1)
+        drive(page, arm, press_enable, "ArrowDown", lambda: outcome(arm))
+        assert outcome(arm) == "failure"
+        page.locator("#task-said").get_by_text("The arm pressed too hard on the plate.").wait_for()
+        page.keyboard.press("Escape")
+        arm.comes_to_rest()
+        low = arm.tool[2]
+        page.get_by_role("button", name="Again", exact=True).click()
+        arm.wait(lambda: outcome(arm) is None and arm.tool[2] > low + 0.03)
+        assert page.locator("#task-said").inner_text() == ""
+
+    def test_one_switch_goes_on_to_the_next(self, page, arm):
+        page.get_by_role("button", name="Settings").click()
+        page.get_by_label("Time on each choice").fill("0.4")
+        page.get_by_role("button", name="Done").click()
+        page.get_by_role("radio", name="Switch").check()
+        page.get_by_role("button", name="Switch", exact=True).focus()
+        page.locator("#scan li[data-choice=next][aria-current=true]").wait_for(timeout=10_000)
+        page.keyboard.press("Enter")
+        arm.wait(lambda: arm.state["task"]["choice"] == 1)
+
+
+class TestTable:
+    @pytest.fixture
+    def address(self, start_server, tmp_path):
+        with start_server(tmp_path) as address:
+            yield address
+
+    @pytest.fixture
+    def arm(self, watch, address):
+        with watch(address) as arm:
+            yield arm
+
+    def test_a_name_is_at_its_food_and_the_tool_stays_in_both_views(self, open_page, arm, press_enable):
+        page = open_page()
+        page.wait_for_timeout(1000)
+        view = page.locator("#view-front")
+        label = view.locator(".label", has_text="carrot").bounding_box()
+        box = view.bounding_box()
+        pixels = np.array(Image.open(io.BytesIO(view.screenshot())).convert("RGB")).astype(int)
+        orange = (pixels[..., 0] > 150) & (pixels[..., 2] < 60) & (pixels[..., 1] < 150)
+        down, across = np.nonzero(orange)
+        food = np.array([across.mean(), down.mean()])
+        middle = np.array(
+            [label["x"] - box["x"] + label["width"] / 2, label["y"] - box["y"] + label["height"] / 2]
+        )
+        assert orange.sum() > 30
+        assert np.abs(food - middle - [0, RAISED_PX]).max() < NEAR_PX
+
+        page.get_by_role("button", name="Ask to drive").click()
+        page.get_by_role("radio", name="Height, turn").check()
+        arm.wait(lambda: arm.state["axes"] == 1)
+        height = arm.tool[2]
+        drive(page, arm, press_enable, "ArrowUp", lambda: arm.tool[2] > height + 0.25)
+        page.wait_for_timeout(500)
+        for arrow in page.locator(".view .label.ghost:visible").all():
+            inside, where = page.locator(".view").first.bounding_box(), arrow.bounding_box()
+            assert inside["y"] <= where["y"] <= inside["y"] + inside["height"]
+        assert "cm up" in page.locator("#scene-text").inner_text()
