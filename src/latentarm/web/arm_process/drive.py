@@ -15,8 +15,11 @@ from latentarm.demonstrations.provenance import provenance_now
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.ghosts import GhostPaths
+from latentarm.web.arm_process.late_stops import LateStops
+from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process.way_back import STUCK_S, Outcome, WayBack
 from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import (
     Channel,
@@ -32,6 +35,7 @@ from latentarm.web.protocol.channel import (
     Record,
     Report,
     Reset,
+    Return,
     parse_stop,
 )
 from latentarm.web.protocol.notice import Notice
@@ -52,6 +56,15 @@ _HELD_BACK: Final[dict[str, HeldBack]] = {
     "joint position": "joint_position",
 }
 """Filters whose effect is shown to people; the others are always active."""
+
+_WAY_BACK_ENDED: Final[dict[Outcome, Notice]] = {
+    "arrived": Notice(code="at_start"),
+    "stuck": Notice(code="return_stuck", parameters={"seconds": round(STUCK_S)}),
+    "pushed": Notice(code="return_pushed"),
+}
+
+_AT_START_RAD: Final = 0.02
+"""Nothing is gained by a way back from nearer than this."""
 
 _ORDERS_PER_TICK: Final = 4
 _LOOK_EVERY: Final = 10
@@ -124,7 +137,10 @@ class Drive:
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
-        self._loop = ControlLoop(self._step, arm, self._inputs, clock, [self._observe, *observers])
+        self._neutral = NeutralFirst(self._inputs)
+        self._way_back = WayBack(self._neutral, self._inputs, setup.start)
+        self._late = LateStops()
+        self._loop = ControlLoop(self._step, arm, self._way_back, clock, [self._observe, *observers])
         self._stop_version = channel.stop.version
         self._stopped_for = Notice(code="stop_pressed")
         self._enable_until_s = -math.inf
@@ -161,6 +177,8 @@ class Drive:
         if self._steering.ending_episode and self._step.at_rest:
             self._end_episode()
         self._obey(record)
+        self._late.look(self._step.stopped, self._inputs.driver)
+        self._follow_way_back(record)
         self._enable_if_asked(record.time_s)
         self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
@@ -213,6 +231,10 @@ class Drive:
             case ChooseMode(mode=mode, axes=axes):
                 if mode in self._setup.modes:
                     self._choose(mode, self._steering.axes if axes is None else axes)
+            case Return(on=True):
+                self._set_out(record)
+            case Return():
+                self._end_way_back()
             case Record(on=True, task=task, person=person):
                 self._begin_episode(task, person)
             case Record():
@@ -236,10 +258,43 @@ class Drive:
 
     def _choose(self, mode: ModeName, axes: int) -> None:
         steering = self._steering
+        before = steering.mode, steering.axes
         steering.mode = mode
         steering.axes = min(max(axes, 0), len(self._setup.axes) - 1)
+        if before != (steering.mode, steering.axes):
+            # A stick that is held would go on, with another meaning.
+            self._neutral.demand()
+        self._way_back.end()
         self._setup.help.on = mode == "assisted"
         self._step.choose_mode(self._setup.mode_index(mode, steering.axes))
+
+    def _set_out(self, record: StepRecord) -> None:
+        """Begin the way back to the start."""
+        if self._step.stopped is not None or not self._step.at_rest or self._inputs.deflected:
+            self._say(Notice(code="return_not_now"))
+            return
+        # An episode is one motion of a person's.
+        self._end_episode()
+        self._note_until_s = -math.inf
+        self._setup.help.on = False
+        self._step.choose_mode(self._setup.way_back)
+        self._way_back.begin(record.time_s)
+
+    def _end_way_back(self) -> None:
+        self._choose(self._steering.mode, self._steering.axes)
+
+    def _follow_way_back(self, record: StepRecord) -> None:
+        """End the way back where it is over, or the arm was stopped."""
+        if not self._way_back.on:
+            if record.input.any() and self._note in _WAY_BACK_ENDED.values():
+                self._note_until_s = -math.inf
+            return
+        self._step.forget()
+        if self._step.stopped is not None:
+            self._end_way_back()
+        elif (outcome := self._way_back.outcome(self._seen, record.time_s)) is not None:
+            self._end_way_back()
+            self._say(_WAY_BACK_ENDED[outcome])
 
     def _begin_episode(self, task: str, person: str) -> None:
         self._steering.ending_episode = False
@@ -293,7 +348,9 @@ class Drive:
         if phase < 4:
             # Without a reading nobody knows the gripper, which the decoder may look at.
             if not math.isnan(record.state[0]):
-                self._ghosts.look(phase, self._step.context(self._seen), record.mode)
+                steering = self._steering
+                mode = self._setup.mode_index(steering.mode, steering.axes)
+                self._ghosts.look(phase, self._step.context(self._seen), mode)
         elif self._steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
             statistics = self._loop.statistics()
             self._late_share = 1.0 - statistics.met_share
@@ -328,6 +385,10 @@ class Drive:
             note=self._note if record.time_s < self._note_until_s else None,
             reason=self._reason(self._step.stopped),
             held_back=held_back[0] if held_back and phase == "moving" else None,
+            returning=self._way_back.on,
+            at_start=self._way_back.away(self._seen) <= _AT_START_RAD,
+            let_go_first=self._neutral.waiting,
+            late_stops=self._late.count,
             mode=self._steering.mode,
             axes=self._steering.axes,
             run=None if spec.run is None else str(spec.run),
