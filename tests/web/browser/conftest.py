@@ -202,7 +202,7 @@ def _watching(address: str) -> Iterator[Arm]:
         listener.start()
         arm.tell = socket.send
         socket.send(json.dumps({"type": "hello", "version": 1, "name": "test"}))
-        arm.wait(lambda: arm.welcome and arm.ghosts)
+        arm.wait(lambda: arm.welcome and arm.ghosts, 60.0)
         # The first to come drives: not this one.
         socket.send(json.dumps({"type": "release"}))
         yield arm
