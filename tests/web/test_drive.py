@@ -130,6 +130,22 @@ def test_an_enable_that_was_pressed_before_stop_counts_for_nothing(desk):
     assert {report.phase for report in desk.reports} == {"disengaged"}
 
 
+def test_a_stop_that_is_pressed_again_is_still_told_of_the_first(desk):
+    """In words of every language, not in the sentence that was made of it."""
+    bob = Notice(code="stop_pressed_by", parameters={"name": "Bob"})
+
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(0.0, 0.0)
+        for at_s, who in ((0.5, ADA), (0.6, bob)):
+            if abs(now_s - at_s) < 0.005:
+                desk.channel.stop.write(who.model_dump_json().encode())
+
+    desk.each_tick = tick
+    desk.run(0.8)
+    assert desk.reports[-2].reason == ADA
+
+
 def test_latched_motion_ends(desk):
     def tick(now_s):
         enabled_at(desk, now_s)

@@ -19,7 +19,7 @@ from latentarm.web.arm_process.late_stops import LateStops
 from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
-from latentarm.web.arm_process.way_back import STUCK_S, Outcome, WayBack
+from latentarm.web.arm_process.way_back import AT_START_RAD, ENDED, WayBack
 from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import (
     Channel,
@@ -56,15 +56,6 @@ _HELD_BACK: Final[dict[str, HeldBack]] = {
     "joint position": "joint_position",
 }
 """Filters whose effect is shown to people; the others are always active."""
-
-_WAY_BACK_ENDED: Final[dict[Outcome, Notice]] = {
-    "arrived": Notice(code="at_start"),
-    "stuck": Notice(code="return_stuck", parameters={"seconds": round(STUCK_S)}),
-    "pushed": Notice(code="return_pushed"),
-}
-
-_AT_START_RAD: Final = 0.02
-"""Nothing is gained by a way back from nearer than this."""
 
 _ORDERS_PER_TICK: Final = 4
 _LOOK_EVERY: Final = 10
@@ -142,7 +133,7 @@ class Drive:
         self._late = LateStops()
         self._loop = ControlLoop(self._step, arm, self._way_back, clock, [self._observe, *observers])
         self._stop_version = channel.stop.version
-        self._stopped_for = Notice(code="stop_pressed")
+        self._reasons: dict[str, Notice] = {}
         self._enable_until_s = -math.inf
         self._enable_driver = -1
         self._seen = setup.start
@@ -210,7 +201,8 @@ class Drive:
 
     def _stop(self, reason: Notice) -> None:
         self._enable_until_s = self._note_until_s = -math.inf
-        self._stopped_for = reason
+        if self._step.stopped is None:
+            self._reasons[reason.text] = reason
         self._loop.stop(reason.text)
 
     def _stop_if_enabled(self, reason: Notice) -> None:
@@ -286,7 +278,7 @@ class Drive:
     def _follow_way_back(self, record: StepRecord) -> None:
         """End the way back where it is over, or the arm was stopped."""
         if not self._way_back.on:
-            if record.input.any() and self._note in _WAY_BACK_ENDED.values():
+            if record.input.any() and self._note in ENDED.values():
                 self._note_until_s = -math.inf
             return
         self._step.forget()
@@ -294,7 +286,7 @@ class Drive:
             self._end_way_back()
         elif (outcome := self._way_back.outcome(self._seen, record.time_s)) is not None:
             self._end_way_back()
-            self._say(_WAY_BACK_ENDED[outcome])
+            self._say(ENDED[outcome])
 
     def _begin_episode(self, task: str, person: str) -> None:
         self._steering.ending_episode = False
@@ -340,6 +332,7 @@ class Drive:
                 self._say(Notice(code="let_go_first"))
             else:
                 self._note_until_s = -math.inf
+                self._reasons.clear()
                 self._loop.enable()
 
     def _look(self, record: StepRecord) -> None:
@@ -366,8 +359,8 @@ class Drive:
 
     def _reason(self, stop: Stop | None) -> Notice | None:
         """Why the arm may not move; most of what the safety filters say has a sentence only."""
-        if stop is None or stop.reason == self._stopped_for.text:
-            return None if stop is None else self._stopped_for
+        if stop is None or stop.reason in self._reasons:
+            return None if stop is None else self._reasons[stop.reason]
         return Notice(code=stop.code or "arm_stopped", parameters={"text": stop.reason})
 
     def _report(self, record: StepRecord) -> Report:
@@ -386,7 +379,7 @@ class Drive:
             reason=self._reason(self._step.stopped),
             held_back=held_back[0] if held_back and phase == "moving" else None,
             returning=self._way_back.on,
-            at_start=self._way_back.away(self._seen) <= _AT_START_RAD,
+            at_start=self._way_back.away(self._seen) <= AT_START_RAD,
             let_go_first=self._neutral.waiting,
             late_stops=self._late.count,
             mode=self._steering.mode,

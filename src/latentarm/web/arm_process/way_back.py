@@ -9,9 +9,13 @@ from latentarm.control.input_port import InputSource
 from latentarm.types import FloatArray, Input
 from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.page_inputs import PageInputs
+from latentarm.web.protocol.notice import Notice
 
 ARRIVED_RAD: Final = 0.01
 """Every joint is at the start within this."""
+
+AT_START_RAD: Final = 0.02
+"""Nothing is gained by a way back from nearer than this."""
 
 STUCK_S: Final = 3.0
 """The way back ends where nothing has come closer for so long, s."""
@@ -22,6 +26,13 @@ LONGEST_S: Final = 60.0
 _CLOSER_RAD: Final = 0.005
 
 Outcome = Literal["arrived", "stuck", "pushed"]
+
+ENDED: Final[dict[Outcome, Notice]] = {
+    "arrived": Notice(code="at_start"),
+    "stuck": Notice(code="return_stuck", parameters={"seconds": round(STUCK_S)}),
+    "pushed": Notice(code="return_pushed"),
+}
+"""What people are told at its end."""
 
 
 @final
