@@ -89,6 +89,17 @@ test("an input that is due goes out before other work, and none that is not due"
   assert.equal(socket.taken().length, 0);
 });
 
+test("inputs that go first are no more than others: the server would hang up on too many", () => {
+  const { socket, input, state } = driving();
+  for (let passed = 0; passed < 1000; passed += 1) {
+    pass(1);
+    if (passed % 20 === 7) state();
+    input.goFirst();
+  }
+  const count = socket.taken().length;
+  assert.ok(count >= 45 && count <= 55, `${count} inputs in a second`);
+});
+
 test("what goes on by itself is let go where the stick means something else; what is held is not", () => {
   const { connection, input, state } = driving();
   attachNeutralFirst(connection, input);
