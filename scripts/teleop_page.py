@@ -19,6 +19,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 START_S = 60.0
+AT_START = "The arm is at the start."
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,23 @@ def find_chromium() -> str:
 def sandboxed() -> tuple[str, ...]:
     """Arguments without which Chromium does not run here: as root, as in containers, it has no sandbox."""
     return ("--no-sandbox",) if os.getuid() == 0 else ()
+
+
+def drive_back(page: Page) -> None:
+    """Have the arm driven back to its start, and stop it there."""
+    why = page.locator("#way-back-why")
+    for _ in range(10):
+        if why.inner_text() == AT_START:
+            break
+        enable(page)
+        page.locator("#way-back").dispatch_event("click")
+        page.wait_for_timeout(500)
+        for _ in range(40):
+            if page.locator("#status[data-phase=moving]").count() == 0:
+                break
+            page.wait_for_timeout(500)
+    page.keyboard.press("Escape")
+    page.wait_for_timeout(500)
 
 
 def enable(page: Page) -> None:

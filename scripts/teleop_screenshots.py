@@ -14,7 +14,7 @@ from pathlib import Path
 
 from playwright.sync_api import Page
 
-from teleop_page import chromium, enable, served
+from teleop_page import chromium, drive_back, enable, served
 
 DESK = {"width": 1280, "height": 800}
 SETTLE_MS = 800
@@ -70,7 +70,7 @@ def recorded(page: Page) -> None:
     page.get_by_label("What you are doing").fill("towards the table")
     while page.get_by_role("link", name="Teach the arm").is_hidden() or episodes(page) < EPISODES:
         before = episodes(page)
-        page.get_by_role("button", name="Arm back to start").click()
+        drive_back(page)
         page.get_by_role("button", name="Start recording").click()
         push_for(page, 2000)
         page.keyboard.press("Escape")
@@ -197,7 +197,7 @@ def take(run: Path, names: list[str], out: Path) -> None:
                     page.locator(".label").first.wait_for(state="attached")
                     page.wait_for_timeout(SETTLE_MS)
                     page.get_by_role("radio", name="Learned, with help").check()
-                    page.get_by_role("button", name="Arm back to start").click()
+                    drive_back(page)
                     page.evaluate("scrollTo(0, 0)")
                     page.wait_for_timeout(SETTLE_MS)
                     SHOTS[name](page)

@@ -282,7 +282,7 @@ class Stop:
 
     reason: str
     untrusted: bool = False
-    code: Literal["not_enabled", "input_late"] | None = field(default=None, compare=False)
+    code: Literal["not_enabled", "input_late", "loop_late"] | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.errors import UserError
-from latentarm.types import Goal, Input
+from latentarm.types import Goal, Input, Stop
 from stepping import stepped
 
 now_s = itertools.count(step=0.01).__next__
@@ -122,7 +122,7 @@ class TestEngagement:
     def test_an_arm_that_halted_by_itself_is_not_told_to_move_again(self, step, arm):
         engaged(step, arm.home)
         _, state = run(step, PUSH, arm.home, 60)
-        step.halted("too late")
+        step.halted(Stop("too late"))
         record = stepped(step, PUSH, 0.0, state, now_s())
         assert not record.command.velocity.any()
         assert record.command.stop.reason == "too late"

@@ -183,6 +183,12 @@ def desk(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
 
 
 @pytest.fixture
+def desk_of(tmp_path: Path) -> Callable[[DriveSetup], AbstractContextManager[Desk]]:
+    """A desk for another setup."""
+    return lambda setup: a_desk(setup, tmp_path / "teleop")
+
+
+@pytest.fixture
 def desk_in_physics(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
     with a_desk(replace(setup, spec=replace(setup.spec, arm="mujoco")), tmp_path / "teleop") as desk:
         yield desk

@@ -5,7 +5,14 @@ import pytest
 
 from latentarm.control.journal import read_journal
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
-from latentarm.web.protocol.channel import ChooseMode, ChooseProfile, ChooseRun, Enable, Record, Reset
+from latentarm.web.protocol.channel import (
+    ChooseMode,
+    ChooseProfile,
+    ChooseRun,
+    Enable,
+    Record,
+    Reset,
+)
 from latentarm.web.protocol.notice import Notice
 
 ADA = Notice(code="stop_pressed_by", parameters={"name": "Ada"})
@@ -123,6 +130,22 @@ def test_an_enable_that_was_pressed_before_stop_counts_for_nothing(desk):
     assert {report.phase for report in desk.reports} == {"disengaged"}
 
 
+def test_a_stop_that_is_pressed_again_is_still_told_of_the_first(desk):
+    """In words of every language, not in the sentence that was made of it."""
+    bob = Notice(code="stop_pressed_by", parameters={"name": "Bob"})
+
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(0.0, 0.0)
+        for at_s, who in ((0.5, ADA), (0.6, bob)):
+            if abs(now_s - at_s) < 0.005:
+                desk.channel.stop.write(who.model_dump_json().encode())
+
+    desk.each_tick = tick
+    desk.run(0.8)
+    assert desk.reports[-2].reason == ADA
+
+
 def test_latched_motion_ends(desk):
     def tick(now_s):
         enabled_at(desk, now_s)
@@ -145,7 +168,9 @@ def test_switching_modes_never_makes_the_arm_jump(desk):
 
     def tick(now_s):
         enabled_at(desk, now_s)
-        desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
+        # Let go for a moment after each change, as one must.
+        pushed = now_s >= 0.5 and not any(0.02 < now_s - at_s < 0.06 for at_s in orders)
+        desk.give(1.0 if pushed else 0.0, 0.0)
         for at_s, order in orders.items():
             if abs(now_s - at_s) < 0.005:
                 desk.order(order)
@@ -155,12 +180,74 @@ def test_switching_modes_never_makes_the_arm_jump(desk):
     commands = np.array([record.command.velocity for record in desk.records])
     driven = desk.times() < 2.0
     gained = np.abs(np.diff(commands[driven], axis=0))
-    assert (gained <= 0.2 * desk.setup.task.robot.limits.acceleration * 0.01 + 1e-9).all()
+    # Letting go is as hard as a stop.
+    assert (gained <= 0.8 * desk.setup.task.robot.limits.acceleration * 0.01 + 1e-9).all()
     assert {record.mode for record in desk.records} == {0, 1, 3}
     assert desk.speeds()[(desk.times() > 1.9) & driven].min() > 0.0
     helped = [record.alpha > 0.0 for record in desk.records if 1.5 < record.time_s < 1.7]
     assert all(helped)
     assert not any(record.alpha for record in desk.records if record.time_s < 1.4)
+
+
+@pytest.mark.parametrize("latched", [False, True])
+@pytest.mark.parametrize(
+    "order",
+    [
+        ChooseMode(mode="end_effector", axes=0),
+        ChooseMode(mode="end_effector", axes=2),
+        ChooseMode(mode="assisted", axes=None),
+    ],
+)
+def test_a_new_mode_needs_a_stick_that_was_let_go(desk, order, latched):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        pushed = 0.5 <= now_s < 1.5 or now_s > 1.7
+        desk.give(1.0 if pushed else 0.0, 0.0, latched=latched)
+        if abs(now_s - 1.0) < 0.005:
+            desk.order(order)
+
+    desk.each_tick = tick
+    desk.run(2.2)
+    times, speeds = desk.times(), desk.speeds()
+    assert speeds[(times > 0.8) & (times < 1.0)].min() > 0.0
+    assert not speeds[(times > 1.0 + 0.15) & (times < 1.7)].any()
+    assert speeds[(times > 2.0) & (times < 2.2)].min() > 0.0
+    waiting = [report.time_s for report in desk.reports if report.let_go_first]
+    assert 1.0 <= waiting[0] < 1.03
+    assert 1.48 < waiting[-1] < 1.53
+    # The arm is enabled all the while.
+    assert {report.reason for report in desk.reports if 0.3 < report.time_s < 2.1} == {None}
+
+
+def test_the_mode_that_is_on_already_stops_nobody(desk):
+    def tick(now_s):
+        enabled_at(desk, now_s)
+        desk.give(1.0 if now_s >= 0.5 else 0.0, 0.0)
+        if abs(now_s - 1.0) < 0.005:
+            desk.order(ChooseMode(mode="latent", axes=None))
+
+    desk.each_tick = tick
+    desk.run(1.5)
+    assert desk.speeds()[(desk.times() > 0.8) & (desk.times() < 1.5)].min() > 0.0
+
+
+def test_stops_for_late_inputs_are_counted_for_each_driver(desk):
+    def tick(now_s):
+        for at_s in (0.1, 1.0, 2.0, 3.5):
+            if abs(now_s - at_s) < 0.005:
+                desk.order(Enable(driver=1 if now_s < 3.0 else 2, stops=desk.channel.stop.version))
+        if abs(now_s - 2.3) < 0.005:
+            desk.channel.stop.write(ADA.model_dump_json().encode())
+        if not (0.5 < now_s < 0.8 or 1.5 < now_s < 1.8):
+            desk.give(0.0, 0.0, driver=1 if now_s < 3.0 else 2)
+
+    desk.each_tick = tick
+    desk.run(4.0)
+    counted = {round(report.time_s, 2): report.late_stops for report in desk.reports}
+    # A stop that somebody pressed is no late one.
+    assert [counted[at_s] for at_s in (0.45, 0.9, 1.9, 2.9, 3.6)] == [0, 1, 2, 2, 0]
+    late = next(report for report in desk.reports if round(report.time_s, 2) == 0.9)
+    assert late.reason.code == "input_late"
 
 
 def test_another_driver_finds_a_stopped_arm(desk):

@@ -55,7 +55,8 @@ def test_a_page_drives_the_arm_and_stops_it(site):
         drive(page)
         page.send(type="stop")
         at_rest(page)
-        assert page.state["reason"] == {"code": "stop_pressed_by", "parameters": {"name": "Ada"}}
+        assert page.state["reason"]["code"] == "stop_pressed_by"
+        assert page.state["reason"]["parameters"] == {"name": "Ada", "page": page.welcome["id"]}
 
 
 def test_nothing_moves_without_enable(site):
@@ -89,6 +90,7 @@ def test_only_the_driver_drives_and_everybody_stops(site):
             {"type": "mode", "mode": "end_effector", "axes": 2},
             {"type": "record", "on": True},
             {"type": "reset"},
+            {"type": "return", "on": True},
             {"type": "hand_over", "to": bob.welcome["id"]},
             {"type": "release"},
         ):
@@ -102,7 +104,8 @@ def test_only_the_driver_drives_and_everybody_stops(site):
         drive(ada)
         bob.send(type="stop")
         at_rest(ada)
-        assert ada.state["reason"] == {"code": "stop_pressed_by", "parameters": {"name": "Bob"}}
+        assert ada.state["reason"]["code"] == "stop_pressed_by"
+        assert ada.state["reason"]["parameters"] == {"name": "Bob", "page": bob.welcome["id"]}
 
 
 def test_driving_is_handed_over_and_the_arm_stops_for_it(site):
@@ -123,10 +126,15 @@ def test_driving_is_handed_over_and_the_arm_stops_for_it(site):
 def test_modes_can_be_switched_while_it_moves(site):
     with site.page() as page:
         drive(page)
+        pushed = page.u
         for mode, axes in (("end_effector", 1), ("assisted", None), ("latent", None)):
             page.send(type="mode", mode=mode, axes=axes)
-            page.wait(lambda state, mode=mode: state["mode"] == mode)
-            assert page.state["phase"] == "moving"
+            page.wait(lambda state, mode=mode: state["mode"] == mode and state["phase"] == "ready")
+            assert page.state["let_go_first"]
+            page.u = [0.0, 0.0]
+            page.wait(lambda state: not state["let_go_first"])
+            page.u = pushed
+            page.wait(lambda state: state["phase"] == "moving")
 
 
 def test_an_episode_ends_with_its_driver(site):
@@ -189,8 +197,15 @@ def test_pages_beyond_the_cap_are_turned_away(site):
         for _ in range(16):
             context = site.raw()
             held.append((context, context.__enter__()))
-        with pytest.raises(InvalidStatus), site.raw():
-            pass
+        # The next is told why, and that before it has said a word; many at once are not even accepted.
+        with site.raw() as refused:
+            assert json.loads(refused.recv(timeout=5.0))["notice"] == {
+                "code": "full",
+                "parameters": {"most": 16},
+            }
+            with pytest.raises(ConnectionClosed):
+                refused.recv(timeout=5.0)
+            assert refused.close_code == 1013
     finally:
         for context, _ in held:
             context.__exit__(None, None, None)

@@ -14,7 +14,7 @@ from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
 from latentarm.errors import UserError
-from latentarm.types import StepRecord
+from latentarm.types import StepRecord, Stop
 
 ENABLING_S: Final = 5.0
 """An arm that has not become ready for so long after it was asked to is left disabled, s."""
@@ -207,13 +207,13 @@ class ControlLoop:
         if now_s - self._sent_s <= self._step.hold_s:
             return False
         self._arm.stop()
-        self._step.halted("The loop was too late; the arm has stopped by itself.")
+        self._step.halted(Stop("The loop was too late; the arm has stopped by itself.", code="loop_late"))
         return True
 
     def _heed(self, status: ArmStatus) -> None:
         """Disengage where the arm takes no commands: it has stopped by itself, or somebody stopped it."""
         if not status.takes_commands and self._step.stopped is None:
-            self._step.halted(status.reason)
+            self._step.halted(Stop(status.reason))
 
     def _try_to_enable(self, now_s: float) -> bool:
         """Enable the arm and then the step; whether that is over, one way or the other."""

@@ -254,14 +254,18 @@ class Step:
         """
         self._engagement.replace(Stop(reason))
 
-    def halted(self, reason: str) -> None:
+    def halted(self, stop: Stop) -> None:
         """Record that a command ran out and the arm stopped by itself; stay stopped.
 
         Args:
-            reason: one short sentence for the person.
+            stop: why.
         """
-        self._engagement.stop(Stop(reason))
+        self._engagement.stop(stop)
         self._stack.reset()
+
+    def forget(self) -> None:
+        """Believe again what was believed at first: a motion that nobody steered says nothing of a goal."""
+        self._shared.reset()
 
     def __call__(self, given: Input, input_age_s: float, reading: Reading, time_s: float) -> StepRecord:
         """One pass through Algorithm 1.
@@ -277,7 +281,7 @@ class Step:
         """
         if (lost := self._timekeeping.refusal(time_s)) is not None:
             self._plausibility.reset()
-            self.halted(lost)
+            self.halted(Stop(lost))
         self._time_s = time_s
         self._faltering = False
         self._stack.tick(time_s)

@@ -119,6 +119,7 @@ class Arm:
         self.ghosts: dict[str, list[list[float]]] = {}
         self.things: dict[str, list[list[float]]] = {}
         self.states: list[dict[str, Any]] = []
+        self.tell: Callable[[str], None] = lambda message: None
 
     @property
     def tool(self) -> np.ndarray:
@@ -167,6 +168,18 @@ class Arm:
         assert self.state["tick"] > tick, "the server says nothing new"
         assert np.array_equal(before, self.tool)
 
+    def start_again(self) -> None:
+        """Put the arm and what is about it back by a jump; nobody drives, before and after."""
+        self.wait(lambda: self.state["driver"] is None)
+        for message, done in (
+            ("ask_to_drive", lambda: self.state["you"]),
+            ("reset", lambda: self.state["at_start"] and self.state["phase"] == "disengaged"),
+            ("release", lambda: self.state["driver"] is None),
+        ):
+            before = self.state["tick"]
+            self.tell(json.dumps({"type": message}))
+            self.wait(lambda done=done, before=before: self.state["tick"] > before + 20 and done())
+
     def listen(self, socket: Any) -> None:
         with suppress(ConnectionClosed):
             for frame in socket:
@@ -187,8 +200,9 @@ def _watching(address: str) -> Iterator[Arm]:
     with connect(f"{address.replace('http', 'ws', 1)}/drive", origin=address, compression=None) as socket:
         listener = threading.Thread(target=arm.listen, args=[socket], daemon=True)
         listener.start()
+        arm.tell = socket.send
         socket.send(json.dumps({"type": "hello", "version": 1, "name": "test"}))
-        arm.wait(lambda: arm.welcome and arm.ghosts)
+        arm.wait(lambda: arm.welcome and arm.ghosts, 60.0)
         # The first to come drives: not this one.
         socket.send(json.dumps({"type": "release"}))
         yield arm
@@ -236,14 +250,28 @@ def page(open_page: Callable[..., Page], arm: Arm) -> Page:
 
 
 def seated(page: Page, arm: Arm) -> Page:
-    """The page drives, and puts the arm back."""
+    """The page drives, and the arm is at its start."""
+    arm.start_again()
     page.get_by_role("button", name="Ask to drive").click()
     page.get_by_role("button", name="Let others drive").wait_for()
     page.get_by_role("radio", name="Learned, with help").check()
     arm.wait(lambda: arm.state["mode"] == "assisted")
-    page.get_by_role("button", name="Arm back to start").click()
-    time.sleep(0.5)
     return page
+
+
+def driven_back(page: Page, arm: Arm) -> None:
+    """A page that drives has the arm driven back to its start, and stops it there."""
+    for _ in range(TRIES):
+        if arm.state["at_start"]:
+            break
+        enable(page, arm)
+        # At once: who waits for a moving arm to rest may find it stopped.
+        page.locator("#way-back").dispatch_event("click")
+        arm.comes_to(lambda: arm.state["returning"], 1.0)
+        arm.comes_to(lambda: not arm.state["returning"], 20.0)
+    assert arm.state["at_start"], arm.state["reason"]
+    page.keyboard.press("Escape")
+    arm.comes_to_rest()
 
 
 def enable(page: Page, arm: Arm) -> None:
@@ -268,6 +296,11 @@ def move(page: Page, arm: Arm, press: Callable[[], Any], let_go: Callable[[], An
 @pytest.fixture
 def seat() -> Callable[[Page, Arm], Page]:
     return seated
+
+
+@pytest.fixture
+def drive_back() -> Callable[[Page, Arm], None]:
+    return driven_back
 
 
 @pytest.fixture

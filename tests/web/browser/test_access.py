@@ -70,7 +70,7 @@ def test_the_keyboard_reaches_everything_and_is_never_trapped(page):
         "panel",
         "mode",
         "release",
-        "reset",
+        "way-back",
         "record",
         "enable",
         "stop",

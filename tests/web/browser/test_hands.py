@@ -149,14 +149,14 @@ class TestProfile:
         with watch(address) as arm:
             yield arm
 
-    def test_a_chosen_profile_turns_the_stick_round(self, page, arm, press_enable, way):
+    def test_a_chosen_profile_turns_the_stick_round(self, page, arm, press_enable, drive_back, way):
         page.get_by_role("radio", name="Learned motions").check()
         arm.wait(lambda: arm.state["mode"] == "latent")
         press_enable(page, arm)
         plain = way(page, "ArrowLeft")
         page.keyboard.press("Escape")
         arm.comes_to_rest()
-        page.get_by_role("button", name="Arm back to start").click()
+        drive_back(page, arm)
         page.get_by_role("button", name="Settings").click()
         page.get_by_role("dialog").get_by_label("Your directions").select_option("mia")
         page.get_by_role("button", name="Done").click()

@@ -132,12 +132,11 @@ def question(page, arm, number):
     return arm.learning["personalise"]["motion"]
 
 
-def straightness(page, arm, person, drag, press_until_moving, press_enable):
+def straightness(page, arm, person, drag, press_until_moving, press_enable, drive_back):
     """The cosine between the way of the tool from its start and what the person means by up."""
     page.get_by_role("radio", name="Learned motions").check()
     arm.wait(lambda: arm.state["mode"] == "latent")
-    page.get_by_role("button", name="Arm back to start").click()
-    page.wait_for_timeout(500)
+    drive_back(page, arm)
     begin = arm.tool
     # A busy computer keeps inputs waiting, and the arm stops then: whoever drives enables it again.
     for _ in range(8):
@@ -154,14 +153,14 @@ def straightness(page, arm, person, drag, press_until_moving, press_enable):
 
 
 def test_a_person_is_asked_and_the_arm_does_what_they_mean(
-    open_page, arm, person, drag_stick, press_until_moving, press_enable, run
+    open_page, arm, person, drag_stick, press_until_moving, press_enable, drive_back, run
 ):
     page = open_page(GAMEPAD)
     page.get_by_role("button", name="Ask to drive").click()
     page.get_by_role("button", name="Let others drive").wait_for()
-    hands = (person, drag_stick, press_until_moving, press_enable)
+    hands = (person, drag_stick, press_until_moving, press_enable, drive_back)
     before = straightness(page, arm, *hands)
-    page.get_by_role("button", name="Arm back to start").click()
+    drive_back(page, arm)
 
     page.get_by_role("link", name="Personalise").click()
     begin = page.get_by_role("button", name="Begin")

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { Connection } from "#pages/connection/connection.js";
-import { DriverLease, whoDrives } from "#pages/connection/driver_lease.js";
+import { DriverLease, whoAsks, whoDrives } from "#pages/connection/driver_lease.js";
 import { FakeSocket, newBrowser, pass, stateOf } from "./browser.js";
 
 let socket;
@@ -61,15 +61,22 @@ test("Stop takes back what waits", () => {
   assert.equal(acted, 0);
 });
 
-for (const [fields, askedHere, words] of [
-  [{}, false, "Nobody is driving."],
-  [{ you: true, driver: "me" }, false, "You are driving."],
-  [{ you: true, driver: "me", watchers: 1 }, false, "You are driving; one other page watches."],
-  [{ you: true, driver: "me", watchers: 3 }, false, "You are driving; 3 other pages watch."],
-  [{ you: true, driver: "me", asking: "b", asking_name: "Bea" }, false, "You are driving. Bea asks to drive."],
-  [{ you: true, driver: "me", asking: "b" }, false, "You are driving. Somebody asks to drive."],
-  [{ driver: "b", driver_name: "Bea" }, false, "Bea is driving; you are watching and can stop the arm."],
-  [{ driver: "b" }, true, "Somebody else is driving; you are watching and can stop the arm. You have asked to drive."],
+for (const [fields, asks, words] of [
+  [{}, null, "Nobody is driving."],
+  [{ you: true, driver: "me" }, null, "You are driving."],
+  [{ you: true, driver: "me", watchers: 1 }, null, "You are driving; one other page watches."],
+  [{ you: true, driver: "me", watchers: 3 }, null, "You are driving; 3 other pages watch."],
+  [{ you: true, driver: "me", asking: "b", asking_name: "Bea" }, "another", "You are driving. Bea asks to drive."],
+  [{ you: true, driver: "me", asking: "b" }, "another", "You are driving. Somebody asks to drive."],
+  [{ driver: "b", driver_name: "Bea" }, null, "Bea is driving; you are watching and can stop the arm."],
+  [{ driver: "b", driver_name: "Bea", asking: "me" }, "you",
+    "Bea is driving; you are watching and can stop the arm. You have asked to drive: wait until Bea hands over."],
+  [{ driver: "b", driver_name: "Bea", asking: "c", asking_name: "Cy" }, "another",
+    "Bea is driving; you are watching and can stop the arm. Cy has asked to drive already."],
 ]) {
-  test(`who drives: ${words}`, () => assert.equal(whoDrives(stateOf(fields), askedHere), words));
+  test(`who drives: ${words}`, () => {
+    const state = stateOf(fields);
+    assert.equal(whoAsks(state, "me"), asks);
+    assert.equal(whoDrives(state, asks), words);
+  });
 }

@@ -15,9 +15,12 @@ from latentarm.demonstrations.provenance import provenance_now
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.ghosts import GhostPaths
+from latentarm.web.arm_process.late_stops import LateStops
+from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.task_run import TaskRun
+from latentarm.web.arm_process.way_back import AT_START_RAD, ENDED, WayBack
 from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import (
     BeginTask,
@@ -34,6 +37,7 @@ from latentarm.web.protocol.channel import (
     Record,
     Report,
     Reset,
+    Return,
     parse_stop,
 )
 from latentarm.web.protocol.notice import Notice
@@ -128,9 +132,12 @@ class Drive:
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
-        self._loop = ControlLoop(self._step, arm, self._inputs, clock, [self._observe, *observers])
+        self._neutral = NeutralFirst(self._inputs)
+        self._way_back = WayBack(self._neutral, self._inputs, setup.start)
+        self._late = LateStops()
+        self._loop = ControlLoop(self._step, arm, self._way_back, clock, [self._observe, *observers])
         self._stop_version = channel.stop.version
-        self._stopped_for = Notice(code="stop_pressed")
+        self._reasons: dict[str, Notice] = {}
         self._enable_until_s = -math.inf
         self._enable_driver = -1
         self._seen = setup.start
@@ -168,6 +175,8 @@ class Drive:
         if self._steering.ending_episode and self._step.at_rest:
             self._end_episode()
         self._obey(record)
+        self._late.look(self._step.stopped, self._inputs.driver)
+        self._follow_way_back(record)
         self._enable_if_asked(record.time_s)
         self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
@@ -199,7 +208,8 @@ class Drive:
 
     def _stop(self, reason: Notice) -> None:
         self._enable_until_s = self._note_until_s = -math.inf
-        self._stopped_for = reason
+        if self._step.stopped is None:
+            self._reasons[reason.text] = reason
         self._loop.stop(reason.text)
 
     def _stop_if_enabled(self, reason: Notice) -> None:
@@ -220,6 +230,10 @@ class Drive:
             case ChooseMode(mode=mode, axes=axes):
                 if mode in self._setup.modes:
                     self._choose(mode, self._steering.axes if axes is None else axes)
+            case Return(on=True):
+                self._set_out(record)
+            case Return():
+                self._end_way_back()
             case Record(on=True, task=task, person=person):
                 self._begin_episode(task, person)
             case Record():
@@ -245,10 +259,43 @@ class Drive:
 
     def _choose(self, mode: ModeName, axes: int) -> None:
         steering = self._steering
+        before = steering.mode, steering.axes
         steering.mode = mode
         steering.axes = min(max(axes, 0), len(self._setup.axes) - 1)
+        if before != (steering.mode, steering.axes):
+            # A stick that is held would go on, with another meaning.
+            self._neutral.demand()
+        self._way_back.end()
         self._setup.help.on = mode == "assisted"
         self._step.choose_mode(self._setup.mode_index(mode, steering.axes))
+
+    def _set_out(self, record: StepRecord) -> None:
+        """Begin the way back to the start."""
+        if self._step.stopped is not None or not self._step.at_rest or self._inputs.deflected:
+            self._say(Notice(code="return_not_now"))
+            return
+        # An episode is one motion of a person's.
+        self._end_episode()
+        self._note_until_s = -math.inf
+        self._setup.help.on = False
+        self._step.choose_mode(self._setup.way_back)
+        self._way_back.begin(record.time_s)
+
+    def _end_way_back(self) -> None:
+        self._choose(self._steering.mode, self._steering.axes)
+
+    def _follow_way_back(self, record: StepRecord) -> None:
+        """End the way back where it is over, or the arm was stopped."""
+        if not self._way_back.on:
+            if record.input.any() and self._note in ENDED.values():
+                self._note_until_s = -math.inf
+            return
+        self._step.forget()
+        if self._step.stopped is not None:
+            self._end_way_back()
+        elif (outcome := self._way_back.outcome(self._seen, record.time_s)) is not None:
+            self._end_way_back()
+            self._say(ENDED[outcome])
 
     def _begin_episode(self, task: str, person: str) -> None:
         self._steering.ending_episode = False
@@ -294,6 +341,7 @@ class Drive:
                 self._say(Notice(code="let_go_first"))
             else:
                 self._note_until_s = -math.inf
+                self._reasons.clear()
                 self._loop.enable()
 
     def _look(self, record: StepRecord) -> None:
@@ -302,7 +350,9 @@ class Drive:
         if phase < 4:
             # Without a reading nobody knows the gripper, which the decoder may look at.
             if not math.isnan(record.state[0]):
-                self._ghosts.look(phase, self._step.context(self._seen), record.mode)
+                steering = self._steering
+                mode = self._setup.mode_index(steering.mode, steering.axes)
+                self._ghosts.look(phase, self._step.context(self._seen), mode)
         elif self._steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
             statistics = self._loop.statistics()
             self._late_share = 1.0 - statistics.met_share
@@ -318,8 +368,8 @@ class Drive:
 
     def _reason(self, stop: Stop | None) -> Notice | None:
         """Why the arm may not move; most of what the safety filters say has a sentence only."""
-        if stop is None or stop.reason == self._stopped_for.text:
-            return None if stop is None else self._stopped_for
+        if stop is None or stop.reason in self._reasons:
+            return None if stop is None else self._reasons[stop.reason]
         return Notice(code=stop.code or "arm_stopped", parameters={"text": stop.reason})
 
     def _report(self, record: StepRecord) -> Report:
@@ -337,6 +387,10 @@ class Drive:
             note=self._note if record.time_s < self._note_until_s else None,
             reason=self._reason(self._step.stopped),
             held_back=held_back[0] if held_back and phase == "moving" else None,
+            returning=self._way_back.on,
+            at_start=self._way_back.away(self._seen) <= AT_START_RAD,
+            let_go_first=self._neutral.waiting,
+            late_stops=self._late.count,
             mode=self._steering.mode,
             axes=self._steering.axes,
             run=None if spec.run is None else str(spec.run),

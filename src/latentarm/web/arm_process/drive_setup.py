@@ -14,6 +14,7 @@ from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
+from latentarm.controllers.back_to_start import BackToStart
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.joined import JoinedController
 from latentarm.controllers.latent import latent_controller
@@ -152,6 +153,11 @@ class DriveSetup:
         """
         return (1 if self.latent_dim else 0) + axes if mode == "end_effector" else 0
 
+    @property
+    def way_back(self) -> int:
+        """Index of the mode that `step` has after those of the controller: the way back to the start."""
+        return len(self.controller.modes)
+
     def step(self, arm: Arm | None = None) -> Step:
         """Algorithm 1 with its safety filters, disengaged.
 
@@ -169,7 +175,7 @@ class DriveSetup:
         goals = np.array([goal.configuration for goal in self.task.goals])
         return Step(
             self.task.robot,
-            self.controller,
+            JoinedController([self.controller, BackToStart(self.task.robot, self.start)]),
             SafetyConfig(
                 input_timeout_s=INPUT_TIMEOUT_S,
                 input_grace_s=INPUT_GRACE_S,

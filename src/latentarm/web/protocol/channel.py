@@ -111,6 +111,14 @@ class ChooseRun(Message):
 
 
 @final
+class Return(Message):
+    """Move the arm back to its start, while it is enabled and the stick is let go; or end that."""
+
+    order: Literal["return"] = "return"
+    on: bool
+
+
+@final
 class Record(Message):
     """Begin an episode of what is driven, or end it once the arm is at rest."""
 
@@ -141,7 +149,7 @@ class BeginTask(Message):
     anew: bool
 
 
-Order = Enable | ChooseMode | ChooseProfile | ChooseRun | Record | Reset | BeginTask
+Order = Enable | ChooseMode | ChooseProfile | ChooseRun | Return | Record | Reset | BeginTask
 _ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="order")])
 
 
@@ -248,6 +256,11 @@ class Report(Message):
         note: shown for a while instead of what the arm does; None for nothing.
         reason: why the arm may not move; None if it may.
         held_back: why it moves slower than asked; None if it does not.
+        returning: whether it is on its way back to its start.
+        at_start: whether it is there.
+        let_go_first: whether the stick does something else by now: it must be let go before it moves the arm.
+        late_stops: how often the arm has stopped because no input came in time, since this driver began to
+            drive this.
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
         run: path of the run that is driven, as it was named; None without one.
@@ -277,6 +290,10 @@ class Report(Message):
     note: Notice | None
     reason: Notice | None
     held_back: HeldBack | None
+    returning: bool
+    at_start: bool
+    let_go_first: bool
+    late_stops: int
     mode: ModeName
     axes: int
     run: str | None

@@ -74,9 +74,15 @@ class PressEnable(Message):
 
 @final
 class PressStop(Message):
-    """Stop the arm, from any page."""
+    """Stop the arm, from any page.
+
+    Attributes:
+        why: a person pressed Stop, or the page could not be sure of its person any more (left, hidden, a
+            control lost, a dialog opened).
+    """
 
     type: Literal["stop"]
+    why: Literal["pressed", "page"] = "pressed"
 
 
 @final
@@ -135,6 +141,17 @@ class RecordEpisode(Message):
 
 
 @final
+class ReturnArm(Message):
+    """Move the arm back to its start, while it is enabled and the stick is let go; or end that.
+
+    It goes on as long as neutral inputs come; any push ends it, and Stop, as always.
+    """
+
+    type: Literal["return"]
+    on: bool
+
+
+@final
 class ResetArm(Message):
     """Put the simulated arm back to its start; while it is not enabled."""
 
@@ -167,6 +184,7 @@ ClientMessage = (
     | Release
     | TrailClear
     | RecordEpisode
+    | ReturnArm
     | ResetArm
     | BeginRun
     | Train
@@ -292,6 +310,10 @@ class State(Message):
         note: shown instead of the arm's state, or null.
         reason: why the arm may not move, or null if it may.
         held_back: why it moves slower than asked, or null.
+        returning: whether it moves back to its start.
+        at_start: whether it is there.
+        let_go_first: whether the stick does something else by now: it must be let go before it moves the arm.
+        late_stops: how often the arm has stopped in this drive because no input came in time.
         mode: how the arm is steered.
         axes: which pair of the end-effector's.
         profile: whose alignment.
@@ -322,6 +344,10 @@ class State(Message):
     note: Notice | None
     reason: Notice | None
     held_back: HeldBack | None
+    returning: bool
+    at_start: bool
+    let_go_first: bool
+    late_stops: int
     mode: ModeName
     axes: int
     profile: str | None

@@ -2,7 +2,7 @@
 
 import asyncio
 from contextlib import suppress
-from typing import Final, final
+from typing import Final, Literal, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -16,6 +16,7 @@ from latentarm.web.protocol.channel import (
     Given,
     Record,
     Reset,
+    Return,
 )
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.messages import (
@@ -34,6 +35,7 @@ from latentarm.web.protocol.messages import (
     Refused,
     Release,
     ResetArm,
+    ReturnArm,
     TrailClear,
     parse_message,
 )
@@ -53,6 +55,12 @@ WATCHER_PERIOD_S: Final = 0.033
 """How often a page is sent a state; the start of a motion is sent at once. The driver's is also
 what makes the next input fresh."""
 
+_FULL: Final = 1013
+"""The code that asks a page to try again later."""
+
+_BEING_REFUSED: Final = 8
+"""So many pages more are told at once that there is no room; any others are not even accepted."""
+
 _PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)
 """Codes with which the server below us hangs up: no frame, no text, too many frames, or one far too long."""
 
@@ -65,12 +73,12 @@ class _ExpiredError(Exception):
     """A page's cookie has expired."""
 
 
-async def _hang_up(socket: WebSocket, code: int, why: NoticeCode) -> None:
+async def _hang_up(socket: WebSocket, code: int, why: Notice) -> None:
     """Send the reason and close, without waiting for a page that no longer reads."""
     with suppress(RuntimeError, WebSocketDisconnect, TimeoutError):
         async with asyncio.timeout(HANG_UP_WITHIN_S):
-            await socket.send_text(Refused(notice=Notice(code=why)).model_dump_json())
-            await socket.close(code, why)
+            await socket.send_text(Refused(notice=why).model_dump_json())
+            await socket.close(code, why.code)
 
 
 @final
@@ -96,19 +104,22 @@ class DriveSocket:
 
     async def __call__(self, socket: WebSocket) -> None:
         """Serve one page until it goes."""
-        if self._open >= MOST:
-            await socket.close(1013)
+        if self._open >= MOST + _BEING_REFUSED:
+            await socket.close(_FULL)
             return
         self._open += 1
         try:
             await socket.accept()
-            await self._serve(socket)
+            if self._open > MOST:
+                await _hang_up(socket, _FULL, Notice(code="full", parameters={"most": MOST}))
+            else:
+                await self._serve(socket)
         finally:
             self._open -= 1
 
-    def stop(self, who: str) -> None:
-        """Stop the arm, in the name of a page."""
-        self._control.stop(Notice(code="stop_pressed_by", parameters={"name": who}))
+    def stop(self, page: Page, why: Literal["pressed", "page"]) -> None:
+        """Stop the arm, in the name of a page; see `PressStop`."""
+        self._control.stop(_of(page, "stop_pressed_by" if why == "pressed" else "page_stopped"))
 
     async def _serve(self, socket: WebSocket) -> None:
         page: Page | None = None
@@ -123,21 +134,21 @@ class DriveSocket:
                 self._take(page, await _receive(socket))
         except _ViolationError:
             self._control.stop(Notice(code="message_invalid"))
-            await _hang_up(socket, 1008, "page_refused")
+            await _hang_up(socket, 1008, Notice(code="page_refused"))
         except TimeoutError:
             # Nobody is driving from here yet, so a slow or silent connection does not stop the arm.
-            await _hang_up(socket, 1008, "no_hello")
+            await _hang_up(socket, 1008, Notice(code="no_hello"))
         except _ExpiredError:
             if page is not None and self._sessions.drives(page):
                 self._control.stop(Notice(code="driver_expired"))
-            await _hang_up(socket, EXPIRED, EXPIRED_WHY)
+            await _hang_up(socket, EXPIRED, Notice(code=EXPIRED_WHY))
         except WebSocketDisconnect:
             pass
         finally:
             if sender is not None:
                 sender.cancel()
             if page is not None and self._sessions.leave(page):
-                self._driver_changed("driver_gone")
+                self._driver_changed(_of(page, "driver_gone"))
 
     async def _send_states(self, socket: WebSocket, page: Page) -> None:
         """States as fast as the page takes them, always the newest: nothing queues up.
@@ -168,7 +179,7 @@ class DriveSocket:
         if isinstance(message, Hello) or not self._suits(message):
             raise _ViolationError
         if isinstance(message, PressStop):
-            self.stop(page.name)
+            self.stop(page, message.why)
         elif isinstance(message, AskToDrive):
             self._sessions.ask(page)
         elif isinstance(message, TrailClear):
@@ -197,6 +208,8 @@ class DriveSocket:
                 self._control.order(ChooseProfile(name=name))
             case RecordEpisode(on=on, task=task):
                 self._control.order(Record(on=on, task=task, person=page.name))
+            case ReturnArm(on=on):
+                self._control.order(Return(on=on))
             case ResetArm():
                 self._control.order(Reset())
             case BeginRun(choice=choice, anew=anew):
@@ -209,19 +222,19 @@ class DriveSocket:
                 self._learning.choose_run(run)
             case HandOver(to=to):
                 if self._sessions.hand_over(page, to):
-                    self._driver_changed("handed_over")
+                    self._driver_changed(_of(page, "handed_over"))
             case Release():
                 if self._sessions.release(page):
-                    self._driver_changed("driver_released")
+                    self._driver_changed(_of(page, "driver_released"))
             case _ if isinstance(message, PersonaliseMessage):
                 self._learning.personalising.take(message)
             case _:
                 pass
 
-    def _driver_changed(self, why: NoticeCode) -> None:
+    def _driver_changed(self, why: Notice) -> None:
         """The arm stops for it, and an episode is one driver's."""
         self._asked = None
-        self._control.stop(Notice(code=why))
+        self._control.stop(why)
         self._control.order(Record(on=False, task=""))
 
     def _give(self, message: DriverInput) -> None:
@@ -239,6 +252,11 @@ class DriveSocket:
                 gripper=self._asked,
             )
         )
+
+
+def _of(page: Page, code: NoticeCode) -> Notice:
+    """What this page has done; its id lets it tell its own person so."""
+    return Notice(code=code, parameters={"name": page.name, "page": page.id})
 
 
 async def _receive(socket: WebSocket) -> ClientMessage:

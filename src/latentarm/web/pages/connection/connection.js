@@ -5,6 +5,8 @@
  * come; "run_changed" when another run is driven from now on. What they carry is in `detail`.
  */
 
+import { OwnPages } from "./own_pages.js";
+
 /** @import {ClientMessage, Refused, ServerMessage, State, Welcome, LearningState} from "./messages.js" */
 
 /** How old the newest state may be before inputs are held back, ms: the server would not take them anyway. */
@@ -24,6 +26,9 @@ export class Connection extends EventTarget {
     /** @type {LearningState | null} What is learned, tried and kept. */
     this.learning = null;
     this.open = false;
+    /** @type {boolean | null} Whether this page drove when it last heard of the arm; null before. */
+    this.drove = null;
+    this.own = new OwnPages();
     this._sequence = 0;
     this._heardAt = -Infinity;
     this._waitMs = FIRST_WAIT_MS;
@@ -101,6 +106,7 @@ export class Connection extends EventTarget {
       case "welcome": {
         const before = this.welcome;
         this.welcome = message;
+        this.own.add(message.id);
         if (before !== null && before.run !== message.run) this._tell("run_changed", message.run);
         break;
       }
@@ -114,6 +120,7 @@ export class Connection extends EventTarget {
           ghosts: message.ghosts ?? this.state?.ghosts ?? null,
           things: message.things ?? this.state?.things ?? null,
         };
+        this.drove = message.you;
         break;
       default:
     }

@@ -44,18 +44,31 @@ export class DriverLease {
 }
 
 /**
+ * Which page asks to drive: this one, another one, or none.
+ *
+ * @param {Pick<State, "asking">} state
+ * @param {string | undefined} id of this page
+ */
+export function whoAsks({ asking }, id) {
+  if (asking === null) return null;
+  return asking === id ? "you" : "another";
+}
+
+/**
  * Who drives, as this page's person is told.
  *
  * @param {State} state
- * @param {boolean} askedHere whether this page is the one that asks to drive
+ * @param {"you" | "another" | null} asks which page asks to drive
  */
-export function whoDrives(state, askedHere) {
+export function whoDrives(state, asks) {
   const { you, driver, driver_name, asking, asking_name, watchers } = state;
   if (you && asking !== null) return say("driver.you_asked", { name: asking_name || say("driver.somebody") });
   if (you) return watchers ? say("driver.you_watched", { count: watchers }) : say("driver.you");
   if (driver === null) return say("driver.nobody");
-  const text = say("driver.other", { name: driver_name || say("driver.somebody_else") });
-  return askedHere ? `${text} ${say("driver.asked")}` : text;
+  const name = driver_name || say("driver.somebody_else");
+  const text = say("driver.other", { name });
+  if (asks === "you") return `${text} ${say("driver.asked", { name })}`;
+  return asks === "another" ? `${text} ${say("driver.asked_already", { asking: asking_name || say("driver.somebody") })}` : text;
 }
 
 /**
@@ -63,6 +76,8 @@ export function whoDrives(state, askedHere) {
  * @param {Connection} connection
  */
 export function attachDriverPanel(parts, connection) {
+  let shown = "";
+  const hasEnable = document.getElementById("enable") !== null;
   parts.ask.addEventListener("click", () => connection.send({ type: "ask_to_drive" }));
   parts.release.addEventListener("click", () => connection.send({ type: "release" }));
   parts.handOver.addEventListener("click", () => {
@@ -74,12 +89,16 @@ export function attachDriverPanel(parts, connection) {
     const { state, welcome } = connection;
     if (!state) return;
     const { you, asking, asking_name } = state;
-    const askedHere = asking !== null && asking === welcome?.id;
-    parts.ask.hidden = you;
-    parts.ask.disabled = askedHere;
+    const asks = whoAsks(state, welcome?.id);
+    const now = JSON.stringify([you, state.driver, state.driver_name, asking, asking_name, asks, state.watchers]);
+    if (now === shown) return;
+    shown = now;
+    // Where another page drives, the button next to Stop asks; a page without one asks here.
+    parts.ask.hidden = you || (hasEnable && state.driver !== null);
+    parts.ask.disabled = asks !== null;
     parts.release.hidden = !you;
     parts.handOver.hidden = !you || asking === null;
     setText(parts.handOver, asking_name ? say("driver.hand_over_to", { name: asking_name }) : say("driver.hand_over"));
-    setText(parts.text, whoDrives(state, askedHere));
+    setText(parts.text, whoDrives(state, asks));
   });
 }

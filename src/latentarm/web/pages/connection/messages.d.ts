@@ -103,7 +103,7 @@ export interface NamedThing {
 }
 
 export interface Notice {
-  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "checking_run" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "handed_over" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "one_axis_weak" | "page_refused" | "profile_exists" | "question_began" | "recording_ended" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "work_broke_off";
+  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "at_start" | "asking" | "asking_already" | "checking_run" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "loop_late" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "one_axis_weak" | "page_refused" | "page_stopped" | "profile_exists" | "question_began" | "recording_ended" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "work_broke_off";
   parameters: Record<string, string | number>;
 }
 
@@ -133,6 +133,7 @@ export interface PressEnable {
 
 export interface PressStop {
   type: "stop";
+  why?: "pressed" | "page";
 }
 
 export interface Profile {
@@ -177,6 +178,11 @@ export interface ResetArm {
   type: "reset";
 }
 
+export interface ReturnArm {
+  type: "return";
+  on: boolean;
+}
+
 export interface ShownMotion {
   duration_s: number;
   frames: number[][][];
@@ -196,6 +202,10 @@ export interface State {
   note: Notice | null;
   reason: Notice | null;
   held_back: "clearance" | "freshness" | "workspace" | "joint_position" | null;
+  returning: boolean;
+  at_start: boolean;
+  let_go_first: boolean;
+  late_stops: number;
   mode: "latent" | "assisted" | "end_effector";
   axes: number;
   profile: string | null;
@@ -294,6 +304,6 @@ export interface Why {
   thing: string;
 }
 
-export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ResetArm | BeginRun | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment;
+export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ReturnArm | ResetArm | BeginRun | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment;
 
 export type ServerMessage = Welcome | State | LearningState | Refused;

@@ -1,48 +1,97 @@
 /** The state of things in one sentence, for eyes and for screen readers. */
 
 import { setText } from "../layout/dom.js";
-import { say, sayNotice } from "../layout/words.js";
+import { say } from "../layout/words.js";
+import { whoAsks } from "./driver_lease.js";
+import { concerns, sayTo } from "./notices.js";
 
 /** @import {HaltReason} from "../inputs/deflection.js" */
 /** @import {Connection} from "./connection.js" */
 /** @import {State} from "./messages.js" */
+/** @import {Reader} from "./notices.js" */
 
 /** A sentence that lasts shorter than this, ms, is not announced: people who nudge would hear nothing else. */
 const SETTLE_MS = 120;
 const SILENT_MS = 400;
 const LOOK_MS = 200;
+/** How long is said why a press does nothing, ms. */
+const REFUSED_MS = 4000;
+
+/**
+ * @typedef {object} PageState
+ * @property {HaltReason | null} halted why this page itself stopped the arm
+ * @property {string} turnedAway why the server refused the page
+ * @property {boolean} canEnable whether it has a button that enables
+ * @property {boolean} pressed whether a press did nothing a moment ago
+ * @property {"page" | "connection"} late what was too slow, where an input came late
+ */
+
+/** @typedef {Pick<Connection, "open" | "state" | "silenceMs" | "engaged" | "drove" | "own" | "welcome">} Heard */
 
 /**
  * What to say, and the phase that gives it its colour.
  *
- * @param {Pick<Connection, "open" | "state" | "silenceMs" | "engaged">} connection
- * @param {{halted: HaltReason | null, refused: string, canEnable: boolean}} page why this page itself stopped the arm,
- *   why the server refused it, and whether it has a button that enables
+ * @param {Heard} connection
+ * @param {PageState} page
  * @returns {{phase: string, text: string}}
  */
-export function statusOf({ open, state, silenceMs, engaged }, { halted, refused, canEnable }) {
-  if (!open) return { phase: "lost", text: refused || say("status.lost") };
+export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome }, { halted, turnedAway, canEnable, pressed, late }) {
+  if (turnedAway && state === null) return { phase: "lost", text: turnedAway };
+  if (!open) return { phase: "lost", text: say(drove === null ? "status.unreached" : drove ? "status.lost" : "status.lost_watching") };
   if (state === null) return { phase: "connecting", text: say("status.connecting") };
-  if (silenceMs > SILENT_MS) return { phase: "lost", text: say("status.silent") };
-  if (halted !== null && !engaged) return { phase: "disengaged", text: say(`halted.${halted}`) };
-  return { phase: state.phase, text: phaseWords(state, canEnable) };
+  const { you } = state;
+  if (silenceMs > SILENT_MS) return { phase: "lost", text: say(you ? "status.silent" : "status.silent_watching") };
+  if (pressed && !you && state.driver !== null) return { phase: state.phase, text: say("status.watching_first") };
+  if (pressed && !engaged) return { phase: "disengaged", text: say("halted.not_enabled") };
+  if (halted !== null && you && !engaged) return { phase: "disengaged", text: say(`halted.${halted}`) };
+  const reader = { you, own, late };
+  const text = you ? driverWords(state, canEnable, reader) : watcherWords(state, canEnable, whoAsks(state, welcome?.id) === "you", reader);
+  return { phase: state.phase, text };
 }
 
 /**
- * What the arm does, and what to do next.
+ * What the arm does, and what its driver does next.
  *
  * @param {State} state
  * @param {boolean} canEnable
+ * @param {Reader} reader
  */
-function phaseWords({ phase, note, reason, held_back }, canEnable) {
-  if (note !== null) return sayNotice(note);
-  const parameters = { reason: reason === null ? "" : sayNotice(reason) };
+function driverWords({ phase, note, reason, held_back, returning, let_go_first }, canEnable, reader) {
+  if (concerns(note, true)) return sayTo(note, reader);
+  const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
+  const cause = held_back && say(`held_back.${held_back}`);
+  if (returning) return cause === null ? say("status.returning") : say("status.returning_held_back", { cause });
   switch (phase) {
-    case "ready": return say("status.ready");
-    case "moving": return held_back === null ? say("status.moving") : say("status.held_back", { cause: say(`held_back.${held_back}`) });
+    case "ready": return say(let_go_first ? "status.let_go" : "status.ready");
+    case "moving": return cause === null ? say("status.moving") : say("status.held_back", { cause });
     case "stopping": return say("status.stopping", parameters);
     default: return canEnable ? say(`status.${phase}`, parameters) : parameters.reason;
   }
+}
+
+/**
+ * What the arm does, for those who do not drive it.
+ *
+ * @param {State} state
+ * @param {boolean} canEnable
+ * @param {boolean} asked whether this page has asked to drive
+ * @param {Reader} reader
+ */
+function watcherWords({ phase, note, reason, held_back, returning, driver, driver_name }, canEnable, asked, reader) {
+  if (concerns(note, false)) return sayTo(note, reader);
+  const name = driver_name || say("driver.somebody_else");
+  const parameters = { name, reason: reason === null ? "" : sayTo(reason, reader) };
+  if (returning) return say("status.returning_watching");
+  switch (phase) {
+    case "ready": return say("status.ready_watching", parameters);
+    case "moving": return held_back === null
+      ? say("status.moving_watching", parameters)
+      : say("status.held_back_watching", { name, cause: say(`held_back.${held_back}`) });
+    case "stopping": return say("status.stopping", parameters);
+    default:
+  }
+  if (driver === null) return canEnable ? say("status.disengaged_nobody", parameters) : parameters.reason;
+  return say(asked ? "status.asked" : "status.watching", parameters);
 }
 
 /**
@@ -52,14 +101,27 @@ function phaseWords({ phase, note, reason, held_back }, canEnable) {
 export function attachStatus(parts, connection) {
   /** @type {HaltReason | null} */
   let halted = null;
-  let refused = "";
+  let turnedAway = "";
   let wanted = "";
+  let refusedUntil = -Infinity;
+  let wasLate = false;
+  /** @type {"page" | "connection"} */
+  let late = "connection";
+  /** Whether this page itself was too slow a moment ago. */
+  let slow = () => false;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   const canEnable = document.getElementById("enable") !== null;
 
   const show = () => {
-    const { phase, text } = statusOf(connection, { halted, refused, canEnable });
+    const { state } = connection;
+    const isLate = state?.reason?.code === "input_late";
+    if (isLate && !wasLate) late = slow() ? "page" : "connection";
+    wasLate = isLate;
+    // What this page did counts for nothing once somebody else drives.
+    if (state !== null && !state.you) halted = null;
+    const pressed = performance.now() < refusedUntil;
+    const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, pressed, late });
     if (parts.line.dataset.phase !== phase) parts.line.dataset.phase = phase;
     if (text === wanted) return;
     wanted = text;
@@ -70,10 +132,10 @@ export function attachStatus(parts, connection) {
   connection.addEventListener("state", show);
   connection.addEventListener("open", show);
   connection.addEventListener("welcome", () => {
-    refused = "";
+    turnedAway = "";
   });
   connection.addEventListener("refused", (event) => {
-    refused = sayNotice(/** @type {CustomEvent} */ (event).detail.notice);
+    turnedAway = sayTo(/** @type {CustomEvent} */ (event).detail.notice, { you: false, own: connection.own, late });
     show();
   });
   setInterval(show, LOOK_MS);
@@ -82,7 +144,17 @@ export function attachStatus(parts, connection) {
     /** @param {HaltReason | null} why this page itself has stopped the arm */
     halted(why) {
       halted = why;
+      refusedUntil = -Infinity;
       show();
+    },
+    /** A press cannot move the arm now: say why. */
+    refused() {
+      refusedUntil = performance.now() + REFUSED_MS;
+      show();
+    },
+    /** @param {() => boolean} isSlow whether this page itself was too slow a moment ago */
+    watch(isSlow) {
+      slow = isSlow;
     },
   };
 }

@@ -1,11 +1,15 @@
 /** The Drive page: puts its parts together. */
 
+import { attachEnableButton, enableButtonOf } from "../connection/enable_button.js";
+import { attachDialogs, dialogIsOpen } from "../inputs/dialogs.js";
 import { attachDpad } from "../inputs/dpad.js";
 import { DriveInput } from "../inputs/drive_input.js";
 import { attachGamepad } from "../inputs/gamepad.js";
 import { attachGripper } from "../inputs/gripper.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
+import { attachNeutralFirst } from "../inputs/neutral_first.js";
+import { paced } from "../inputs/paced.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { modeInput } from "../inputs/shaping.js";
 import { attachStick } from "../inputs/stick.js";
@@ -17,6 +21,7 @@ import { attachViews } from "../views/attach_views.js";
 import { motionWords } from "../views/directions.js";
 import { attachPredictions, personalPaths } from "../views/predictions.js";
 import { attachBelief } from "./belief.js";
+import { attachLateStops } from "./late_stops.js";
 import { attachModes } from "./modes.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
@@ -24,6 +29,7 @@ import { attachSounds } from "./sounds.js";
 import { attachTask } from "./task_panel.js";
 import { wantedThing } from "./task_words.js";
 import { whereWords } from "./where_words.js";
+import { attachWayBack } from "./way_back.js";
 
 /** @import {Welcome} from "../connection/messages.js" */
 /** @import {Drawing} from "../views/drawing.js" */
@@ -43,12 +49,20 @@ const shaped = (/** @type {number} */ x, /** @type {number} */ y) =>
 
 const input = new DriveInput(connection, shaped);
 input.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
+status.watch(() => input.lateness.wasSlow);
+attachDialogs(input);
+attachNeutralFirst(connection, input);
 
 /** This page drives first, if nobody else does, and then enables the arm: one press for both. */
 const enable = () => {
-  if (!connection.engaged) lease.ask(() => input.enable());
+  // Behind a dialog nothing moves. A press that enables asks nobody for anything.
+  if (dialogIsOpen()) return;
+  if (!connection.driving && connection.state?.driver) status.refused();
+  else if (!connection.engaged) lease.ask(() => input.enable());
 };
-byId("enable").addEventListener("click", enable);
+attachEnableButton(byId("enable"), connection, enable);
+attachLateStops(byId("late-stops"), connection);
+const wayBack = attachWayBack({ button: byId("way-back"), why: byId("way-back-why") }, connection);
 
 const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection);
 attachTrialBanner(connection, settings, lease);
@@ -72,9 +86,9 @@ const gripper = attachGripper({
   open: byId("gripper-open", HTMLButtonElement),
   close: byId("gripper-close", HTMLButtonElement),
   state: byId("gripper-state"),
-}, connection, input, () => status.halted("not_enabled"));
+}, connection, input, status.refused);
 attachStick(byId("stick"), byId("stick-value"), input, settings);
-attachDpad(byId("dpad"), byId("dpad-help"), input, settings, () => status.halted("not_enabled"));
+attachDpad(byId("dpad"), byId("dpad-help"), input, settings, status.refused);
 const scanner = attachScanning({
   list: byId("scan"),
   press: byId("switch", HTMLButtonElement),
@@ -82,7 +96,12 @@ const scanner = attachScanning({
   help: byId("scan-help"),
 }, input, settings, () => {
   const mode = { id: "mode", label: say("scanning.other_mode"), act: modes.next };
-  return input.live ? [...directionChoices(), ...gripper.choices(), mode, { id: "stop", label: say("layout.stop"), act: stop }]
+  const stopIt = { id: "stop", label: say("layout.stop"), act: stop };
+  const { label, does } = enableButtonOf(connection);
+  if (does === "ask") return [{ id: "ask", label: say(label), act: () => connection.send({ type: "ask_to_drive" }) }, stopIt];
+  // On the way back any press ends it.
+  if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
+  return input.live ? [...directionChoices(), ...gripper.choices(), mode, ...wayBack.choices(), stopIt]
     : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices()];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
@@ -97,13 +116,11 @@ const belief = attachBelief({
 });
 const predictions = attachPredictions(byId("ghosts"));
 byId("trail-clear").addEventListener("click", () => connection.send({ type: "trail_clear" }));
-byId("reset").addEventListener("click", () => connection.send({ type: "reset" }));
 
 let wordsAt = -Infinity;
 
 function show() {
   const { state, welcome } = connection;
-  byId("enable").setAttribute("aria-disabled", String(connection.engaged || !connection.open));
   if (!state || !welcome) return;
   const { pressed } = input;
   const paths = personalPaths(state.ghosts, state.tool, shaped);
@@ -116,7 +133,6 @@ function show() {
   setText(byId("scene-text"), whereWords(welcome, state, wanted));
   byId("bound-text").hidden = !settings.values.showBound || state.bound_m === null;
   if (state.bound_m !== null) setText(byId("bound-text"), say("drive.bound", { centimetres: Math.round(100 * state.bound_m) }));
-  byId("reset", HTMLButtonElement).disabled = connection.engaged;
 }
 
 function showSettings() {
@@ -137,18 +153,21 @@ connection.addEventListener("welcome", () => {
   if (placed && placed !== now) void drawing?.renew();
   placed = now;
 });
+// Where inputs are late, less is shown.
+const showSoon = paced(show, () => input.lateness.frameGapMs);
 let trail = 0;
 connection.addEventListener("state", () => {
   if (connection.state && connection.state.trail !== trail) {
     drawing?.clearTrail();
     trail = connection.state.trail;
   }
-  show();
+  showSoon();
 });
 connection.addEventListener("open", show);
 input.addEventListener("change", show);
 
 attachViews(settings, say("drive.cannot_draw"), (loaded) => {
   drawing = loaded;
+  drawing.pace(() => input.lateness.frameGapMs, () => input.goFirst());
   show();
 });

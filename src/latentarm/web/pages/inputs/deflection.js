@@ -2,7 +2,7 @@
 
 /** @typedef {import("../connection/messages.js").DriverInput["source"]} Source */
 /** @typedef {"up" | "down" | "left" | "right"} Direction */
-/** @typedef {"focus_lost" | "page_closed" | "page_hidden" | "pointer_lost" | "gamepad_lost" | "not_enabled"} HaltReason */
+/** @typedef {"focus_lost" | "page_closed" | "page_hidden" | "pointer_lost" | "gamepad_lost" | "dialog_opened" | "input_changed"} HaltReason */
 /** @typedef {import("./drive_input.js").DriveInput | import("../personalise/answer_input.js").AnswerInput} PersonInput */
 
 /** Full deflections: right, up. @type {Record<Direction, [number, number]>} */

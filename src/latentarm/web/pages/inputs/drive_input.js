@@ -6,6 +6,7 @@
  */
 
 import { Deflection } from "./deflection.js";
+import { Lateness } from "./lateness.js";
 
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {HaltReason, Source} from "./deflection.js" */
@@ -32,6 +33,8 @@ export class DriveInput extends Deflection {
     this._enabling = undefined;
     this._wasEngaged = false;
     this._askedAt = -Infinity;
+    this._tickedAt = -Infinity;
+    this.lateness = new Lateness();
     this.addEventListener("turned", (event) => this._send(/** @type {CustomEvent<Source>} */ (event).detail));
     connection.addEventListener("state", () => this._onState());
     connection.addEventListener("open", () => this.drop());
@@ -58,7 +61,7 @@ export class DriveInput extends Deflection {
     this._say(null);
     this._askedAt = performance.now();
     this._wasEngaged = false;
-    this._timer ??= setInterval(() => this._tick(), PERIOD_MS);
+    this._timer ??= setInterval(() => this._onTimer(), PERIOD_MS);
     this._send(this.source ?? "pointer");
     clearTimeout(this._enabling);
     this._enabling = setTimeout(() => this._connection.send({ type: "enable" }), NEUTRAL_FIRST_MS);
@@ -73,7 +76,7 @@ export class DriveInput extends Deflection {
     const flowed = this.flowing;
     this.drop();
     if (!flowed) return;
-    this._connection.send({ type: "stop" });
+    this._connection.send({ type: "stop", why: "page" });
     this._say(why);
   }
 
@@ -97,9 +100,22 @@ export class DriveInput extends Deflection {
     clearTimeout(this._enabling);
     clearInterval(this._timer);
     this._timer = undefined;
+    this.lateness.rest();
+  }
+
+  /** Inputs go first: an input that is due goes out now, before work that would hold it up. */
+  goFirst() {
+    if (this.flowing && performance.now() - this._tickedAt >= PERIOD_MS) this._tick();
+  }
+
+  _onTimer() {
+    // The one before may have gone first: the server takes only so many.
+    if (performance.now() - this._tickedAt >= PERIOD_MS / 2) this._tick();
   }
 
   _tick() {
+    this._tickedAt = performance.now();
+    this.lateness.beat();
     this.dispatchEvent(new Event("poll"));
     this._send(this.source ?? "pointer");
   }
@@ -112,6 +128,7 @@ export class DriveInput extends Deflection {
 
   _onState() {
     if (!this.flowing) return;
+    this.goFirst();
     const engaged = this._connection.engaged;
     const impatient = performance.now() - this._askedAt > PATIENCE_MS;
     if ((this._wasEngaged || impatient) && !engaged) this.drop();

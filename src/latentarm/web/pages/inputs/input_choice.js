@@ -15,7 +15,7 @@ export function attachInputChoice(input, settings) {
 
   const show = () => {
     const { panel } = settings.values;
-    if (panel !== shown) input.drop();
+    if (panel !== shown) input.halt("input_changed");
     shown = panel;
     for (const name of PANELS) byId(`panel-${name}`).hidden = name !== panel;
     for (const radio of radios) radio.checked = radio.value === panel;

@@ -12,10 +12,13 @@
 /** @type {Record<string, Entry>} */
 let catalogue = {};
 let language = "en";
+/** @type {Intl.PluralRules | null} Made once: it takes long. */
+let plurals = null;
 
 /** @param {string} newLanguage as in `<html lang>` @param {Record<string, Entry>} entries */
 export function useWords(newLanguage, entries) {
   language = newLanguage;
+  plurals = null;
   catalogue = entries;
 }
 
@@ -66,5 +69,6 @@ export function sayPercent(share, digits = 0) {
 
 /** @param {number} count */
 function pluralForm(count) {
-  return new Intl.PluralRules(language).select(count);
+  plurals ??= new Intl.PluralRules(language);
+  return plurals.select(count);
 }

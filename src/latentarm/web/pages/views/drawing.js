@@ -124,6 +124,16 @@ export class Drawing {
     this._views.invalidate();
   }
 
+  /**
+   * @param {() => number} frameGapMs the least time between two frames, ms
+   * @param {() => void} first what goes before each frame
+   */
+  pace(frameGapMs, first) {
+    this._views.frameGapMs = frameGapMs;
+    this._views.beforeFrame.unshift(first);
+    this._views.afterFrame.push(first);
+  }
+
   clearTrail() {
     this._scene.trail.clear();
     this._views.invalidate();

@@ -50,6 +50,8 @@ export class Views {
     this._pending = 0;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._soon = undefined;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this._wait = undefined;
     /** @type {"facing" | "behind"} */
     this.seat = "facing";
     /** @type {View[]} */
@@ -62,6 +64,9 @@ export class Views {
     for (const view of this.views) view.camera.up.set(0, 0, 1);
     /** @type {THREE.Vector3[]} Where the tool was when it would have left a view, m: cameras hold these too. */
     this._reached = [];
+    /** The least time between two frames, ms. */
+    this.frameGapMs = () => 0;
+    this._drawnAt = -Infinity;
     /** @type {(() => void)[]} Called before each frame, to move labels. */
     this.beforeFrame = [];
     /** @type {(() => void)[]} Called after each frame. */
@@ -155,6 +160,15 @@ export class Views {
   /** @param {number} now */
   _frame(now) {
     this._pending = 0;
+    const early = this._drawnAt + this.frameGapMs() - now;
+    if (early > 0) {
+      this._wait ??= setTimeout(() => {
+        this._wait = undefined;
+        this.invalidate();
+      }, early);
+      return;
+    }
+    this._drawnAt = now;
     // A frame on top of an unfinished one would hold up the page, and inputs with it.
     if (!this._finished()) {
       this._hold();

@@ -1,0 +1,37 @@
+"""Inputs whose meaning has changed: they count as zero until the person has let go once."""
+
+from dataclasses import replace
+from typing import final
+
+import numpy as np
+
+from latentarm.control.input_port import InputSource
+from latentarm.types import Input
+from latentarm.web.arm_process.page_inputs import PageInputs
+
+
+@final
+class NeutralFirst(InputSource):
+    """The page's inputs, held at zero after a change of what they mean.
+
+    Args:
+        inputs: of the page.
+
+    Attributes:
+        waiting: whether the stick has yet to be let go.
+    """
+
+    def __init__(self, inputs: PageInputs) -> None:
+        self._inputs = inputs
+        self.waiting = False
+
+    def demand(self) -> None:
+        """A push means something else from now on: what is held counts for nothing until it is let go."""
+        self.waiting = True
+
+    def latest(self, now_s: float) -> tuple[Input, float]:
+        """See the base class. What is asked of the gripper passes: it means the same as before."""
+        given, age_s = self._inputs.latest(now_s)
+        if self.waiting and self._inputs.fresh and not self._inputs.deflected:
+            self.waiting = False
+        return (replace(given, u=np.zeros_like(given.u)) if self.waiting else given), age_s

@@ -1,0 +1,51 @@
+/** The button that drives the arm back to its start, and in words why it cannot. */
+
+import { setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {Choice} from "../inputs/scanner.js" */
+/** @import {WordKey} from "../layout/words.js" */
+
+/**
+ * What the button does now, and what is said next to it.
+ *
+ * @param {Pick<Connection, "driving" | "engaged" | "state">} connection
+ * @returns {{does: "begin" | "end" | null, why: WordKey}}
+ */
+export function wayBackOf({ driving, engaged, state }) {
+  if (!driving || state === null) return { does: null, why: "way_back.driver_only" };
+  if (state.returning) return { does: "end", why: "way_back.on" };
+  if (state.at_start) return { does: null, why: "way_back.at_start" };
+  if (!engaged) return { does: null, why: "way_back.enable_first" };
+  if (state.phase === "moving" || state.let_go_first) return { does: null, why: "way_back.let_go" };
+  return { does: "begin", why: "way_back.help" };
+}
+
+/**
+ * @param {{button: HTMLElement, why: HTMLElement}} parts
+ * @param {Connection} connection
+ */
+export function attachWayBack(parts, connection) {
+  const press = () => {
+    const { does } = wayBackOf(connection);
+    if (does !== null) connection.send({ type: "return", on: does === "begin" });
+  };
+  const show = () => {
+    const { does, why } = wayBackOf(connection);
+    setText(parts.button, say(does === "end" ? "way_back.end" : "way_back.begin"));
+    setText(parts.why, say(why));
+    if (parts.button.getAttribute("aria-disabled") !== String(does === null)) parts.button.setAttribute("aria-disabled", String(does === null));
+  };
+  parts.button.addEventListener("click", press);
+  connection.addEventListener("state", show);
+  connection.addEventListener("open", show);
+  show();
+
+  return {
+    /** Its place among the choices of a switch, where it can begin. @returns {Choice[]} */
+    choices() {
+      return wayBackOf(connection).does === "begin" ? [{ id: "way-back", label: say("way_back.begin"), act: press }] : [];
+    },
+  };
+}

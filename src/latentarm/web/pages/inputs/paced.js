@@ -1,0 +1,25 @@
+/** Work that may be left out for a while, where a page has to keep up with something else. */
+
+/**
+ * Does it at once, or where the last time was too short ago, as soon as that is over: however often it is asked for.
+ *
+ * @param {() => void} act
+ * @param {() => number} gapMs the least time between two times, ms
+ */
+export function paced(act, gapMs) {
+  let doneAt = -Infinity;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let waiting;
+
+  const now = () => {
+    clearTimeout(waiting);
+    waiting = undefined;
+    doneAt = performance.now();
+    act();
+  };
+  return () => {
+    const early = doneAt + gapMs() - performance.now();
+    if (early <= 0) now();
+    else waiting ??= setTimeout(now, early);
+  };
+}
