@@ -1,5 +1,6 @@
 /** The Drive page: puts its parts together. */
 
+import { attachCard } from "../card/card.js";
 import { attachDpad } from "../inputs/dpad.js";
 import { DriveInput } from "../inputs/drive_input.js";
 import { attachGamepad } from "../inputs/gamepad.js";
@@ -13,6 +14,7 @@ import { byId, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
 import { attachTrialBanner } from "../personalise/trial.js";
+import { attachPractice } from "../practice/attach_practice.js";
 import { attachViews } from "../views/attach_views.js";
 import { motionWords, placeWords } from "../views/directions.js";
 import { attachPredictions, personalPaths } from "../views/predictions.js";
@@ -29,7 +31,10 @@ const WORDS_MS = 250;
 /** @type {Drawing | null} */
 let drawing = null;
 const { settings, connection, status, lease, stop } = attachPage({
-  drop: () => input.drop(),
+  drop: () => {
+    practice.stopped();
+    input.drop();
+  },
   repaint: () => drawing?.repaint(),
 });
 
@@ -38,6 +43,9 @@ const shaped = (/** @type {number} */ x, /** @type {number} */ y) =>
 
 const input = new DriveInput(connection, shaped);
 input.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
+
+const practice = attachPractice(connection, input, settings);
+attachCard(connection, settings);
 
 /** This page drives first, if nobody else does, and then enables the arm: one press for both. */
 const enable = () => {
@@ -71,7 +79,7 @@ const scanner = attachScanning({
 }, input, settings, () => {
   const mode = { id: "mode", label: say("scanning.other_mode"), act: modes.next };
   return input.live ? [...directionChoices(), ...gripper.choices(), mode, { id: "stop", label: say("layout.stop"), act: stop }]
-    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode];
+    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...practice.choices()];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, {
