@@ -36,7 +36,6 @@ NoticeCode = Literal[
     "no_run",
     "not_enabled",
     "nothing_recorded",
-    "one_axis_weak",
     "page_refused",
     "profile_exists",
     "question_began",
