@@ -104,7 +104,7 @@ def test_forced_colours_leave_food_table_and_paths_apart(opened, scheme):
         "all => all.map((one) => getComputedStyle(one).backgroundColor)"
     )
     assert len(set(marks)) == 4
-    chosen, other = page.locator("#panel-choice span").evaluate_all(
+    chosen, other = page.locator("#panel-choice .options span").evaluate_all(
         "all => all.slice(0, 2).map((one) => getComputedStyle(one).backgroundColor)"
     )
     assert chosen != other
