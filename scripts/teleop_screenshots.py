@@ -1,8 +1,8 @@
-"""Pictures of the teleoperation page, at the size of a desk and of a phone, light and dark.
+"""Pictures of every page and state: for desks and phones, light, dark and forced colours, in each language.
 
-The run is driven by a script for them: a simulated person. For example:
+The run is driven by a script for them: a simulated person. A contact sheet shows them all. For example:
 
-    python scripts/teleop_screenshots.py RUN --out docs/figures
+    python scripts/teleop_screenshots.py RUN --out pictures --only drive teach --sizes phone --languages en de
 """
 
 import argparse
@@ -10,28 +10,79 @@ import shutil
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
+from typing import Any
 
-from playwright.sync_api import Page
+from PIL import Image
+from playwright.sync_api import Browser, Locator, Page
 
+from latentarm.web.words.catalogue import COOKIE, Words, languages
 from teleop_page import chromium, drive_back, enable, served
 
-DESK = {"width": 1280, "height": 800}
+SIZES = {
+    "desk": (1440, 900),
+    "laptop": (1280, 720),
+    "phone": (390, 844),
+    "side": (844, 390),
+    "zoomed": (640, 360),
+}
+"""Of the page, CSS pixels; ``zoomed`` is a laptop at 200 %, ``side`` a phone on its side."""
+SCHEMES: dict[str, dict[str, Any]] = {
+    "light": {"color_scheme": "light"},
+    "dark": {"color_scheme": "dark"},
+    "forced": {"color_scheme": "dark", "forced_colors": "active"},
+}
+TILE = (300, 240)
+COLUMNS = 8
 SETTLE_MS = 800
 EPISODES = 3
 MOST_STARTS = 5
 LEARNING_MS = 120_000
 BEGUN = "#answer-cancel, #working-cancel, #discard, #trial-discard"
-PHONE = {"width": 390, "height": 844}
 
 
-def driving(page: Page) -> None:
+@dataclass(frozen=True)
+class Visit:
+    """A page that is visited in some language.
+
+    Attributes:
+        page: as the browser has it.
+        words: its texts.
+    """
+
+    page: Page
+    words: Words
+
+    def button(self, key: str) -> Locator:
+        """The button with this text."""
+        return self.page.get_by_role("button", name=self.words.say(key), exact=True)
+
+    def link(self, key: str) -> Locator:
+        """The link with this text."""
+        return self.page.get_by_role("link", name=self.words.say(key), exact=True)
+
+    def mode(self, name: str) -> None:
+        """Choose what the stick moves."""
+        self.page.get_by_role("radio", name=self.words.say(f"modes.{name}"), exact=True).check()
+
+    def choose(self, name: str, value: str) -> None:
+        """Choose one of several."""
+        self.page.locator(f"input[name={name}][value={value}]").evaluate("one => one.click()")
+
+
+def fresh(visit: Visit) -> None:
+    """The Drive page as a new person finds it."""
+
+
+def driving(visit: Visit) -> None:
     """With help, under way to a goal; the stick stays pushed."""
+    page = visit.page
+    visit.button("practice.skip").click()
     enable(page)
-    stick = page.locator("#stick")
-    stick.scroll_into_view_if_needed()
     page.evaluate("scrollTo(0, 0)")
-    box = stick.bounding_box()
+    box = page.locator("#stick").bounding_box()
     if box is None:
         raise SystemExit("The page has no stick.")
     for _ in range(MOST_STARTS):
@@ -47,40 +98,51 @@ def driving(page: Page) -> None:
     raise SystemExit("The arm is never under way: " + page.locator("#status-text").inner_text())
 
 
-def buttons(page: Page) -> None:
+def practising(visit: Visit) -> None:
+    """The guided practice, with its first step to do."""
+    visit.button("practice.begin").click()
+
+
+def buttons(visit: Visit) -> None:
     """The direction buttons."""
-    page.get_by_role("radio", name="Buttons").check()
+    visit.choose("panel", "dpad")
 
 
-def switch(page: Page) -> None:
+def switch(visit: Visit) -> None:
     """What one switch chooses from."""
-    page.get_by_role("radio", name="Switch").check()
-    enable(page)
-    page.wait_for_timeout(1500)
+    visit.choose("panel", "switch")
+    enable(visit.page)
+    visit.page.wait_for_timeout(1500)
 
 
-def settings(page: Page) -> None:
+def explained(visit: Visit) -> None:
+    """Explanations, opened."""
+    visit.page.locator(".explain").evaluate_all("all => all.forEach((one) => { one.open = true; })")
+
+
+def settings(visit: Visit) -> None:
     """The settings."""
-    page.get_by_role("button", name="Settings").click()
+    visit.button("settings.title").click()
 
 
-def recorded(page: Page) -> None:
-    """The Teach page with episodes to learn from: the same few seconds, driven three times."""
-    page.get_by_role("radio", name="Straight lines").check()
-    page.get_by_label("What you are doing").fill("towards the table")
-    while page.get_by_role("link", name="Teach the arm").is_hidden() or episodes(page) < EPISODES:
+def recorded(visit: Visit) -> None:
+    """The Teach page with recordings to learn from: the same few seconds, driven three times."""
+    page = visit.page
+    visit.mode("end_effector")
+    page.locator("#record-task").fill(visit.words.say("recording.example"))
+    while page.locator("#record-teach").is_hidden() or episodes(page) < EPISODES:
         before = episodes(page)
         drive_back(page)
-        page.get_by_role("button", name="Start recording").click()
+        page.locator("#record").click()
         push_for(page, 2000)
         page.keyboard.press("Escape")
         page.wait_for_timeout(600)
-        page.get_by_role("button", name="Stop recording").click()
+        page.locator("#record").click()
         page.wait_for_function(
             "n => parseInt(document.querySelector('#record-text').textContent) > n", arg=before
         )
-    page.get_by_role("link", name="Teach the arm").click()
-    page.get_by_role("checkbox", name="Recording 3").wait_for()
+    page.locator("#record-teach").click()
+    page.locator("#episodes input").nth(EPISODES - 1).wait_for()
 
 
 def push_for(page: Page, moving_ms: int) -> None:
@@ -103,36 +165,39 @@ def episodes(page: Page) -> int:
     return int(said.split()[0]) if said[:1].isdigit() else 0
 
 
-def trained(page: Page) -> None:
+def trained(visit: Visit) -> None:
     """The Teach page after a training."""
-    recorded(page)
+    recorded(visit)
+    page = visit.page
     if page.locator("#training-drive").is_hidden():
-        page.get_by_role("button", name="Train", exact=True).click()
+        page.locator("#train-begin").click()
         page.locator("#training-drive, #training-why").filter(visible=True).first.wait_for(timeout=120_000)
     page.locator("#training").scroll_into_view_if_needed()
 
 
-def personalise(page: Page) -> None:
+def personalise(visit: Visit) -> None:
     """The Personalise page as a person finds it."""
-    page.get_by_role("link", name="Personalise").click()
-    page.get_by_role("button", name="Begin").wait_for()
+    visit.link("pages.personalise").click()
+    visit.page.locator("#begin").wait_for()
 
 
-def asked(page: Page) -> None:
+def asked(visit: Visit) -> None:
     """A question, and an answer that is still held."""
-    personalise(page)
-    page.get_by_label("Your name").fill("Ada")
-    page.get_by_label("Most motions to answer for").select_option("5")
-    page.get_by_role("button", name="Begin").click()
-    page.get_by_role("heading", name="Question 1").wait_for(timeout=LEARNING_MS)
+    personalise(visit)
+    page = visit.page
+    page.locator("#begin input[name=person]").fill("Ada")
+    page.locator("#begin select").select_option("5")
+    page.locator("#begin button[type=submit]").click()
+    page.locator("#asking").wait_for(timeout=LEARNING_MS)
     push_aside(page)
 
 
-def learned(page: Page) -> None:
+def learned(visit: Visit) -> None:
     """What comes of the same answer to every question."""
-    asked(page)
-    while page.get_by_role("heading", name="The robot has learned").is_hidden():
-        answer = page.get_by_role("button", name="This is my answer")
+    asked(visit)
+    page = visit.page
+    while page.locator("#learned").is_hidden():
+        answer = page.locator("#answer-send")
         if answer.is_visible() and answer.is_enabled():
             page.mouse.up()
             answer.click()
@@ -142,11 +207,16 @@ def learned(page: Page) -> None:
         page.wait_for_timeout(200)
 
 
-def tried(page: Page) -> None:
+def tried(visit: Visit) -> None:
     """What was learned, under trial."""
-    learned(page)
-    page.get_by_role("button", name="Try it").click()
-    page.get_by_role("heading", name="You are trying").wait_for()
+    learned(visit)
+    visit.page.locator("#try").click()
+    visit.page.locator("#trial").wait_for()
+
+
+def card(visit: Visit) -> None:
+    """The card, as it is printed."""
+    visit.page.emulate_media(media="print")
 
 
 def tidy(page: Page) -> None:
@@ -168,11 +238,15 @@ def push_aside(page: Page) -> None:
     page.wait_for_timeout(600)
 
 
-SHOTS: dict[str, Callable[[Page], None]] = {
+SHOTS: dict[str, Callable[[Visit], None]] = {
+    "drive-new": fresh,
     "drive": driving,
+    "drive-practice": practising,
     "drive-buttons": buttons,
     "drive-switch": switch,
+    "drive-explained": explained,
     "drive-settings": settings,
+    "card": card,
     "personalise": personalise,
     "personalise-question": asked,
     "personalise-learned": learned,
@@ -182,31 +256,48 @@ SHOTS: dict[str, Callable[[Page], None]] = {
 }
 
 
-def take(run: Path, names: list[str], out: Path) -> None:
-    """Take these pictures, at each size and in each scheme."""
-    with served(run) as site, chromium() as browser:
-        for size_name, size in (("desk", DESK), ("phone", PHONE)):
-            for scheme in ("light", "dark"):
-                for name in names:
-                    # Twice as fine: the software renderer spares pixels.
-                    context = browser.new_context(
-                        viewport=size, color_scheme=scheme, device_scale_factor=2, reduced_motion="reduce"
-                    )
-                    page = context.new_page()
-                    page.goto(site.address)
-                    page.locator(".label").first.wait_for(state="attached")
-                    page.wait_for_timeout(SETTLE_MS)
-                    page.get_by_role("radio", name="Learned, with help").check()
-                    drive_back(page)
-                    page.evaluate("scrollTo(0, 0)")
-                    page.wait_for_timeout(SETTLE_MS)
-                    SHOTS[name](page)
-                    page.wait_for_timeout(600)
-                    page.screenshot(path=out / f"teleop-{name}-{size_name}-{scheme}.png")
-                    tidy(page)
-                    context.close()
-                    # So that the next page finds nobody who drives.
-                    time.sleep(0.3)
+def take(browser: Browser, address: str, name: str, look: tuple[str, str, str], out: Path) -> Path:
+    """Take a picture of a state, with a size, a scheme and a language."""
+    size, scheme, language = look
+    width, height = SIZES[size]
+    # Twice as fine: the software renderer spares pixels.
+    context = browser.new_context(
+        viewport={"width": width, "height": height},
+        device_scale_factor=2,
+        reduced_motion="reduce",
+        **SCHEMES[scheme],
+    )
+    context.add_cookies([{"name": COOKIE, "value": language, "url": address}])
+    page = context.new_page()
+    page.goto(address)
+    page.locator(".label").first.wait_for(state="attached")
+    page.wait_for_timeout(SETTLE_MS)
+    visit = Visit(page, languages()[language])
+    visit.mode("assisted")
+    drive_back(page)
+    page.evaluate("scrollTo(0, 0)")
+    page.wait_for_timeout(SETTLE_MS)
+    SHOTS[name](visit)
+    page.wait_for_timeout(600)
+    path = out / f"teleop-{name}-{size}-{scheme}-{language}.png"
+    page.screenshot(path=path)
+    tidy(page)
+    context.close()
+    # So that the next page finds nobody who drives.
+    time.sleep(0.3)
+    return path
+
+
+def contact_sheet(pictures: list[Path], path: Path) -> None:
+    """All pictures on one, small."""
+    rows = -(-len(pictures) // COLUMNS)
+    sheet = Image.new("RGB", (COLUMNS * TILE[0], rows * TILE[1]), "white")
+    for index, picture in enumerate(pictures):
+        with Image.open(picture) as whole:
+            small = whole.convert("RGB")
+        small.thumbnail((TILE[0] - 10, TILE[1] - 10))
+        sheet.paste(small, (index % COLUMNS * TILE[0] + 5, index // COLUMNS * TILE[1] + 5))
+    sheet.save(path)
 
 
 def main() -> None:
@@ -215,12 +306,20 @@ def main() -> None:
     parser.add_argument("run", type=Path)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--only", nargs="+", choices=SHOTS, default=list(SHOTS))
+    parser.add_argument("--sizes", nargs="+", choices=SIZES, default=list(SIZES))
+    parser.add_argument("--schemes", nargs="+", choices=SCHEMES, default=list(SCHEMES))
+    parser.add_argument("--languages", nargs="+", choices=languages(), default=list(languages()))
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
+    looks = list(product(given.sizes, given.schemes, given.languages))
     with tempfile.TemporaryDirectory() as folder:
         # What is learned for the pictures is not kept.
         run = Path(shutil.copytree(given.run, Path(folder) / given.run.name))
-        take(run, given.only, given.out)
+        with served(run) as site, chromium() as browser:
+            pictures = [
+                take(browser, site.address, name, look, given.out) for look in looks for name in given.only
+            ]
+    contact_sheet(pictures, given.out / "contact-sheet.png")
 
 
 if __name__ == "__main__":

@@ -323,7 +323,7 @@ def served(spec: Spec) -> Iterator[Site]:
     control = ControlProcess(spec)
     server = uvicorn.Server(
         server_config(
-            gated(build_app(load_setup(spec), control), control, config, port, None, lambda: None), config
+            gated(build_app(load_setup(spec), control), control, config, port, None, lambda: ""), config
         )
     )
     loops: list[asyncio.AbstractEventLoop] = []

@@ -98,7 +98,7 @@ def test_any_request_is_answered_in_some_language(cookie, accepted):
 def test_pages_say_which_language_they_are_in(client):
     for language in languages():
         answer = client.get("/", headers={"accept-language": language})
-        assert f'<html lang="{language}">' in answer.text
+        assert f'<html lang="{language}" dir="ltr">' in answer.text
         assert answer.headers["content-language"] == language
     chosen = client.get("/", headers={"accept-language": "de", "cookie": f"{COOKIE}={DEFAULT}"})
     assert chosen.headers["content-language"] == DEFAULT

@@ -1,6 +1,7 @@
 """The gate: exact names, a cookie that a link was exchanged for, and headers on everything."""
 
 import asyncio
+import json
 from dataclasses import dataclass
 
 import pytest
@@ -52,7 +53,10 @@ class Visitor:
 
     def __init__(self, keys=None):
         self.stops = 0
-        self.gate = Gate(APP, frozenset({HOST}), frozenset({ORIGIN}), keys, secure=True, stop=self.stop)
+        invite = (lambda: "") if keys is None else (lambda: f"{ORIGIN}/enter?key={keys.new_link()}")
+        self.gate = Gate(
+            APP, frozenset({HOST}), frozenset({ORIGIN}), keys, secure=True, stop=self.stop, invite=invite
+        )
         self.cookie = None
 
     def stop(self):
@@ -135,6 +139,30 @@ def test_a_link_is_exchanged_for_a_cookie_once(keys):
     other = Visitor(keys)
     assert other.ask("/enter", query=f"key={key}").status == 403
     assert other.ask().status == 401
+
+
+def test_the_host_alone_may_invite_and_the_link_works_once(keys):
+    host, guest, stranger = Visitor(keys), Visitor(keys), Visitor(keys)
+    host.ask("/enter", query=f"key={keys.new_link()}")
+    assert json.loads(host.ask("/invitation").text) == {"may": True}
+    invited = json.loads(host.ask("/invitation", "POST", origin=ORIGIN).text)
+    assert host.ask("/invitation", "POST").status == 403  # no origin
+    assert len(invited["path"]) > 100
+    key = invited["link"].split("key=")[1]
+    assert guest.ask("/enter", query=f"key={key}").status == 200
+    assert Visitor(keys).ask("/enter", query=f"key={key}").status == 403
+    assert guest.ask().status == 200
+    assert json.loads(guest.ask("/invitation").text) == {"may": False}
+    assert guest.ask("/invitation", "POST", origin=ORIGIN).status == 403
+    assert host.ask("/invitation", "DELETE", origin=ORIGIN).status == 405
+    assert stranger.ask("/invitation").status == 401
+    assert stranger.ask("/invitation", "POST", origin=ORIGIN).status == 401
+
+
+def test_on_the_loopback_nobody_is_invited():
+    visitor = Visitor()
+    assert json.loads(visitor.ask("/invitation").text) == {"may": False}
+    assert visitor.ask("/invitation", "POST", origin=ORIGIN).status == 403
 
 
 def test_a_new_link_voids_the_one_before(keys):

@@ -44,6 +44,15 @@ def say(sentence: str, json: bool) -> None:
     print(visible(sentence), file=sys.stderr if json else sys.stdout, flush=True)
 
 
+def draws_blocks() -> bool:
+    """Whether messages go to a terminal that shows block elements, of which QR codes are made."""
+    try:
+        "▀▄█".encode(sys.stdout.encoding)
+    except UnicodeEncodeError:
+        return False
+    return sys.stdout.isatty()
+
+
 def note(sentences: "Sequence[str]") -> None:
     """Print a notice on standard error, with ``--json`` too."""
     for sentence in sentences:

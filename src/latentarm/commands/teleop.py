@@ -10,7 +10,7 @@ from tyro.conf import Positional, arg
 from latentarm.commands.choices import TaskName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Arm, Json, Seed
-from latentarm.commands.output import say
+from latentarm.commands.output import draws_blocks, say
 
 
 def teleop(
@@ -58,5 +58,5 @@ def teleop(
 
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
     config = TeleopConfig(Spec(run, profile, seed, out, room, arm, task), host, port, certfile, keyfile)
-    serve(config, partial(say, json=json), ready)
+    serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

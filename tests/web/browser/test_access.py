@@ -42,7 +42,7 @@ def test_everything_fits_and_can_be_hit(open_page, size):
         assert stop["height"] >= 60
         assert stop["width"] >= 60
         small = page.evaluate(
-            """() => [...document.querySelectorAll("button, a, select, input[type=text]")]
+            """() => [...document.querySelectorAll("button, a, select, summary, input[type=text]")]
               .filter((one) => one.checkVisibility() && !one.matches(".skip"))
               .map((one) => [one.getBoundingClientRect(), one.outerHTML])
               .filter(([box]) => Math.min(box.width, box.height) < 43.5)

@@ -111,7 +111,7 @@ def test_the_arm_learns_on_the_page_what_it_was_shown(open_page, arm, push, driv
     page.get_by_role("button", name="Drive it", exact=True).click()
     page.wait_for_url(re.compile(r"/$"), timeout=30_000)
     page.locator(".label").first.wait_for(state="attached")
-    expect(page.locator("#about")).to_have_text(re.compile("run pushing"))
+    expect(page.locator("#about")).to_have_text(re.compile("Learned: pushing"))
     arm.wait(lambda: arm.welcome["run"] == "pushing")
     page.get_by_role("button", name="Ask to drive").click()
     page.get_by_role("radio", name="Learned motions").check()

@@ -39,7 +39,7 @@ test("a motion is shown between its frames, turning the short way", () => {
 const TRAINING = { phase: "training", run: "a", epoch: 3, epochs: 12, loss: 0.12345, seconds_left: 4.2, why: [] };
 
 test("a training says how far it is", () => {
-  assert.equal(progressWords(TRAINING), "Pass 3 of at most 12 · loss 0.123 · up to about 5 s left");
+  assert.equal(progressWords(TRAINING), "Pass 3 of at most 12 · loss 0.123");
   assert.equal(progressShare(TRAINING), 25);
   assert.ok(isBusy(TRAINING));
 });

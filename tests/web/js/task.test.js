@@ -3,7 +3,6 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
-import { attachSounds } from "#pages/drive/sounds.js";
 import { attachTask } from "#pages/drive/task_panel.js";
 import { blockedWords, outcomeWords, stepWords } from "#pages/drive/task_words.js";
 import { theThing, thingWords } from "#pages/layout/thing_words.js";
@@ -172,32 +171,4 @@ test("every language says what is done with what", () => {
 test("a thing of a plug-in is called by its own name", () => {
   assert.equal(thingWords("Blue Lid"), "Blue Lid");
   assert.equal(theThing("constructor"), "constructor");
-});
-
-test("sounds are made after a first press, unless they are turned off", () => {
-  const tones = [];
-  class Context {
-    constructor() {
-      Object.assign(this, { state: "running", currentTime: 0, destination: null });
-    }
-
-    createOscillator() {
-      const tone = { frequency: {}, connect: (next) => next, start: (at) => tones.push(at), stop() {} };
-      return tone;
-    }
-
-    createGain() {
-      return { gain: { setValueAtTime() {}, exponentialRampToValueAtTime() {} }, connect: (next) => next };
-    }
-  }
-  const settings = new Settings();
-  const sounds = attachSounds(settings, Context);
-  sounds.play("success");
-  assert.equal(tones.length, 0);
-  fakes.window.dispatchEvent(event("keydown"));
-  sounds.play("success");
-  assert.equal(tones.length, 3);
-  settings.change({ sounds: false });
-  sounds.play("failure");
-  assert.equal(tones.length, 3);
 });

@@ -17,7 +17,8 @@ from latentarm.control.journal import read_journal
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
 from latentarm.types import Demonstrations
 from latentarm.web.jobs.job import Job, Wire
-from latentarm.web.protocol.learning_messages import Training, TrainingPhase
+from latentarm.web.jobs.lesson import lesson_of, moving_seconds
+from latentarm.web.protocol.learning_messages import Lesson, Training, TrainingPhase
 from latentarm.web.protocol.notice import Message, Notice, NoticeError, sentence
 
 RATE_HZ: Final = 10.0
@@ -105,6 +106,7 @@ class _Epoch(Message):
 class _Finished(Message):
     type: Literal["finished"] = "finished"
     warned: tuple[Notice, ...]
+    lesson: Lesson
 
 
 _Said = _Epoch | _Finished
@@ -140,9 +142,9 @@ class TrainingJob:
                     self._change(
                         phase="training", epoch=epoch, epochs=epochs, loss=loss, seconds_left=seconds_left
                     )
-                case _Finished(warned=warned):
+                case _Finished(warned=warned, lesson=lesson):
                     self._finished = True
-                    self._change(why=warned)
+                    self._change(why=warned, lesson=lesson)
         if self._finished or not alive:
             self._change(phase=self._outcome(), seconds_left=None)
             failure = self._job.failure
@@ -175,23 +177,29 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
 
     with warnings.catch_warnings(record=True) as cut:
         warnings.simplefilter("always", ImplausibleWarning)
-        recorded = demonstrations_of(read_journal(plan.journal, plan.episodes), source="The recording")
-    demonstrations = without_pauses(recorded, RATE_HZ)
-    long_enough = [one for one in demonstrations.episodes if one.timestamp[-1] >= SHORTEST_S]
-    if len(long_enough) < max(FEWEST, len(set(plan.episodes))):
+        journal = read_journal(plan.journal, plan.episodes)
+        recorded = demonstrations_of(journal, source="The recording")
+    numbers = sorted(set(plan.episodes))
+    moved_s = {
+        number: moving_seconds(episode, RATE_HZ) for number, episode in zip(numbers, journal, strict=True)
+    }
+    too_short = [number for number, seconds in moved_s.items() if seconds < SHORTEST_S]
+    if too_short:
         raise NoticeError(
             "episodes_too_short",
             seconds=round(SHORTEST_S),
-            count=len(long_enough),
-            all=len(set(plan.episodes)),
+            count=len(too_short),
+            numbers=", ".join(map(str, too_short)),
         )
+    demonstrations = without_pauses(recorded, RATE_HZ)
     try:
         warned = _train(wire, plan, demonstrations)
+        lesson = lesson_of(plan.run, demonstrations, moved_s)
     except BaseException:
         shutil.rmtree(plan.run, ignore_errors=True)
         shutil.rmtree(plan.dataset, ignore_errors=True)
         raise
-    wire.say(_Finished(warned=(*(sentence(str(one.message)) for one in cut), *warned)))
+    wire.say(_Finished(warned=(*(sentence(str(one.message)) for one in cut), *warned), lesson=lesson))
 
 
 def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[Notice]:
@@ -215,12 +223,11 @@ def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> li
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
         train_run(config, _report_to(wire))
+    # The lesson says which direction does little.
     return [
-        Notice(code="one_axis_weak")
-        if issubclass(one.category, CollapseWarning)
-        else sentence(str(one.message))
+        sentence(str(one.message))
         for one in caught
-        if issubclass(one.category, UserWarning)
+        if issubclass(one.category, UserWarning) and not issubclass(one.category, CollapseWarning)
     ]
 
 

@@ -61,6 +61,21 @@ class Recorded(Message):
 
 
 @final
+class Lesson(Message):
+    """What the arm learned in a training, as a person would notice it.
+
+    Attributes:
+        short: numbers of the recordings that are much shorter than the others.
+        speeds_m_s: how fast a full push moves the tool along each axis of the stick, m/s.
+        weak: axes that do little, 0 for left and right, 1 for up and down.
+    """
+
+    short: tuple[int, ...]
+    speeds_m_s: tuple[float, ...]
+    weak: tuple[int, ...]
+
+
+@final
 class Training(Message):
     """A training under way, or the last one.
 
@@ -72,6 +87,7 @@ class Training(Message):
         loss: validation loss so far, or null.
         seconds_left: estimated remaining time, or null.
         why: why it failed, or what was warned of.
+        lesson: what was learned; null before it is done.
     """
 
     phase: TrainingPhase
@@ -81,6 +97,7 @@ class Training(Message):
     loss: float | None = None
     seconds_left: float | None = None
     why: tuple[Notice, ...] = ()
+    lesson: Lesson | None = None
 
 
 @final

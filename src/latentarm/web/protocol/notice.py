@@ -39,7 +39,6 @@ NoticeCode = Literal[
     "no_run",
     "not_enabled",
     "nothing_recorded",
-    "one_axis_weak",
     "page_refused",
     "page_stopped",
     "profile_exists",

@@ -26,11 +26,12 @@ from latentarm.web.server.assets import Assets
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.frames import MeteredSocket
+from latentarm.web.server.invitations import Invitations
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.loaded_run import LoadedRun, RunList
 from latentarm.web.server.logs import LOGGING
 from latentarm.web.server.pages import PAGES, Pages
-from latentarm.web.server.security import DRIVE, ENTRY, Gate, Keys
+from latentarm.web.server.security import DRIVE, Gate, Keys
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
 
@@ -39,7 +40,11 @@ _STARTED_S: Final = 0.01
 
 
 def serve(
-    config: TeleopConfig, say: Callable[[str], None], ready: Callable[[str], None] = lambda address: None
+    config: TeleopConfig,
+    say: Callable[[str], None],
+    ready: Callable[[str], None] = lambda address: None,
+    *,
+    draws: bool = False,
 ) -> None:
     """Serve the page until Ctrl-C, then say how to use what was recorded.
 
@@ -47,6 +52,7 @@ def serve(
         config: what was asked for.
         say: tells the person who started it.
         ready: called once with the address to open first: the page's, or a link that works once.
+        draws: whether the terminal can show a QR code.
 
     Raises:
         UserError: the run or profile cannot be loaded, the address is taken, or a file for TLS is broken.
@@ -57,12 +63,7 @@ def serve(
     port = int(listening.getsockname()[1])
     base = origin(config.scheme, config.host, port)
     keys = None if config.loopback else Keys()
-
-    def link() -> str:
-        return f"{base}/" if keys is None else f"{base}{ENTRY}?key={keys.new_link()}"
-
-    def invite() -> None:
-        say(f"For the next person, a link that works once: {link()}")
+    invitations = None if keys is None else Invitations(keys.new_link, base, say, draws)
 
     for sentence in notices(setup.task.robot):
         say(sentence)
@@ -71,10 +72,13 @@ def serve(
     control = ControlProcess(config.spec)
     try:
         app = build_app(setup, control)
-        gate = gated(app, control, config, port, keys, invite)
-        first = link()
+        gate = gated(
+            app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
+        )
+        first = f"{base}/" if invitations is None else invitations.first()
         say(f"The page is at {first} (end with Ctrl-C).")
-        if keys is not None:
+        if invitations is not None:
+            invitations.draw(first)
             say("This link works once; when it is used the next one is printed.")
             if config.scheme == "http":
                 say("Without --certfile and --keyfile the network can read and change what is sent.")
@@ -151,7 +155,7 @@ def gated(
     config: TeleopConfig,
     port: int,
     keys: Keys | None,
-    entered: Callable[[], None],
+    invite: Callable[[], str],
 ) -> Gate:
     """The application behind its gate.
 
@@ -161,7 +165,7 @@ def gated(
         config: says by which names the page is reached.
         port: that it listens on.
         keys: None on the loopback.
-        entered: see `Gate`.
+        invite: see `Gate`.
     """
     names = ["127.0.0.1", "localhost", config.host] if config.loopback else [config.host]
     origins = frozenset(origin(config.scheme, name, port) for name in names)
@@ -173,7 +177,7 @@ def gated(
         keys,
         secure=config.scheme == "https",
         stop=lambda: control.stop(Notice(code="stop_pressed")),
-        entered=entered,
+        invite=invite,
     )
 
 

@@ -16,7 +16,13 @@ FOLDER: Final = Path(__file__).parent.parent / "pages"
 THREE: Final = "three/index.js"
 """Where three.js is among the assets."""
 
-_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
+_TYPES: Final = {
+    ".js": "text/javascript",
+    ".css": "text/css",
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+    ".webmanifest": "application/manifest+json",
+}
 _KEPT: Final = "private, max-age=31536000, immutable"
 
 

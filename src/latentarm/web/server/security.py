@@ -15,6 +15,9 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from latentarm.web.server.invitations import ENTRY, INVITATION
+from latentarm.web.server.invitations import answer as invitation_answer
+
 COOKIE: Final = "latentarm"
 LIFE_S: Final = 8 * 3600
 """How long a cookie is valid, s."""
@@ -34,7 +37,6 @@ EXPIRED: Final = 4401
 EXPIRED_WHY: Final = "expired"
 """The reason that goes with it, a code as `latentarm.web.protocol.notice` has them."""
 
-ENTRY: Final = "/enter"
 STOP: Final = "/stop"
 """Needs no cookie: anyone who can reach the page may stop the arm."""
 
@@ -45,6 +47,7 @@ _READING: Final = ("GET", "HEAD")
 _HEADERS: Final = {
     "content-security-policy": (
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self';"
+        " manifest-src 'self';"
         " base-uri 'none'; form-action 'none'; frame-ancestors 'none'; require-trusted-types-for 'script'"
     ),
     "x-content-type-options": "nosniff",
@@ -74,6 +77,7 @@ class Keys:
         self._now_s = now_s
         self._link: bytes | None = None
         self._cookies: dict[bytes, float] = {}
+        self._host: bytes | None = None
 
     def new_link(self) -> str:
         """A key for the next visitor, 256 random bits; the previous one becomes invalid."""
@@ -91,7 +95,15 @@ class Keys:
         self._link = None
         cookie = secrets.token_urlsafe(32)
         self._cookies[_hash(cookie)] = self._now_s() + LIFE_S
+        if self._host is None:
+            self._host = _hash(cookie)
         return cookie
+
+    def is_host(self, cookie: str) -> bool:
+        """Whether this cookie is the first one given: that of the person who started the server."""
+        if self._host is None or self.opens_for(cookie) is None:
+            return False
+        return hmac.compare_digest(self._host, _hash(cookie))
 
     def opens_for(self, cookie: str) -> float | None:
         """How much longer a cookie is valid, s; None if it is unknown or expired."""
@@ -122,7 +134,7 @@ class Gate:
         keys: who may enter; None lets everybody in, for a server on the loopback.
         secure: whether the cookie is for TLS alone.
         stop: stops the arm.
-        entered: called after the link has been used.
+        invite: makes a link for the next person; called when a link has been used, and for the host's page.
     """
 
     def __init__(
@@ -134,7 +146,7 @@ class Gate:
         *,
         secure: bool = False,
         stop: Callable[[], None],
-        entered: Callable[[], None] = lambda: None,
+        invite: Callable[[], str] = lambda: "",
     ) -> None:
         self.app = app
         self._hosts = hosts
@@ -142,7 +154,7 @@ class Gate:
         self._keys = keys
         self._secure = secure
         self._stop = stop
-        self._entered = entered
+        self._invite = invite
         self._requests = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -197,12 +209,15 @@ class Gate:
         return PlainTextResponse("Open the link that latentarm has printed; each one works once.", 401)
 
     def _own_answer(self, scope: Scope) -> Response | None:
-        """Stop, and the exchange of a link for a cookie."""
+        """Stop, links, and the exchange of a link for a cookie."""
         if scope["path"] == STOP:
             if scope["method"] != "POST":
                 return PlainTextResponse("Stop is a POST.", 405, headers={"allow": "POST"})
             self._stop()
             return Response(status_code=204)
+        if scope["path"] == INVITATION:
+            is_host = self._keys is not None and self._keys.is_host(_cookie(Headers(scope=scope)))
+            return invitation_answer(scope["method"], is_host, self._invite)
         if self._keys is None or scope["path"] != ENTRY:
             return None
         key = parse_qs(scope["query_string"].decode("latin-1")).get("key", [""])[0]
@@ -213,7 +228,7 @@ class Gate:
         answer.set_cookie(
             COOKIE, cookie, max_age=LIFE_S, path="/", secure=self._secure, httponly=True, samesite="strict"
         )
-        self._entered()
+        self._invite()
         return answer
 
 

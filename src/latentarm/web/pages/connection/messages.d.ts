@@ -82,6 +82,12 @@ export interface LearningState {
   profiles: string[];
 }
 
+export interface Lesson {
+  short: number[];
+  speeds_m_s: number[];
+  weak: number[];
+}
+
 export interface Limits {
   latch_max_s: number;
 }
@@ -103,7 +109,7 @@ export interface NamedThing {
 }
 
 export interface Notice {
-  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "at_start" | "asking" | "asking_already" | "checking_run" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "loop_late" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "one_axis_weak" | "page_refused" | "page_stopped" | "profile_exists" | "question_began" | "recording_ended" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "work_broke_off";
+  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "at_start" | "asking" | "asking_already" | "checking_run" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "loop_late" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "page_refused" | "page_stopped" | "profile_exists" | "question_began" | "recording_ended" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "work_broke_off";
   parameters: Record<string, string | number>;
 }
 
@@ -275,6 +281,7 @@ export interface Training {
   loss: number | null;
   seconds_left: number | null;
   why: Notice[];
+  lesson: Lesson | null;
 }
 
 export interface TryAlignment {

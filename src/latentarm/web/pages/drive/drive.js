@@ -2,6 +2,7 @@
 
 import { attachEnableButton, enableButtonOf } from "../connection/enable_button.js";
 import { attachDialogs, dialogIsOpen } from "../inputs/dialogs.js";
+import { attachCard } from "../card/card.js";
 import { attachDpad } from "../inputs/dpad.js";
 import { DriveInput } from "../inputs/drive_input.js";
 import { attachGamepad } from "../inputs/gamepad.js";
@@ -17,6 +18,7 @@ import { byId, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
 import { attachTrialBanner } from "../personalise/trial.js";
+import { attachPractice } from "../practice/attach_practice.js";
 import { attachViews } from "../views/attach_views.js";
 import { motionWords } from "../views/directions.js";
 import { attachPredictions, personalPaths } from "../views/predictions.js";
@@ -25,7 +27,6 @@ import { attachLateStops } from "./late_stops.js";
 import { attachModes } from "./modes.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
-import { attachSounds } from "./sounds.js";
 import { attachTask } from "./task_panel.js";
 import { wantedThing } from "./task_words.js";
 import { whereWords } from "./where_words.js";
@@ -39,8 +40,11 @@ const WORDS_MS = 250;
 
 /** @type {Drawing | null} */
 let drawing = null;
-const { settings, connection, status, lease, stop } = attachPage({
-  drop: () => input.drop(),
+const { settings, connection, status, lease, stop, feedback } = attachPage({
+  drop: () => {
+    practice.stopped();
+    input.drop();
+  },
   repaint: () => drawing?.repaint(),
 });
 
@@ -52,6 +56,9 @@ input.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent
 status.watch(() => input.lateness.wasSlow);
 attachDialogs(input);
 attachNeutralFirst(connection, input);
+
+const practice = attachPractice(connection, input, settings);
+attachCard(connection, settings);
 
 /** This page drives first, if nobody else does, and then enables the arm: one press for both. */
 const enable = () => {
@@ -74,12 +81,11 @@ attachRecording({
   teach: byId("record-teach"),
 }, connection);
 
-const sounds = attachSounds(settings);
 const task = attachTask({
   panel: byId("task"), steps: byId("task-steps"), said: byId("task-said"), time: byId("task-time"), why: byId("task-why"),
   chooser: byId("task-chooser"), choice: byId("task-choice", HTMLSelectElement),
   next: byId("task-next", HTMLButtonElement), again: byId("task-again", HTMLButtonElement),
-}, connection, (outcome) => sounds.play(outcome));
+}, connection, feedback.tell);
 
 const gripper = attachGripper({
   panel: byId("gripper"),
@@ -102,7 +108,7 @@ const scanner = attachScanning({
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
   return input.live ? [...directionChoices(), ...gripper.choices(), mode, ...wayBack.choices(), stopIt]
-    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices()];
+    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices(), ...practice.choices()];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, {

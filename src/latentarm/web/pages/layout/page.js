@@ -2,8 +2,11 @@
 
 import { Connection } from "../connection/connection.js";
 import { attachDriverPanel, DriverLease } from "../connection/driver_lease.js";
+import { attachInvitation } from "../connection/invitation.js";
 import { attachStatus } from "../connection/status.js";
 import { attachStop } from "../connection/stop.js";
+import { attachFeedback } from "../feedback/feedback.js";
+import { attachWakeLock } from "../feedback/wake_lock.js";
 import { Settings } from "../settings/settings.js";
 import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
@@ -26,6 +29,9 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   });
   const dialog = attachSettingsDialog(byId("settings", HTMLDialogElement), byId("settings-open"), settings);
   attachTheme(byId("theme"), settings, repaint);
+  const feedback = attachFeedback(connection, settings);
+  attachWakeLock(connection);
+  attachInvitation();
   attachDriverPanel({
     text: byId("driver"),
     ask: byId("ask", HTMLButtonElement),
@@ -51,5 +57,5 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
     welcome.profiles = learning.profiles;
     dialog.offer(learning.profiles);
   });
-  return { settings, connection, status, lease, stop };
+  return { settings, connection, status, lease, stop, feedback };
 }

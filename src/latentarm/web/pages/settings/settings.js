@@ -23,7 +23,9 @@ import * as storage from "./storage.js";
  * @property {boolean} showGhosts
  * @property {boolean} showTrail
  * @property {boolean} showBound
- * @property {boolean} sounds whether the end of a task is heard
+ * @property {boolean} practised whether the guided practice was begun or skipped
+ * @property {"none" | "success" | "all"} sounds what is heard: nothing, a task that is done, or Stop and Enable too
+ * @property {boolean} vibration whether Stop and a task that is done are felt
  * @property {"auto" | "light" | "dark"} theme
  */
 
@@ -48,7 +50,9 @@ export const DEFAULTS = Object.freeze({
   showGhosts: true,
   showTrail: true,
   showBound: false,
-  sounds: true,
+  practised: false,
+  sounds: "success",
+  vibration: false,
   theme: "auto",
 });
 
@@ -64,6 +68,7 @@ const CHOICES = {
   switches: ["1", "2"],
   gamepadStop: ["any", "0", "1", "2", "3"],
   seat: ["facing", "behind"],
+  sounds: ["none", "success", "all"],
   theme: ["auto", "light", "dark"],
 };
 const PERSON_KEY = "latentarm.person";

@@ -3,9 +3,10 @@
 import { byId, create, fillBar, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice, sayNumber } from "../layout/words.js";
-import { freeName, isBusy, progressShare, progressWords } from "./training.js";
+import { lessonFigures, lessonWords, shortOnes } from "./lesson.js";
+import { freeName, isBusy, leftWords, progressShare, progressWords } from "./training.js";
 
-/** @import {ClientMessage, Recorded, LearningState} from "../connection/messages.js" */
+/** @import {ClientMessage, Lesson, Recorded, LearningState} from "../connection/messages.js" */
 
 /** How long a run that was asked for may take to be there, ms. */
 const LOADING_MS = 20_000;
@@ -73,7 +74,7 @@ function showEpisodes({ recordings }) {
   byId("episodes").hidden = recordings.length === 0;
   setText(byId("record-more"), say(recordings.length > 0 ? "teach.record_again" : "teach.record_more"));
   const now = JSON.stringify(recordings);
-  if (now !== listed) byId("episodes").querySelector("ul")?.replaceChildren(...recordings.map(episode));
+  if (now !== listed) byId("episodes").querySelector("ul")?.replaceChildren(...recordings.map((one) => episode(one, shortOnes(recordings).includes(one.number))));
   listed = now;
   setText(byId("chosen"), recordings.length ? chosenWords(recordings.length) : "");
 }
@@ -85,8 +86,8 @@ function chosenWords(all) {
   return say("teach.chosen", { chosen: count, all });
 }
 
-/** @param {Recorded} recorded */
-function episode({ number, task, seconds }) {
+/** @param {Recorded} recorded @param {boolean} short */
+function episode({ number, task, seconds }, short) {
   const box = create("input", { type: "checkbox", checked: !leftOut.has(number) });
   box.addEventListener("change", () => {
     if (box.checked) leftOut.delete(number);
@@ -99,6 +100,7 @@ function episode({ number, task, seconds }) {
     create("span", { textContent: task ? say("teach.episode_task", { number, task }) : say("teach.episode", { number }) }),
     create("span", { textContent: say("unit.seconds", { value: sayNumber(seconds, 1) }) }),
   );
+  if (short) label.append(create("strong", { className: "short", textContent: say("teach.short") }));
   const row = create("li");
   row.append(label);
   return row;
@@ -118,7 +120,11 @@ function showTraining({ training }) {
   setText(byId("training-title"), phase === "failed" && !run ? say("training.failed_unnamed") : say(`training.${phase}`, { run }));
   byId("training-bar").hidden = !busy && phase !== "done";
   fillBar(byId("training-bar"), progressShare(training));
-  setText(byId("training-text"), busy || phase === "done" ? progressWords(training) : "");
+  setText(byId("training-left"), busy ? leftWords(training) : "");
+  const figures = busy || phase === "done" ? [progressWords(training), ...lessonFigures(training.lesson)].filter(Boolean).join(" · ") : "";
+  setText(byId("training-text"), figures);
+  byId("training-more").hidden = !figures;
+  showLesson(training.lesson);
   byId("training-why").hidden = why.length === 0;
   setText(byId("training-why"), why.map(sayNotice).join(" "));
   byId("training-cancel").hidden = !busy;
@@ -128,6 +134,19 @@ function showTraining({ training }) {
   // What the person waits for comes into sight, once.
   if (phase !== shownPhase && connection.driving) byId("training").scrollIntoView({ block: "nearest" });
   shownPhase = phase;
+}
+
+/** @param {Lesson | null} lesson */
+function showLesson(lesson) {
+  const list = byId("training-lesson");
+  list.hidden = lesson === null;
+  const rows = lesson === null ? [] : lessonWords(lesson);
+  if (rows.map(({ text }) => text).join() === [...list.children].map((row) => row.textContent).join()) return;
+  list.replaceChildren(...rows.map(({ good, text }) => {
+    const row = create("li", { textContent: text });
+    row.dataset.good = String(good);
+    return row;
+  }));
 }
 
 let listedRuns = "";

@@ -15,14 +15,18 @@ export function progressShare({ phase, epoch, epochs }) {
   return epochs ? Math.round((100 * epoch) / epochs) : 0;
 }
 
-/** @param {Training} training */
-export function progressWords({ phase, epoch, epochs, loss, seconds_left }) {
+/** How long it will take, for everybody. @param {Training} training */
+export function leftWords({ phase, seconds_left }) {
   if (phase === "exporting") return say("training.exporting_text");
+  return seconds_left === null ? "" : say("training.seconds_left", { seconds: Math.ceil(seconds_left) });
+}
+
+/** How far it is, in figures. @param {Training} training */
+export function progressWords({ phase, epoch, epochs, loss }) {
   const parts = [];
   if (epochs && phase === "training") parts.push(say("training.pass_of", { epoch, epochs }));
   if (epochs && phase === "done") parts.push(say(epoch < epochs ? "training.passes_until" : "training.passes", { count: epoch }));
   if (loss !== null) parts.push(say("training.loss", { loss: sayNumber(loss, 3) }));
-  if (seconds_left !== null) parts.push(say("training.seconds_left", { seconds: Math.ceil(seconds_left) }));
   return parts.join(" · ");
 }
 

@@ -1,0 +1,98 @@
+/** The panel of the guided practice: offered to a person who is new, shown step by step, and gone when they skip it. */
+
+import { byId, create, setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+import { Practice, STEPS } from "./steps.js";
+import { stepWords } from "./step_words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {DriveInput} from "../inputs/drive_input.js" */
+/** @import {Choice} from "../inputs/scanner.js" */
+/** @import {Settings} from "../settings/settings.js" */
+
+/**
+ * @param {Connection} connection
+ * @param {DriveInput} input
+ * @param {Settings} settings
+ */
+export function attachPractice(connection, input, settings) {
+  const panel = byId("practice");
+  const list = byId("practice-steps");
+  /** @type {Practice | null} */
+  let practice = null;
+  let open = !settings.values.practised;
+
+  const show = () => {
+    panel.hidden = !open;
+    const running = practice !== null && practice.step !== null;
+    const finished = practice !== null && practice.step === null;
+    setText(byId("practice-title"), say(finished ? "practice.finished" : running ? "practice.title" : "practice.offer"));
+    byId("practice-begin").hidden = practice !== null;
+    byId("practice-again").hidden = practice === null;
+    setText(byId("practice-skip"), say(finished ? "practice.close" : "practice.skip"));
+    list.hidden = practice === null;
+    byId("practice-now").hidden = !running;
+    if (practice === null) return;
+    const { done, step } = practice;
+    list.replaceChildren(...STEPS.map((name, index) => {
+      const item = create("li", { textContent: say(`practice.short_${name}`) });
+      item.dataset.done = String(index < done);
+      if (index < done) item.setAttribute("aria-label", say("practice.done", { step: item.textContent ?? "" }));
+      if (index === done) item.setAttribute("aria-current", "step");
+      return item;
+    }));
+    if (step !== null) setText(byId("practice-now"), stepWords(step, settings.values, Boolean(connection.welcome?.goals.length)));
+  };
+  const begin = () => {
+    practice = new Practice();
+    open = true;
+    settings.change({ practised: true });
+    show();
+  };
+  const close = () => {
+    practice = null;
+    open = false;
+    settings.change({ practised: true });
+    show();
+  };
+
+  byId("practice-begin").addEventListener("click", begin);
+  byId("practice-again").addEventListener("click", begin);
+  byId("practice-open").addEventListener("click", () => {
+    begin();
+    panel.scrollIntoView({ block: "nearest" });
+  });
+  byId("practice-skip").addEventListener("click", close);
+  settings.addEventListener("change", () => {
+    // Somebody else may sit here now.
+    if (practice === null) open = !settings.values.practised;
+    show();
+  });
+  connection.addEventListener("state", () => {
+    const { state, welcome, driving, engaged } = connection;
+    if (practice === null || state === null || welcome === null) return;
+    const seen = {
+      engaged: driving && engaged,
+      moving: state.phase === "moving",
+      pressed: input.source !== null,
+      tool: state.tool,
+      goals: welcome.goals.map(({ position }) => position),
+    };
+    if (practice.see(seen)) show();
+  });
+  show();
+
+  return {
+    /** The person has pressed Stop on this page. */
+    stopped() {
+      if (connection.driving && connection.engaged && practice?.stopped()) show();
+    },
+    /** What a switch may choose of it. @returns {Choice[]} */
+    choices() {
+      if (!open) return [];
+      const first = practice === null ? { id: "practice-begin", label: say("practice.begin"), act: begin }
+        : { id: "practice-again", label: say("practice.again"), act: begin };
+      return [first, { id: "practice-skip", label: byId("practice-skip").textContent ?? "", act: close }];
+    },
+  };
+}

@@ -1,0 +1,177 @@
+"""The arm, the stick and Stop are on one screen, whatever its size, direction and colours."""
+
+import pytest
+
+SIZES = {
+    "a laptop": (1280, 720),
+    "200 %": (640, 360),
+    "a phone": (390, 844),
+    "a phone on its side": (844, 390),
+}
+PANELS = {"stick": ["#stick"], "dpad": ["#dpad"], "switch": ["#scan", "#switch"]}
+
+# Which of these are not wholly on the screen, or lie under the bar.
+CUT_OFF = """(selectors) => {
+  const bar = document.querySelector(".action-bar").getBoundingClientRect();
+  return selectors.filter((selector) => {
+    const one = document.querySelector(selector);
+    const box = one.getBoundingClientRect();
+    const inside = box.left >= 0 && box.top >= 0 && box.right <= innerWidth + 1
+      && box.bottom <= innerHeight + 1;
+    const under = !one.closest(".action-bar") && box.left < bar.right - 1 && box.right > bar.left + 1
+      && box.top < bar.bottom - 1 && box.bottom > bar.top + 1;
+    return !one.checkVisibility() || !inside || under;
+  });
+}"""
+
+# What sticks out of the page on either side.
+STICKS_OUT = """() => [...document.querySelectorAll("body *")]
+  .filter((one) => one.checkVisibility() && !one.closest(".visually-hidden, .skip, .labels, .title-row, svg"))
+  .map((one) => [one.getBoundingClientRect(), one])
+  .filter(([box]) => box.width > 0 && (box.left < -1 || box.right > innerWidth + 1))
+  .map(([, one]) => one.outerHTML.slice(0, 120))"""
+
+
+@pytest.fixture
+def opened(open_page):
+    def opened(size, **options):
+        page = open_page(viewport={"width": size[0], "height": size[1]}, **options)
+        page.evaluate("scrollTo(0, 0)")
+        return page
+
+    return opened
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_arm_stick_and_stop_are_on_one_screen(opened, name):
+    page = opened(SIZES[name])
+    always = ["#view-front", "#status", "#enable", "#stop"]
+    for offered in (True, False):
+        if not offered:
+            page.get_by_role("button", name="Skip", exact=True).click()
+            page.evaluate("scrollTo(0, 0)")
+        for panel, parts in PANELS.items():
+            page.locator(f"input[name=panel][value={panel}]").evaluate("one => one.click()")
+            assert page.evaluate(CUT_OFF, [*always, *parts]) == [], (panel, offered)
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    if name == "a laptop":
+        assert page.evaluate(CUT_OFF, ["#gripper-close", "#gripper-open", "#gripper-state"]) == []
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_the_practice_leaves_the_arm_the_stick_and_stop_on_the_screen(opened, name):
+    page = opened(SIZES[name])
+    page.get_by_role("button", name="Practise now").click()
+    page.evaluate("scrollTo(0, 0)")
+    assert page.evaluate(CUT_OFF, ["#practice-now", "#view-front", "#stick", "#enable", "#stop"]) == []
+
+
+@pytest.mark.parametrize("path", ["", "personalise", "teach"])
+@pytest.mark.parametrize("name", SIZES)
+def test_a_script_from_right_to_left_breaks_nothing(opened, address, name, path):
+    page = opened(SIZES[name])
+    page.goto(f"{address}/{path}")
+    page.locator("#status:not([data-phase=connecting], [data-phase=lost])").wait_for()
+    page.evaluate("document.documentElement.dir = 'rtl'")
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    assert page.evaluate(STICKS_OUT) == []
+    assert page.evaluate(CUT_OFF, ["#stop", "#status"]) == []
+    if not path:
+        page.locator("input[name=panel][value=dpad]").evaluate("one => one.click()")
+        left, right = (
+            page.locator(f"#dpad [data-direction={side}]").bounding_box()["x"] for side in ("left", "right")
+        )
+        # Left is where the arm goes left, in every script.
+        assert left < right
+        begin, end = (page.locator(f"#{name}").bounding_box()["x"] for name in ("view-side", "view-front"))
+        assert begin <= end
+
+
+COLOURS = """async (names) => {
+  const base = document.querySelector("script[type=module]").src.replace(/drive\\/drive\\.js$/, "");
+  const { colour } = await import(`${base}views/colours.js`);
+  return names.map(colour);
+}"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_forced_colours_leave_food_table_and_paths_apart(opened, scheme):
+    page = opened((1280, 720), forced_colors="active", color_scheme=scheme)
+    names = ["food", "table", "view", "tool", "ghost-up", "ghost-down", "ghost-left", "ghost-right"]
+    assert len(set(page.evaluate(COLOURS, names))) == len(names)
+    # The arrows and what is chosen are told apart as well.
+    marks = page.locator(".ghost-mark").evaluate_all(
+        "all => all.map((one) => getComputedStyle(one).backgroundColor)"
+    )
+    assert len(set(marks)) == 4
+    chosen, other = page.locator("#panel-choice .options span").evaluate_all(
+        "all => all.slice(0, 2).map((one) => getComputedStyle(one).backgroundColor)"
+    )
+    assert chosen != other
+
+
+WAKE_LOCK = """
+window.locks = [];
+Object.defineProperty(navigator, "wakeLock", { value: { request: async (kind) => {
+  const lock = { kind, held: true, release: async () => { lock.held = false; } };
+  window.locks.push(lock);
+  return lock;
+} } });
+"""
+
+
+def test_the_screen_stays_on_while_the_arm_is_enabled(open_page, arm, seat, press_enable):
+    page = seat(open_page(WAKE_LOCK), arm)
+    assert page.evaluate("locks") == []
+    press_enable(page, arm)
+    page.wait_for_function("locks.length > 0 && locks.at(-1).held")
+    assert page.evaluate("locks.at(-1).kind") == "screen"
+    page.keyboard.press("Escape")
+    page.wait_for_function("locks.every((lock) => !lock.held)")
+
+
+def test_the_page_can_be_installed_and_has_no_service_worker(open_page):
+    page = open_page()
+    manifest = page.evaluate(
+        "fetch(document.querySelector('link[rel=manifest]').href).then((one) => one.json())"
+    )
+    assert (manifest["start_url"], manifest["display"]) == ("/", "standalone")
+    for icon in manifest["icons"]:
+        size = page.evaluate(
+            """async (src) => {
+              const image = new Image();
+              image.src = new URL(src, document.querySelector("link[rel=manifest]").href);
+              await image.decode();
+              return `${image.naturalWidth}x${image.naturalHeight}`;
+            }""",
+            icon["src"],
+        )
+        assert size == icon["sizes"]
+    assert page.evaluate("navigator.serviceWorker.getRegistrations().then((all) => all.length)") == 0
+
+
+def test_a_question_mark_opens_an_explanation_without_hiding_stop(open_page):
+    page = open_page()
+    for mark in page.locator(".explain > summary").all():
+        if not mark.is_visible():
+            continue
+        mark.focus()
+        page.keyboard.press("Enter")
+        assert mark.evaluate(
+            "one => one.parentElement.open && one.parentElement.querySelector('p').checkVisibility()"
+        )
+        assert mark.get_attribute("aria-label").startswith("What is this?")
+        assert page.evaluate(CUT_OFF, ["#stop"]) == []
+    # Nothing has enabled the arm.
+    assert page.locator("#status").get_attribute("data-phase") == "disengaged"
+
+
+def test_the_card_is_one_page_for_the_input_of_the_person(open_page):
+    page = open_page()
+    page.locator("input[name=panel][value=switch]").evaluate("one => one.click()")
+    page.emulate_media(media="print")
+    card = page.locator("#card")
+    assert "press your switch" in card.inner_text()
+    assert not page.locator("#stop").is_visible()
+    pdf = page.pdf(format="A4")
+    assert pdf.count(b"/Type /Page\n") == 1
