@@ -7,6 +7,8 @@ from typing import final
 import numpy as np
 
 from latentarm.alignment.profile import profile_names
+from latentarm.runs.folder import read_run
+from latentarm.tasks.task import Task
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.channel import Report
@@ -28,6 +30,8 @@ class LoadedRun:
         self.spec = setup.spec
         self.scene = drawable(setup.task, setup.scene)
         self.chain = setup.task.robot.chain
+        self.robot_name = setup.task.robot.name
+        self.task_name = _task_name(setup)
         self.input_dim = setup.controller.input_dim
         self.latent_dim = setup.latent_dim
         self.goals_m_per_rad = [
@@ -69,6 +73,14 @@ class LoadedRun:
             limits=Limits(latch_max_s=LATCH_MAX_S),
             gripper_width_m=None if gripper is None else gripper.width_m,
         )
+
+
+def _task_name(setup: DriveSetup) -> str:
+    """What is driven at, a name of `latentarm.tasks.catalogue`."""
+    if isinstance(setup.task, Task):
+        return setup.task.name
+    spec = setup.spec
+    return spec.task or (None if spec.run is None else read_run(spec.run).task) or ""
 
 
 def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun:

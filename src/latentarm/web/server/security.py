@@ -5,9 +5,10 @@ import hashlib
 import hmac
 import secrets
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
+from types import MappingProxyType
 from typing import Final, final
 from urllib.parse import parse_qs
 
@@ -122,6 +123,7 @@ class Gate:
         keys: who may enter; None lets everybody in, for a server on the loopback.
         secure: whether the cookie is for TLS alone.
         stop: stops the arm.
+        long_bodies: paths that take longer bodies than `BODY_LIMIT`, with how long, bytes.
         entered: called after the link has been used.
     """
 
@@ -134,6 +136,7 @@ class Gate:
         *,
         secure: bool = False,
         stop: Callable[[], None],
+        long_bodies: Mapping[str, int] = MappingProxyType({}),
         entered: Callable[[], None] = lambda: None,
     ) -> None:
         self.app = app
@@ -142,6 +145,7 @@ class Gate:
         self._keys = keys
         self._secure = secure
         self._stop = stop
+        self._long_bodies = long_bodies
         self._entered = entered
         self._requests = 0
 
@@ -188,7 +192,7 @@ class Gate:
             return PlainTextResponse("This page may not be used from another site.", 403)
         if scope["path"] == STOP:
             return None
-        if not _short(headers):
+        if not _short(headers, self._long_bodies.get(scope["path"], BODY_LIMIT)):
             return PlainTextResponse("That is too long.", 413)
         if self._requests >= MOST_REQUESTS:
             return PlainTextResponse("The server is busy: try again.", 503)
@@ -269,12 +273,12 @@ def _with_headers(send: Send) -> Send:
     return with_headers
 
 
-def _short(headers: Headers) -> bool:
+def _short(headers: Headers, limit: int) -> bool:
     """Whether the declared length of a body is within the limit; an unknown one is not."""
     if "transfer-encoding" in headers:
         return False
     length = headers.get("content-length", "0")
-    return length.isascii() and length.isdigit() and len(length) <= _MOST_DIGITS and int(length) <= BODY_LIMIT
+    return length.isascii() and length.isdigit() and len(length) <= _MOST_DIGITS and int(length) <= limit
 
 
 def _cookie(headers: Headers) -> str:

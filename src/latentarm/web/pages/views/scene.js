@@ -58,16 +58,16 @@ export class ArmScene {
     this.repaint();
   }
 
-  /** Fetch the description and its meshes. @returns {Promise<ArmScene>} */
-  static async load() {
+  /** Fetch the description and its meshes. @param {string} where their address @returns {Promise<ArmScene>} */
+  static async load(where) {
     /** @type {SceneDescription} */
-    const description = await (await fetch("/scene.json")).json();
+    const description = await (await fetch(`${where}/scene.json`)).json();
     const numbers = new Set(description.bodies.flatMap((body) => body.geoms).map((geom) => geom.mesh));
     numbers.delete(null);
     /** @type {Meshes} */
     const meshes = new Map();
     await Promise.all([.../** @type {Set<number>} */ (numbers)].map(async (number) => {
-      meshes.set(number, meshGeometry(await (await fetch(`/mesh/${number}`)).arrayBuffer()));
+      meshes.set(number, meshGeometry(await (await fetch(`${where}/mesh/${number}`)).arrayBuffer()));
     }));
     return new ArmScene(description, meshes);
   }
