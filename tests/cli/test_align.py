@@ -139,7 +139,7 @@ def test_what_cannot_be_aligned_is_refused(run: Run, trained: Path) -> None:
         ((*ALIGN, "--answers", 0), "at least 1"),
         ((*ALIGN, "--seed-index", 2), "no seed index 2"),
         ((*ALIGN, "--seed", -1), "seed"),
-        (("align", "mine", "--name", "../ada"), "is not a profile name"),
+        (("align", "mine", "--name", "..."), "has no letter"),
         (("drive", "mine", "--profile", "ada"), "align mine --name ada"),
         (("drive", "mine", "--profile", "ada", "--controller", "end_effector"), "mode switching has none"),
         (("drive", "--profile", "ada"), "mode switching has none"),

@@ -293,13 +293,13 @@ class Site:
             yield socket
 
     @contextmanager
-    def page(self, name: str = "Ada") -> Iterator[Client]:
+    def page(self, name: str = "Ada", **hello: str) -> Iterator[Client]:
         with self.raw() as socket:
             client = Client(socket)
             threads = [threading.Thread(target=work, daemon=True) for work in (client.listen, client.talk)]
             for thread in threads:
                 thread.start()
-            client.send(type="hello", version=1, name=name)
+            client.send(type="hello", version=1, name=name, **hello)
             client.wait(lambda state: True, within_s=60.0)  # the control process has begun by then
             try:
                 yield client
@@ -344,7 +344,7 @@ def served(spec: Spec) -> Iterator[Site]:
         yield Site(port, control, loops[0])
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def serve() -> Callable[[Spec], AbstractContextManager[Site]]:
     """A server of its own for a test that changes what is driven."""
     return served

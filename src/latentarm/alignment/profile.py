@@ -3,9 +3,12 @@
 import hashlib
 import json
 import re
+import shlex
 import shutil
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Final, final
 
@@ -33,6 +36,7 @@ from latentarm.models.saving import (
     read_tensors,
 )
 from latentarm.types import FloatArray
+from latentarm.untrusted.names import clean_name
 from latentarm.untrusted.opening import read_bytes
 
 FOLDER: Final = "profiles"
@@ -45,6 +49,13 @@ MOST_PLACES: Final = 10_000
 """Of answers and of regions; a profile of ours keeps some tens."""
 
 NAMED: Final = re.compile(r"\w[\w-]{0,63}")
+"""Names that are also the name of their folder."""
+
+MOST_CHARACTERS: Final = 64
+"""Of a profile's name."""
+
+_DIGEST: Final = re.compile(r"\+[0-9a-f]{24}")
+"""Folders of all other names; the name itself is in ``config.json``."""
 
 SCALES: Final = "lengths.scale"
 """Tensor of the turn's length, m, the regions' width, m, the fastest motion, m/s, and its duration, s."""
@@ -91,21 +102,28 @@ def model_fingerprint(run: Path, seed_index: int) -> str:
 
 
 def profile_folder(run: Path, name: str) -> Path:
-    """Where a run keeps a person's profile.
+    """Where a run keeps a person's profile: any name in any script has its folder.
 
     Raises:
-        UserError: the name is not one for a folder.
+        UserError: it is no name.
     """
-    if not NAMED.fullmatch(name):
-        raise UserError(f"{name!r} is not a profile name: use letters, digits, - and _, 64 at most.")
-    return run / FOLDER / name
+    return run / FOLDER / _folder_name(name)
+
+
+def _folder_name(name: str) -> str:
+    if NAMED.fullmatch(name):
+        return name
+    if name == TRIAL:
+        raise UserError(f"{name!r} cannot be the name of a profile: choose another one.")
+    clean = clean_name(name, MOST_CHARACTERS)
+    return clean if NAMED.fullmatch(clean) else f"+{hashlib.sha256(clean.encode()).hexdigest()[:24]}"
 
 
 def new_profile_folder(run: Path, name: str) -> Path:
     """Where a run will keep a new profile.
 
     Raises:
-        UserError: the name is not one for a folder, or has been given already.
+        UserError: it is no name, or has been given already.
     """
     folder = profile_folder(run, name)
     check_vacant(folder)
@@ -114,8 +132,27 @@ def new_profile_folder(run: Path, name: str) -> Path:
 
 def profile_names(run: Path) -> tuple[str, ...]:
     """People who have a profile of a run, in the order of the names."""
-    found = (path.name for path in (run / FOLDER).glob("*/"))
-    return tuple(sorted(name for name in found if NAMED.fullmatch(name)))
+    found = (_name_of(path) for path in (run / FOLDER).glob("*/"))
+    return tuple(sorted(name for name in found if name is not None))
+
+
+def _name_of(folder: Path) -> str | None:
+    """The name of the profile in a folder; None where it holds none."""
+    if NAMED.fullmatch(folder.name):
+        return folder.name
+    if not _DIGEST.fullmatch(folder.name):
+        return None
+    with suppress(OSError, UserError):
+        config = folder / CONFIG_NAME
+        name = _written_name(config, config.stat().st_mtime_ns)
+        return name if _folder_name(name) == folder.name else None
+    return None
+
+
+@lru_cache(maxsize=256)
+def _written_name(config: Path, changed_ns: int) -> str:
+    """The name in a profile's ``config.json``, read once for each change of the file."""
+    return clean_name(Section.of_file(config, CONFIG_LIMIT).text("name"), MOST_CHARACTERS)
 
 
 def trial_folder(run: Path) -> Path:
@@ -127,7 +164,7 @@ def keep_trial(run: Path, name: str) -> None:
     """Keep the profile on trial under a person's name.
 
     Raises:
-        UserError: the name is not one for a folder or has been given already, or there is nothing to keep.
+        UserError: it is no name or has been given already, or there is nothing to keep.
     """
     folder = new_profile_folder(run, name)
     try:
@@ -195,7 +232,8 @@ def load_profile(run: Path, name: str) -> Profile:
     folder = trial_folder(run) if name == TRIAL else profile_folder(run, name)
     if not folder.is_dir():
         raise UserError(
-            f"{run} has no profile '{name}': make one with `latentarm align {run} --name {name}`."
+            f"{run} has no profile '{name}': make one with"
+            f" `latentarm align {run} --name {shlex.quote(name)}`."
         )
     path = folder / CONFIG_NAME
     section = Section.of_file(path, CONFIG_LIMIT).section("profile")

@@ -4,20 +4,22 @@ import { beforeEach, test } from "node:test";
 import { Connection } from "#pages/connection/connection.js";
 import { FakeSocket, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
 
+const ADA = { id: "00000000000000ad", name: "Ada" };
+
 let connection;
 
-function connect(name = "") {
-  connection = new Connection(name);
+function connect(person = null) {
+  connection = new Connection(person);
   FakeSocket.newest.opens();
   return FakeSocket.newest;
 }
 
 beforeEach(newBrowser);
 
-test("a page introduces itself by its person's name, over TLS where the page came over TLS", () => {
-  const socket = connect("Ada");
+test("a page introduces itself by its person's id and name, over TLS where the page came over TLS", () => {
+  const socket = connect(ADA);
   assert.equal(socket.url, "wss://arm.local/drive");
-  assert.deepEqual(socket.taken(), [{ type: "hello", version: 1, name: "Ada" }]);
+  assert.deepEqual(socket.taken(), [{ type: "hello", version: 1, name: "Ada", person: ADA.id }]);
 });
 
 test("a page without a person introduces itself without a name", () => {
@@ -92,8 +94,8 @@ test("inputs are numbered from one again on a new connection", () => {
 });
 
 test("another person is another page to the server", () => {
-  connect("Ada");
-  connection.rename("Bea");
+  connect(ADA);
+  connection.become({ id: "00000000000000be", name: "Bea" });
   pass(500);
   FakeSocket.newest.opens();
   assert.equal(FakeSocket.newest.taken()[0].name, "Bea");

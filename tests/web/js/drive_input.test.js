@@ -23,7 +23,7 @@ function drive(ms, fields) {
 
 beforeEach(() => {
   fakes = newBrowser();
-  const connection = new Connection("");
+  const connection = new Connection(null);
   socket = FakeSocket.newest;
   socket.opens();
   input = new DriveInput(connection, (x, y) => [x, y]);

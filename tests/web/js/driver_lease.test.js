@@ -13,7 +13,7 @@ const asked = () => socket.taken().filter(({ type }) => type === "ask_to_drive")
 
 beforeEach(() => {
   newBrowser();
-  const connection = new Connection("");
+  const connection = new Connection(null);
   socket = FakeSocket.newest;
   socket.opens();
   lease = new DriverLease(connection);

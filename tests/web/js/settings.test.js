@@ -4,6 +4,9 @@ import { beforeEach, test } from "node:test";
 import { DEFAULTS, Settings } from "#pages/settings/settings.js";
 import { newBrowser } from "./browser.js";
 
+const ADA = { id: "00000000000000ad", name: "Ada" };
+const ZOE = { id: "00000000000000ee", name: "Zoë Müller" };
+
 let fakes;
 const keep = (name, values) => fakes.localStorage.setItem(`latentarm.settings.${name}`, typeof values === "string" ? values : JSON.stringify(values));
 
@@ -13,7 +16,7 @@ beforeEach(() => {
 
 test("settings are those of the person who was here last", () => {
   const settings = new Settings();
-  settings.become("Ada");
+  settings.become(ADA);
   settings.change({ sensitivity: 0.4 });
   assert.equal(new Settings().name, "Ada");
   assert.equal(new Settings().values.sensitivity, 0.4);
@@ -21,15 +24,14 @@ test("settings are those of the person who was here last", () => {
 
 test("each person has their own, and somebody new has the defaults", () => {
   const settings = new Settings();
-  settings.become("Ada");
+  settings.become(ADA);
   settings.change({ panel: "dpad" });
-  settings.become(" Zoë Müller ");
+  settings.become(ZOE);
   assert.equal(settings.name, "Zoë Müller");
   assert.deepEqual(settings.values, DEFAULTS);
   settings.change({ panel: "switch" });
-  settings.become("Ada");
+  settings.become(ADA);
   assert.equal(settings.values.panel, "dpad");
-  assert.deepEqual(settings.people.sort(), ["Ada", "Zoë Müller"]);
 });
 
 test("what is kept is taken only as far as it makes sense", () => {
@@ -59,7 +61,6 @@ test("a browser that keeps nothing leaves settings that last as long as the page
   const settings = new Settings();
   settings.change({ theme: "dark" });
   assert.equal(settings.values.theme, "dark");
-  assert.deepEqual(settings.people, []);
 });
 
 test("the defaults can be had back", () => {
@@ -67,4 +68,50 @@ test("the defaults can be had back", () => {
   settings.change({ swapAxes: true, dwellS: 3 });
   settings.reset();
   assert.deepEqual(settings.values, DEFAULTS);
+});
+
+test("settings from before people had records are found by the name, once", () => {
+  keep("Ada", { panel: "dpad" });
+  const settings = new Settings();
+  settings.become(ADA);
+  assert.equal(settings.values.panel, "dpad");
+  settings.change({ panel: "switch" });
+  settings.become(null);
+  assert.equal(settings.values.panel, DEFAULTS.panel);
+  settings.become(ADA);
+  assert.equal(settings.values.panel, "switch");
+});
+
+test("nothing of a person who is deleted stays in the browser", () => {
+  keep("Zoë Müller", { panel: "dpad" });
+  const settings = new Settings();
+  settings.become(ZOE);
+  settings.change({ dwellS: 2 });
+  settings.forget(ZOE);
+  assert.equal(settings.person, null);
+  assert.deepEqual(settings.values, DEFAULTS);
+  const left = JSON.stringify([...fakes.localStorage.kept]);
+  assert.ok(!left.includes("Zo") && !left.includes(ZOE.id), left);
+});
+
+test("what the server keeps replaces what the browser has, and is not sent back", () => {
+  const settings = new Settings();
+  settings.become(ADA);
+  let edited = 0;
+  settings.addEventListener("edited", () => (edited += 1));
+  settings.take({ panel: "dpad", sensitivity: 9, unknown: [1] });
+  assert.equal(settings.values.panel, "dpad");
+  assert.equal(settings.values.sensitivity, 1);
+  assert.equal(edited, 0);
+  settings.change({ panel: "stick" });
+  assert.equal(edited, 1);
+});
+
+test("a person is called otherwise and stays the same", () => {
+  const settings = new Settings();
+  settings.become(ADA);
+  settings.change({ panel: "dpad" });
+  settings.rename("李雷");
+  assert.deepEqual(new Settings().person, { ...ADA, name: "李雷" });
+  assert.equal(new Settings().values.panel, "dpad");
 });

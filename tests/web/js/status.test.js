@@ -15,7 +15,7 @@ let status;
 
 beforeEach(() => {
   newBrowser();
-  const connection = new Connection("");
+  const connection = new Connection(null);
   socket = FakeSocket.newest;
   [line, text] = [new FakeElement(), new FakeElement()];
   status = attachStatus({ line, text }, connection);

@@ -11,7 +11,7 @@ let dropped;
 
 beforeEach(() => {
   fakes = newBrowser();
-  const connection = new Connection("");
+  const connection = new Connection(null);
   socket = FakeSocket.newest;
   socket.opens();
   socket.says(stateOf({ you: true, phase: "moving" }));

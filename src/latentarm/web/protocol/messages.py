@@ -36,11 +36,18 @@ Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
 
 @final
 class Hello(Message):
-    """A page introduces itself. The first page drives; the others watch until they ask."""
+    """A page introduces itself. The first page drives; the others watch until they ask.
+
+    Attributes:
+        version: of these messages.
+        name: what its person wants to be called; counts only where they have no record.
+        person: id of their record.
+    """
 
     type: Literal["hello"]
     version: Literal[1]
     name: Name | None = None
+    person: Id | None = None
 
 
 @final

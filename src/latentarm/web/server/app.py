@@ -19,18 +19,24 @@ from latentarm.robots.notices import notices
 from latentarm.web.arm_process.drive_setup import DriveSetup, load_setup
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.training import model_names
+from latentarm.web.protocol.channel import ChooseProfile
 from latentarm.web.protocol.messages import FRAME_LIMIT
 from latentarm.web.protocol.notice import Notice
+from latentarm.web.records.exchange import IMPORT_LIMIT
+from latentarm.web.records.people import PersonRecord
+from latentarm.web.records.records import Records
 from latentarm.web.server.addresses import TeleopConfig, check_certificate, listen, origin
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.frames import MeteredSocket
+from latentarm.web.server.history import History
 from latentarm.web.server.invitations import Invitations
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.loaded_run import LoadedRun, RunList
 from latentarm.web.server.logs import LOGGING
 from latentarm.web.server.pages import PAGES, Pages
+from latentarm.web.server.record_routes import IMPORT, RecordRoutes
 from latentarm.web.server.security import DRIVE, Gate, Keys
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
@@ -111,20 +117,36 @@ def build_app(setup: DriveSetup, control: ControlProcess) -> FastAPI:
     spec = setup.spec
     run_list = RunList(spec.out, spec.run)
     states = States(LoadedRun(setup, run_list.name_of(spec.run)), control, sessions, run_list)
+    records = Records(spec.out, run_list.runs, states.journal)
     learning = Learning(control, states, run_list, spec.out)
-    drive = DriveSocket(control, states, sessions, learning)
+    history = History(states, sessions, records)
+    drive = DriveSocket(control, states, sessions, learning, records.people, history)
+
+    def driven_with(person: PersonRecord) -> bool:
+        report = states.report
+        return report is not None and report.profile in {profile.name for profile in person.profiles}
+
+    def busy(person: PersonRecord) -> bool:
+        driver = sessions.driver
+        theirs = driven_with(person) or (driver is not None and driver.person == person.id)
+        return theirs and not learning.at_rest
+
+    def let_go(person: PersonRecord) -> None:
+        if driven_with(person):
+            control.order(ChooseProfile(name=None))
 
     assets = Assets()
     pages = Pages(assets, model_names())
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
-        following = [asyncio.create_task(one.follow()) for one in (states, learning)]
+        following = [asyncio.create_task(one.follow()) for one in (states, learning, history)]
         try:
             yield
         finally:
             for task in following:
                 task.cancel()
+            await history.close()
             await learning.close()
 
     app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
@@ -143,6 +165,7 @@ def build_app(setup: DriveSetup, control: ControlProcess) -> FastAPI:
     app.add_api_websocket_route(DRIVE, drive)
     app.add_route("/scene.json", describe)
     app.add_route("/mesh/{number}", mesh)
+    RecordRoutes(records, history, busy, let_go).add_to(app)
     for page in PAGES:
         app.add_route(page.path, pages.answer)
     app.add_route("/static/{version}/{name:path}", assets.answer)
@@ -178,6 +201,7 @@ def gated(
         secure=config.scheme == "https",
         stop=lambda: control.stop(Notice(code="stop_pressed")),
         invite=invite,
+        long_bodies={IMPORT: IMPORT_LIMIT},
     )
 
 

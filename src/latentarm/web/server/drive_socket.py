@@ -40,8 +40,11 @@ from latentarm.web.protocol.messages import (
     parse_message,
 )
 from latentarm.web.protocol.notice import Notice, NoticeCode
-from latentarm.web.protocol.personalise_messages import AnswerQuestion, PersonaliseMessage
+from latentarm.web.protocol.personalise_messages import AnswerQuestion, KeepAlignment, PersonaliseMessage
+from latentarm.web.records.drive_record import Ending
+from latentarm.web.records.people import People
 from latentarm.web.server.frames import TOO_MANY
+from latentarm.web.server.history import History
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
 from latentarm.web.server.sessions import MOST, Page, Sessions
@@ -90,15 +93,25 @@ class DriveSocket:
         states: what pages see.
         sessions: who is there.
         learning: what is recorded, trained and chosen.
+        people: whose records there are.
+        history: logs what is driven.
     """
 
     def __init__(
-        self, control: ControlProcess, states: States, sessions: Sessions, learning: Learning
+        self,
+        control: ControlProcess,
+        states: States,
+        sessions: Sessions,
+        learning: Learning,
+        people: People,
+        history: History,
     ) -> None:
         self._control = control
         self._states = states
         self._sessions = sessions
         self._learning = learning
+        self._people = people
+        self._history = history
         self._open = 0
         self._asked: AskedGripper | None = None
 
@@ -127,7 +140,7 @@ class DriveSocket:
         try:
             async with asyncio.timeout(HELLO_WITHIN_S):
                 hello = await _receive(socket)
-            if not isinstance(hello, Hello) or (page := self._sessions.join(hello.name)) is None:
+            if not isinstance(hello, Hello) or (page := self._join(hello)) is None:
                 raise _ViolationError
             sender = asyncio.create_task(self._send_states(socket, page))
             while True:
@@ -149,6 +162,11 @@ class DriveSocket:
                 sender.cancel()
             if page is not None and self._sessions.leave(page):
                 self._driver_changed(_of(page, "driver_gone"))
+
+    def _join(self, hello: Hello) -> Page | None:
+        """The page of a person with a record, or of a guest; None if there are too many pages."""
+        known = self._people.find(hello.person)
+        return self._sessions.join(hello.name) if known is None else self._sessions.join(known.name, known.id)
 
     async def _send_states(self, socket: WebSocket, page: Page) -> None:
         """States as fast as the page takes them, always the newest: nothing queues up.
@@ -207,13 +225,15 @@ class DriveSocket:
             case Profile(name=name):
                 self._control.order(ChooseProfile(name=name))
             case RecordEpisode(on=on, task=task):
-                self._control.order(Record(on=on, task=task, person=page.name))
+                self._control.order(Record(on=on, task=task, person=page.person or page.name))
             case ReturnArm(on=on):
                 self._control.order(Return(on=on))
             case ResetArm():
                 self._control.order(Reset())
+                self._end_drive("reset")
             case BeginRun(choice=choice, anew=anew):
                 self._control.order(BeginTask(choice=choice, anew=anew))
+                self._end_drive("next" if anew else "again")
             case Train():
                 self._learning.train(message)
             case CancelTraining():
@@ -227,17 +247,33 @@ class DriveSocket:
                 if self._sessions.release(page):
                     self._driver_changed(_of(page, "driver_released"))
             case _ if isinstance(message, PersonaliseMessage):
+                before = self._learning.personalising.look()
                 self._learning.personalising.take(message)
+                if isinstance(message, KeepAlignment) and before is not None and before.phase == "learned":
+                    self._note_profile(page)
             case _:
                 pass
+
+    def _end_drive(self, ending: Ending) -> None:
+        """A drive ends where the arm is put elsewhere, which it is only at rest."""
+        if self._learning.at_rest:
+            self._history.end(ending)
+
+    def _note_profile(self, page: Page) -> None:
+        """A profile that was just kept belongs to the person who drives."""
+        kept, run = self._learning.personalising.look(), self._states.loaded.name
+        if kept is not None and kept.phase == "kept" and page.person is not None and run is not None:
+            self._history.keep_profile(page.person, run, kept.name)
 
     def _driver_changed(self, why: Notice) -> None:
         """The arm stops for it, and an episode is one driver's."""
         self._asked = None
+        self._history.end("driver_changed")
         self._control.stop(why)
         self._control.order(Record(on=False, task=""))
 
     def _give(self, message: DriverInput) -> None:
+        self._history.given(message.u, message.source, gripper=message.gripper is not None)
         padded = message.u + (0.0,) * (self._states.loaded.input_dim - len(message.u))
         if message.gripper is not None:
             self._asked = AskedGripper(ask=message.gripper, seq=message.seq, nonce=message.nonce)

@@ -58,6 +58,11 @@ class Learning:
         """All of it as JSON, for a page."""
         return self._text
 
+    @property
+    def at_rest(self) -> bool:
+        """Whether the arm stands disengaged."""
+        return self._driven().at_rest
+
     async def follow(self) -> None:
         """Keep it up to date until cancelled."""
         while True:

@@ -36,6 +36,8 @@ class LoadedRun:
         self.spec = setup.spec
         self.scene = drawable(setup.task, setup.shown)
         self.chain = setup.task.robot.chain
+        self.robot_name = setup.task.robot.name
+        self.todo = setup.todo
         self.input_dim = setup.controller.input_dim
         self.latent_dim = setup.latent_dim
         self.goals_m_per_rad = [

@@ -45,7 +45,13 @@ class Page:
         return "layout/tokens.css", "layout/page.css", "layout/controls.css", f"{self.name}/{self.name}.css"
 
 
-PAGES: Final = (Page("/", "drive"), Page("/personalise", "personalise"), Page("/teach", "teach"))
+PAGES: Final = (
+    Page("/", "drive"),
+    Page("/personalise", "personalise"),
+    Page("/teach", "teach"),
+    Page("/people", "people"),
+    Page("/history", "history"),
+)
 
 
 @final

@@ -7,8 +7,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
-from latentarm.alignment.profile import TRIAL, discard_trial, keep_trial, profile_folder, trial_folder
+from latentarm.alignment.profile import (
+    MOST_CHARACTERS,
+    NAMED,
+    TRIAL,
+    discard_trial,
+    keep_trial,
+    profile_folder,
+    trial_folder,
+)
 from latentarm.errors import UserError
+from latentarm.untrusted.names import clean_name
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
 from latentarm.web.protocol.channel import ChooseProfile, Report
@@ -137,6 +146,7 @@ class Personalising:
         driven = self._driven()
         try:
             run = _alignable(driven)
+            name = name if NAMED.fullmatch(name) else clean_name(name, MOST_CHARACTERS)
             if profile_folder(run, name).exists():
                 raise NoticeError("profile_exists", name=name)
             self._give_back(driven)

@@ -5,9 +5,10 @@ import hashlib
 import hmac
 import secrets
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
+from types import MappingProxyType
 from typing import Final, final
 from urllib.parse import parse_qs
 
@@ -134,6 +135,7 @@ class Gate:
         keys: who may enter; None lets everybody in, for a server on the loopback.
         secure: whether the cookie is for TLS alone.
         stop: stops the arm.
+        long_bodies: paths that take longer bodies than `BODY_LIMIT`, with how long, bytes.
         invite: makes a link for the next person; called when a link has been used, and for the host's page.
     """
 
@@ -146,6 +148,7 @@ class Gate:
         *,
         secure: bool = False,
         stop: Callable[[], None],
+        long_bodies: Mapping[str, int] = MappingProxyType({}),
         invite: Callable[[], str] = lambda: "",
     ) -> None:
         self.app = app
@@ -154,6 +157,7 @@ class Gate:
         self._keys = keys
         self._secure = secure
         self._stop = stop
+        self._long_bodies = long_bodies
         self._invite = invite
         self._requests = 0
 
@@ -200,7 +204,7 @@ class Gate:
             return PlainTextResponse("This page may not be used from another site.", 403)
         if scope["path"] == STOP:
             return None
-        if not _short(headers):
+        if not _short(headers, self._long_bodies.get(scope["path"], BODY_LIMIT)):
             return PlainTextResponse("That is too long.", 413)
         if self._requests >= MOST_REQUESTS:
             return PlainTextResponse("The server is busy: try again.", 503)
@@ -284,12 +288,12 @@ def _with_headers(send: Send) -> Send:
     return with_headers
 
 
-def _short(headers: Headers) -> bool:
+def _short(headers: Headers, limit: int) -> bool:
     """Whether the declared length of a body is within the limit; an unknown one is not."""
     if "transfer-encoding" in headers:
         return False
     length = headers.get("content-length", "0")
-    return length.isascii() and length.isdigit() and len(length) <= _MOST_DIGITS and int(length) <= BODY_LIMIT
+    return length.isascii() and length.isdigit() and len(length) <= _MOST_DIGITS and int(length) <= limit
 
 
 def _cookie(headers: Headers) -> str:

@@ -16,10 +16,12 @@ class Page:
     Attributes:
         id: for this connection alone.
         name: what its person is called.
+        person: id of their record; None for a guest.
     """
 
     id: str
     name: str
+    person: str | None = None
 
 
 @final
@@ -60,12 +62,14 @@ class Sessions:
         """Whether this page is the driver's."""
         return self._driver == page.id
 
-    def join(self, name: str | None) -> Page | None:
+    def join(self, name: str | None, person: str | None = None) -> Page | None:
         """A new page, or None if there are too many."""
         if len(self._pages) >= MOST:
             return None
         page = Page(
-            secrets.token_hex(8), (name or "").strip() or f"Guest {self._turn + len(self._pages) + 1}"
+            secrets.token_hex(8),
+            (name or "").strip() or f"Guest {self._turn + len(self._pages) + 1}",
+            person,
         )
         self._pages[page.id] = page
         if len(self._pages) == 1:

@@ -4,6 +4,7 @@ import asyncio
 import json
 import math
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Final, final
@@ -75,6 +76,7 @@ class States:
 
     Attributes:
         standstill: why the arm may not be enabled; None if it may.
+        heard: called with every report of what `loaded` shows.
     """
 
     def __init__(
@@ -84,6 +86,7 @@ class States:
         self._control = control
         self._sessions = sessions
         self.standstill: Notice | None = None
+        self.heard: list[Callable[[Report], None]] = []
         self._run_list = run_list
         self._loading = False
         self._failed: tuple[Beginning, Notice] | None = None
@@ -152,6 +155,11 @@ class States:
         """The newest report of what `loaded` shows."""
         return self._report
 
+    def journal(self) -> Path | None:
+        """What is recorded to, or was last; None if nothing ever was."""
+        recording = None if self._report is None else self._report.recording
+        return None if recording is None else Path(recording.journal)
+
     @property
     def loaded(self) -> LoadedRun:
         """What is driven."""
@@ -192,6 +200,8 @@ class States:
             self._things = report.things or self._things
             self._loading = report.loading
             self._failed = None
+            for hear in self.heard:
+                hear(report)
         elif self._changing is None and (self._failed is None or self._failed[0] != beginning_of(report)):
             self._failed = None
             self._loading = True

@@ -15,10 +15,10 @@ const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
 
 export class Connection extends EventTarget {
-  /** @param {string} name what other people see; empty for nobody in particular. */
-  constructor(name) {
+  /** @param {import("../settings/settings.js").Person | null} person who sits here; null for a guest. */
+  constructor(person) {
     super();
-    this.name = name;
+    this.person = person;
     /** @type {Welcome | null} What is driven. */
     this.welcome = null;
     /** @type {State | null} The newest. */
@@ -77,9 +77,9 @@ export class Connection extends EventTarget {
     return this.send({ type: "input", seq: this._sequence, nonce: this.state.nonce, u, source, latched, gripper });
   }
 
-  /** Another person sits here now: another page to the server. @param {string} name */
-  rename(name) {
-    this.name = name;
+  /** Another person sits here now: another page to the server. @param {import("../settings/settings.js").Person | null} person */
+  become(person) {
+    this.person = person;
     this._socket.close();
   }
 
@@ -91,7 +91,8 @@ export class Connection extends EventTarget {
       this._sequence = 0;
       this._waitMs = FIRST_WAIT_MS;
       this._heardAt = performance.now();
-      this.send(this.name ? { type: "hello", version: 1, name: this.name } : { type: "hello", version: 1 });
+      const { person } = this;
+      this.send(person ? { type: "hello", version: 1, name: person.name, person: person.id } : { type: "hello", version: 1 });
       this._tell("open", true);
     });
     socket.addEventListener("message", (event) => this._heard(JSON.parse(event.data)));

@@ -66,6 +66,7 @@ export interface Hello {
   type: "hello";
   version: 1;
   name?: string | null;
+  person?: string | null;
 }
 
 export interface KeepAlignment {
@@ -109,7 +110,7 @@ export interface NamedThing {
 }
 
 export interface Notice {
-  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "at_start" | "asking" | "asking_already" | "checking_run" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "loop_late" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "page_refused" | "page_stopped" | "profile_exists" | "question_began" | "recording_ended" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "work_broke_off";
+  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "at_start" | "asking" | "asking_already" | "checking_run" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "import_invalid" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "loop_late" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "page_refused" | "page_stopped" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "profile_exists" | "question_began" | "record_unknown" | "recording_ended" | "return_not_now" | "return_pushed" | "return_stuck" | "recording_in_use" | "request_invalid" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "work_broke_off";
   parameters: Record<string, string | number>;
 }
 

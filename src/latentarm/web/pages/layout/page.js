@@ -7,6 +7,7 @@ import { attachStatus } from "../connection/status.js";
 import { attachStop } from "../connection/stop.js";
 import { attachFeedback } from "../feedback/feedback.js";
 import { attachWakeLock } from "../feedback/wake_lock.js";
+import { attachPersonSync } from "../settings/person_sync.js";
 import { Settings } from "../settings/settings.js";
 import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
@@ -20,29 +21,30 @@ import { readWords, say } from "./words.js";
 export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = () => location.reload() } = {}) {
   readWords();
   const settings = new Settings();
-  const connection = new Connection(settings.name);
+  const connection = new Connection(settings.person);
   const status = attachStatus({ line: byId("status"), text: byId("status-text") }, connection);
   const lease = new DriverLease(connection);
   const stop = attachStop(connection, () => {
     lease.forget();
     drop();
   });
+  attachPersonSync(settings);
   const dialog = attachSettingsDialog(byId("settings", HTMLDialogElement), byId("settings-open"), settings);
   attachTheme(byId("theme"), settings, repaint);
   const feedback = attachFeedback(connection, settings);
   attachWakeLock(connection);
   attachInvitation();
-  attachDriverPanel({
-    text: byId("driver"),
-    ask: byId("ask", HTMLButtonElement),
-    handOver: byId("hand-over", HTMLButtonElement),
-    release: byId("release", HTMLButtonElement),
-  }, connection);
+  // Pages from which nobody drives have no such panel.
+  if (document.getElementById("driver")) {
+    attachDriverPanel({
+      text: byId("driver"),
+      ask: byId("ask", HTMLButtonElement),
+      handOver: byId("hand-over", HTMLButtonElement),
+      release: byId("release", HTMLButtonElement),
+    }, connection);
+  }
 
-  let { name } = settings;
-  settings.addEventListener("change", () => {
-    if (settings.name !== name) connection.rename((name = settings.name));
-  });
+  settings.addEventListener("person", () => connection.become(settings.person));
   connection.addEventListener("welcome", () => {
     if (!connection.welcome) return;
     const { robot, run, limits, profiles } = connection.welcome;

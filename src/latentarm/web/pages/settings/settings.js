@@ -1,4 +1,4 @@
-/** What each person likes, kept in this browser under their name. */
+/** What each person likes, kept in this browser under their id; `person_sync.js` keeps it on the server as well. */
 
 import * as storage from "./storage.js";
 
@@ -74,36 +74,77 @@ const CHOICES = {
 const PERSON_KEY = "latentarm.person";
 const SETTINGS_KEY = "latentarm.settings.";
 
-/** Event "change" after every change. */
+/** @typedef {{id: string, name: string}} Person */
+
+/** Events: "change" after every change, "edited" after those made here, "person" when somebody else sits down. */
 export class Settings extends EventTarget {
   constructor() {
     super();
-    this.name = storage.read(PERSON_KEY) ?? "";
-    this.values = valid(storage.read(SETTINGS_KEY + this.name));
+    /** Who sits here; null for a guest. @type {Person | null} */
+    this.person = personIn(storage.read(PERSON_KEY));
+    this.values = valid(storage.read(this._key));
   }
 
-  /** People who have settings here. @returns {string[]} */
-  get people() {
-    return storage.keys(SETTINGS_KEY).map((key) => key.slice(SETTINGS_KEY.length)).filter(Boolean);
+  get name() {
+    return this.person?.name ?? "";
   }
 
-  /** Somebody else sits down: their settings, or the defaults. @param {string} name */
-  become(name) {
-    this.name = name.trim();
-    storage.write(PERSON_KEY, this.name);
-    this.values = valid(storage.read(SETTINGS_KEY + this.name));
+  /** Somebody sits down, or a guest: their settings as this browser knows them, or the defaults. @param {Person | null} person */
+  become(person) {
+    this.person = person;
+    if (person) storage.write(PERSON_KEY, JSON.stringify(person));
+    else storage.remove(PERSON_KEY);
+    // Before people had records, settings were kept under their names.
+    this.values = valid(storage.read(this._key) ?? (person && storage.read(SETTINGS_KEY + person.name)));
+    this.dispatchEvent(new Event("person"));
     this.dispatchEvent(new Event("change"));
+  }
+
+  /** The person is called otherwise now. @param {string} name */
+  rename(name) {
+    if (!this.person || this.person.name === name) return;
+    this.person = { ...this.person, name };
+    storage.write(PERSON_KEY, JSON.stringify(this.person));
+    this.dispatchEvent(new Event("change"));
+  }
+
+  /** What the server keeps of them. @param {unknown} values */
+  take(values) {
+    this.values = valid(JSON.stringify(values));
+    storage.write(this._key, JSON.stringify(this.values));
+    this.dispatchEvent(new Event("change"));
+  }
+
+  /** Nothing of a person stays in this browser. @param {Person} person */
+  forget(person) {
+    for (const key of [person.id, person.name]) storage.remove(SETTINGS_KEY + key);
+    if (this.person?.id === person.id) this.become(null);
   }
 
   /** @param {Partial<Values>} changes */
   change(changes) {
     this.values = { ...this.values, ...changes };
-    storage.write(SETTINGS_KEY + this.name, JSON.stringify(this.values));
+    storage.write(this._key, JSON.stringify(this.values));
+    this.dispatchEvent(new Event("edited"));
     this.dispatchEvent(new Event("change"));
   }
 
   reset() {
     this.change(DEFAULTS);
+  }
+
+  get _key() {
+    return SETTINGS_KEY + (this.person?.id ?? "");
+  }
+}
+
+/** @param {string | null} stored @returns {Person | null} */
+function personIn(stored) {
+  try {
+    const person = JSON.parse(stored ?? "null");
+    return typeof person?.id === "string" && typeof person.name === "string" ? { id: person.id, name: person.name } : null;
+  } catch {
+    return null;
   }
 }
 

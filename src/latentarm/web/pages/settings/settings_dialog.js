@@ -3,6 +3,7 @@
 import { byId, create } from "../layout/dom.js";
 import { say, sayNumber, sayPercent } from "../layout/words.js";
 import { attachLanguage } from "./language.js";
+import { attachPersonChoice } from "./person_choice.js";
 import { NO_PROFILE } from "./settings.js";
 
 /** @import {Settings, Values} from "./settings.js" */
@@ -23,7 +24,7 @@ export function attachSettingsDialog(dialog, opener, settings) {
 
   const show = () => {
     for (const field of fields) {
-      const value = field.name === "name" ? settings.name : settings.values[/** @type {keyof Values} */ (field.name)];
+      const value = settings.values[/** @type {keyof Values} */ (field.name)];
       if (field.type === "checkbox") field.checked = Boolean(value);
       else if (field.type === "radio") field.checked = field.value === value;
       else if (document.activeElement !== field || field.type === "range") field.value = String(value);
@@ -32,10 +33,11 @@ export function attachSettingsDialog(dialog, opener, settings) {
       const name = text.dataset.shows ?? "";
       text.textContent = TEXTS[name](Number(settings.values[/** @type {keyof Values} */ (name)]));
     }
-    form.querySelector("datalist")?.replaceChildren(...settings.people.map((value) => create("option", { value })));
   };
 
+  const chooser = attachPersonChoice(byId("settings-person", HTMLSelectElement), settings);
   opener.addEventListener("click", () => {
+    chooser.offer();
     show();
     dialog.showModal();
   });
@@ -45,10 +47,6 @@ export function attachSettingsDialog(dialog, opener, settings) {
     if (field.type === "text" || !field.name) return;
     const value = field.type === "checkbox" ? field.checked : field.type === "range" ? Number(field.value) : field.value;
     settings.change({ [field.name]: value });
-  });
-  form.addEventListener("change", (event) => {
-    const field = /** @type {HTMLInputElement} */ (event.target);
-    if (field.name === "name") settings.become(field.value);
   });
   form.addEventListener("keydown", (event) => {
     const field = /** @type {HTMLInputElement} */ (event.target);

@@ -18,12 +18,11 @@ export function write(key, value) {
   }
 }
 
-/** Keys that begin so. @param {string} prefix @returns {string[]} */
-export function keys(prefix) {
+/** @param {string} key */
+export function remove(key) {
   try {
-    return Array.from({ length: localStorage.length }, (_, index) => localStorage.key(index) ?? "")
-      .filter((key) => key.startsWith(prefix));
+    localStorage.removeItem(key);
   } catch {
-    return [];
+    // Refused: then nothing was kept either.
   }
 }

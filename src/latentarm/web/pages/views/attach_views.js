@@ -10,8 +10,9 @@ import { say } from "../layout/words.js";
  * @param {Settings} settings
  * @param {string} without what is said where this browser cannot draw
  * @param {(drawing: Drawing) => void} loaded
+ * @param {string} [where] address of the scene; that of what is driven now if left out
  */
-export async function attachViews(settings, without, loaded) {
+export async function attachViews(settings, without, loaded, where = "") {
   const caption = /** @type {HTMLElement} */ (byId("view-front").querySelector("figcaption"));
   const name = () => setText(caption, say(settings.values.seat === "facing" ? "views.front" : "views.shoulder"));
   settings.addEventListener("change", name);
@@ -19,7 +20,7 @@ export async function attachViews(settings, without, loaded) {
   try {
     const { Drawing } = await import("./drawing.js");
     const elements = { canvas: byId("scene", HTMLCanvasElement), front: byId("view-front"), side: byId("view-side") };
-    loaded(await Drawing.load(elements));
+    loaded(await Drawing.load(elements, where));
   } catch (error) {
     byId("scene-lost").hidden = false;
     setText(byId("scene-lost"), without);

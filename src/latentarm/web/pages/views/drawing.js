@@ -45,11 +45,12 @@ export class Drawing {
 
   /**
    * @param {{canvas: HTMLCanvasElement, front: HTMLElement, side: HTMLElement}} elements
+   * @param {string} where address of the scene
    * @returns {Promise<Drawing>}
    * @throws where the browser cannot draw, or the scene cannot be loaded.
    */
-  static async load(elements) {
-    return new Drawing(elements, await ArmScene.load());
+  static async load(elements, where) {
+    return new Drawing(elements, await ArmScene.load(where));
   }
 
   /**

@@ -18,10 +18,11 @@ const LONGEST_GLIDE_MS = 60;
 const FRAME_MS = 16;
 
 export class ArmScene {
-  /** @param {SceneDescription} description @param {Meshes} meshes */
-  constructor(description, meshes) {
+  /** @param {SceneDescription} description @param {Meshes} meshes @param {string} where their address */
+  constructor(description, meshes, where) {
     this.scene = new THREE.Scene();
     this._meshes = meshes;
+    this._where = where;
     /** Where the tool is shown, m. */
     this.tool = new THREE.Vector3();
     this.trail = new Trail();
@@ -59,22 +60,22 @@ export class ArmScene {
     this.repaint();
   }
 
-  /** Fetch the description and its meshes. @returns {Promise<ArmScene>} */
-  static async load() {
-    const description = await describe();
+  /** Fetch the description and its meshes. @param {string} where their address @returns {Promise<ArmScene>} */
+  static async load(where) {
+    const description = await describe(where);
     const numbers = new Set(description.bodies.flatMap((body) => body.geoms).map((geom) => geom.mesh));
     numbers.delete(null);
     /** @type {Meshes} */
     const meshes = new Map();
     await Promise.all([.../** @type {Set<number>} */ (numbers)].map(async (number) => {
-      meshes.set(number, meshGeometry(await (await fetch(`/mesh/${number}`)).arrayBuffer()));
+      meshes.set(number, meshGeometry(await (await fetch(`${where}/mesh/${number}`)).arrayBuffer()));
     }));
-    return new ArmScene(description, meshes);
+    return new ArmScene(description, meshes, where);
   }
 
   /** Things have been placed anew, and goals are elsewhere: fetch where. */
   async renew() {
-    const description = await describe();
+    const description = await describe(this._where);
     this.scene.remove(...this.things.objects, ...this.markers.objects);
     this.goals = description.goals;
     this.things = this._thingsOf(description);
@@ -179,7 +180,7 @@ export class ArmScene {
   }
 }
 
-/** What there is to draw, as the server has it now. @returns {Promise<SceneDescription>} */
-async function describe() {
-  return (await fetch("/scene.json", { cache: "no-store" })).json();
+/** What there is to draw, as the server has it now. @param {string} where its address @returns {Promise<SceneDescription>} */
+async function describe(where) {
+  return (await fetch(`${where}/scene.json`, { cache: "no-store" })).json();
 }

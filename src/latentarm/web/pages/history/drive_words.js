@@ -1,0 +1,47 @@
+/** A drive in words. */
+
+import { say, sayNumber } from "../layout/words.js";
+
+/** @import {WordKey} from "../layout/words.js" */
+/** @import {Drive} from "./weeks.js" */
+
+/** @type {Record<string, WordKey>} */
+const INPUTS = {
+  pointer: "history.input_pointer", keyboard: "history.input_keyboard", dpad: "history.input_dpad",
+  gamepad: "history.input_gamepad", switch: "history.input_switch",
+};
+
+/** @param {string} input */
+export function inputWords(input) {
+  return INPUTS[input] ? say(INPUTS[input]) : input;
+}
+
+/** @param {Pick<Drive, "task" | "choice">} drive */
+export function taskWords({ task, choice }) {
+  const name = task.replaceAll("_", " ");
+  return choice ? `${name}: ${choice}` : name;
+}
+
+/** @param {Drive} drive */
+export function outcomeWords({ outcome }) {
+  return say(outcome === null ? "history.open" : outcome === "success" ? "history.done" : "history.failed");
+}
+
+/** @param {number} seconds */
+export function timeWords(seconds) {
+  if (seconds < 60) return say("unit.seconds", { value: sayNumber(seconds, seconds < 10 ? 1 : 0) });
+  return say("history.minutes", { minutes: Math.floor(seconds / 60), seconds: Math.round(seconds % 60) });
+}
+
+/** @param {Drive} drive */
+export function figureWords(drive) {
+  const steps = drive.steps === null ? "" : say("history.steps", { done: drive.steps_done ?? 0, all: drive.steps });
+  return [
+    drive.inputs.map(inputWords).join(", "),
+    timeWords(drive.time_s),
+    say("history.idle", { time: timeWords(drive.time_s - drive.moving_s) }),
+    say("history.stops", { count: drive.stops }),
+    say("history.presses", { count: drive.presses }),
+    steps,
+  ].filter(Boolean).join(" · ");
+}

@@ -1,0 +1,120 @@
+/** Shows a drive again: play, pause, and any moment of it. */
+
+import { between } from "../personalise/replay.js";
+
+/** @typedef {{poses: number[][], grains: number[][]}} Standing */
+
+/**
+ * @typedef {object} Trace as the server keeps it
+ * @property {number} period_s
+ * @property {number[]} t
+ * @property {number[][]} tool
+ * @property {number[][][]} bodies
+ * @property {(number | null)[]} width_m
+ * @property {{t: number, poses: number[][], grains: number[][] | null}[]} things
+ * @property {{t: number, code: string}[]} marks
+ */
+
+/** @typedef {{t: number, bodies: number[][], tool: number[], width_m: number | null, things: Standing | null, enabled: boolean, stopped: boolean}} Moment */
+
+const FRAME_MS = 33;
+
+/** Every state of the things with all of the grains, which the trace leaves out where they are as before. @param {Trace} trace */
+export function standing(trace) {
+  /** @type {number[][]} */
+  let grains = [];
+  return trace.things.map((one) => {
+    grains = one.grains ?? grains;
+    return { t: one.t, state: { poses: one.poses, grains } };
+  });
+}
+
+/**
+ * The drive at a time: between two moments, or as it stood where nothing changed for a while.
+ *
+ * @param {Trace} trace
+ * @param {{t: number, state: Standing}[]} things from `standing`
+ * @param {number} t s
+ * @returns {Moment}
+ */
+export function momentAt(trace, things, t) {
+  const index = Math.max(lastBefore(trace.t, t), 0);
+  const next = Math.min(index + 1, trace.t.length - 1);
+  const begins = Math.max(trace.t[index], trace.t[next] - 1.5 * trace.period_s);
+  const share = next > index ? Math.min(Math.max((t - begins) / (trace.t[next] - begins), 0), 1) : 0;
+  const thing = lastBefore(things.map((one) => one.t), t);
+  const mark = trace.marks[lastBefore(trace.marks.map((one) => one.t), t)];
+  return {
+    t,
+    bodies: between([trace.bodies[index], trace.bodies[next]], share),
+    tool: trace.tool[index].map((from, axis) => from + share * (trace.tool[next][axis] - from)),
+    width_m: trace.width_m[index],
+    things: thing < 0 ? null : things[thing].state,
+    enabled: mark?.code === "enabled",
+    stopped: mark !== undefined && mark.code !== "enabled",
+  };
+}
+
+/** Index of the last time that is not later; -1 where all are. @param {number[]} times @param {number} t */
+function lastBefore(times, t) {
+  let [low, high] = [0, times.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t) low = middle + 1;
+    else high = middle;
+  }
+  return low - 1;
+}
+
+/** Event "moment" with each moment that is to be shown, in `detail`; "playing" when it begins or ends. */
+export class Player extends EventTarget {
+  /** @param {Trace} trace */
+  constructor(trace) {
+    super();
+    this._trace = trace;
+    this._things = standing(trace);
+    this.t = 0;
+    this.length = trace.t[trace.t.length - 1] ?? 0;
+    this._before = 0;
+    /** @type {ReturnType<typeof setInterval> | undefined} */
+    this._timer = undefined;
+  }
+
+  get playing() {
+    return this._timer !== undefined;
+  }
+
+  play() {
+    if (this.playing) return;
+    if (this.t >= this.length) this.seek(0);
+    this._before = performance.now();
+    this._timer = setInterval(() => this._tick(), FRAME_MS);
+    this.dispatchEvent(new Event("playing"));
+  }
+
+  pause() {
+    if (!this.playing) return;
+    clearInterval(this._timer);
+    this._timer = undefined;
+    this.dispatchEvent(new Event("playing"));
+  }
+
+  /** @param {number} t s */
+  seek(t) {
+    this.t = Math.min(Math.max(t, 0), this.length);
+    this._show();
+  }
+
+  _tick() {
+    const now = performance.now();
+    this.t = Math.min(this.t + (now - this._before) / 1000, this.length);
+    this._before = now;
+    this._show();
+    if (this.t >= this.length) this.pause();
+  }
+
+  _show() {
+    if (!this._trace.t.length) return;
+    this.dispatchEvent(new CustomEvent("moment", { detail: momentAt(this._trace, this._things, this.t) }));
+  }
+}

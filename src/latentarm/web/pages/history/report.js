@@ -1,0 +1,105 @@
+/** The care report: one page on paper about the drives that are listed. */
+
+import { create } from "../layout/dom.js";
+import { say, sayNumber, sayPercent } from "../layout/words.js";
+import { sayTime } from "../records/ask.js";
+import { charts } from "./charts.js";
+import { inputWords, outcomeWords, taskWords, timeWords } from "./drive_words.js";
+import { counted, figures, sum } from "./weeks.js";
+
+/** @import {Drive} from "./weeks.js" */
+
+/** Rows that a page has room for. */
+const [MOST_TASKS, MOST_DRIVES] = [5, 10];
+const NONE = "–";
+
+/**
+ * @param {Drive[]} drives the newest first
+ * @param {string} name whom it is about
+ * @returns {HTMLElement[]}
+ */
+export function report(drives, name) {
+  const date = (/** @type {string} */ iso) => sayTime(iso, { dateStyle: "medium" });
+  const head = create("h2", { textContent: say("report.title_of", { name }) });
+  const period = drives.length
+    ? say("report.period", { since: date(drives[drives.length - 1].started), until: date(drives[0].started) })
+    : say("report.nothing");
+  /** @type {HTMLElement[]} */
+  const parts = [head, create("p", { textContent: period }), create("p", { className: "honest", textContent: say("report.simulated") })];
+  if (!drives.length) return parts;
+  const weekly = create("div", { className: "charts" });
+  weekly.append(...charts(drives));
+  parts.push(summary(drives), titled("report.weeks", weekly), titled("report.tasks", taskTable(drives)));
+  parts.push(titled("report.latest", driveTable(drives)));
+  parts.push(create("p", { className: "small", textContent: say("report.words") }));
+  parts.push(create("p", { className: "small", textContent: say("report.made", { when: sayTime(new Date().toISOString()) }) }));
+  return parts;
+}
+
+/** @param {Drive[]} drives */
+function summary(drives) {
+  const all = figures(drives);
+  const [input] = counted(drives.flatMap(({ inputs }) => inputs.slice(0, 1)))[0] ?? [];
+  /** @type {[import("../layout/words.js").WordKey, string][]} */
+  const rows = [
+    ["report.drives", String(drives.length)],
+    ["report.driven", timeWords(sum(drives.map(({ time_s }) => time_s)))],
+    ["report.success", all.success === null ? NONE : sayPercent(all.success)],
+    ["report.time", all.timeS === null ? NONE : timeWords(all.timeS)],
+    ["report.stops", all.stops === null ? NONE : sayNumber(all.stops, 1)],
+    ["report.late_stops", String(sum(drives.map(({ late_stops }) => late_stops)))],
+    ["report.presses", sayNumber(sum(drives.map(({ presses }) => presses)) / drives.length, 1)],
+    ["report.input", input ? inputWords(input) : NONE],
+  ];
+  const list = create("dl", { className: "figures" });
+  for (const [word, value] of rows) {
+    const row = create("div");
+    row.append(create("dt", { textContent: say(word) }), create("dd", { textContent: value }));
+    list.append(row);
+  }
+  return list;
+}
+
+/** @param {Drive[]} drives */
+function taskTable(drives) {
+  const rows = counted(drives.map(taskWords)).slice(0, MOST_TASKS).map(([task, count]) => {
+    const here = figures(drives.filter((drive) => taskWords(drive) === task));
+    return [
+      task, String(count), here.success === null ? NONE : sayPercent(here.success),
+      here.timeS === null ? NONE : timeWords(here.timeS), here.stops === null ? NONE : sayNumber(here.stops, 1),
+    ];
+  });
+  return table([say("history.task"), say("report.drives"), say("report.success"), say("report.time"), say("report.stops")], rows);
+}
+
+/** @param {Drive[]} drives */
+function driveTable(drives) {
+  const rows = drives.slice(0, MOST_DRIVES).map((drive) => [
+    sayTime(drive.started), drive.title.slice(0, 40) || taskWords(drive).slice(0, 40), drive.inputs.map(inputWords).join(", "), timeWords(drive.time_s),
+    String(drive.stops), outcomeWords(drive),
+  ]);
+  const heads = [say("report.when"), say("history.task"), say("history.input"), say("report.time_one"), say("report.stops_one"), say("report.outcome")];
+  return table(heads, rows);
+}
+
+/** @param {string[]} heads @param {string[][]} rows */
+function table(heads, rows) {
+  const made = create("table");
+  const row = (/** @type {string[]} */ texts, /** @type {"th" | "td"} */ tag) => {
+    const line = create("tr");
+    line.append(...texts.map((textContent) => create(tag, { textContent, dir: "auto" })));
+    return line;
+  };
+  const [head, body] = [create("thead"), create("tbody")];
+  head.append(row(heads, "th"));
+  body.append(...rows.map((texts) => row(texts, "td")));
+  made.append(head, body);
+  return made;
+}
+
+/** @param {import("../layout/words.js").WordKey} word @param {HTMLElement} content */
+function titled(word, content) {
+  const section = create("section");
+  section.append(create("h3", { textContent: say(word) }), content);
+  return section;
+}

@@ -1,0 +1,161 @@
+/** The People page: who drives, adding, renaming, taking along, bringing and deleting. */
+
+import { byId, create, setText } from "../layout/dom.js";
+import { attachPage } from "../layout/page.js";
+import { say } from "../layout/words.js";
+import { ask, sayTime } from "../records/ask.js";
+
+/** @typedef {{id: string, name: string, drives: number, last: string | null}} Person */
+
+const { settings } = attachPage();
+const add = byId("add", HTMLFormElement);
+const nameField = /** @type {HTMLInputElement} */ (add.elements.namedItem("person"));
+const renaming = byId("rename", HTMLDialogElement);
+const newName = /** @type {HTMLInputElement} */ (renaming.querySelector("input"));
+const erasing = byId("erase", HTMLDialogElement);
+const file = byId("import-file", HTMLInputElement);
+
+/** The person whom the open dialog is about. @type {Person | null} */
+let about = null;
+
+/** Do it, and say what went wrong where the person looks. @param {() => Promise<void>} act @param {string} [where] */
+async function attempt(act, where = "problem") {
+  byId(where).hidden = true;
+  try {
+    await act();
+  } catch (error) {
+    setText(byId(where), error instanceof Error ? error.message : String(error));
+    byId(where).hidden = false;
+  }
+}
+
+/** @param {Person | null} person null for a guest */
+function choose(person) {
+  settings.become(person && { id: person.id, name: person.name });
+  setText(byId("told"), say("people.now", { name: person?.name ?? say("settings.guest") }));
+}
+
+async function refresh() {
+  const { people, problems } = await ask("GET", "/records/people");
+  const row = document.activeElement?.closest("li")?.dataset.person;
+  byId("people").replaceChildren(rowOf(null), ...people.map(rowOf));
+  if (row !== undefined) /** @type {HTMLElement | null} */ (byId("people").querySelector(`[data-person="${row}"] button`))?.focus();
+  if (problems.length) {
+    setText(byId("problem"), problems.join(" "));
+    byId("problem").hidden = false;
+  }
+}
+
+/** @param {Person | null} person null for a guest @returns {HTMLElement} */
+function rowOf(person) {
+  const here = (settings.person?.id ?? null) === (person?.id ?? null);
+  const row = create("li");
+  row.dataset.person = person?.id ?? "";
+  row.dataset.here = String(here);
+  const name = create("span", { className: "person-name" });
+  name.append(create("bdi", { textContent: person?.name ?? say("settings.guest") }), create("small", { textContent: person ? driven(person) : say("people.guest_help") }));
+  const tools = create("div", { className: "row" });
+  tools.append(button("people.choose", person, () => choose(person), { pressed: here }));
+  if (person) {
+    tools.append(
+      button("people.rename", person, () => openRename(person)),
+      create("a", {
+        className: "button", href: `/records/people/${person.id}/export`, download: "latentarm-person.zip",
+        textContent: say("people.export"), ariaLabel: say("people.export_of", { name: person.name }),
+      }),
+      button("people.erase", person, () => openErase(person)),
+    );
+  }
+  row.append(name, tools);
+  return row;
+}
+
+/** @param {Person} person */
+function driven({ drives, last }) {
+  return last ? say("people.drives", { count: drives, when: sayTime(last, { dateStyle: "medium" }) }) : say("people.no_drives");
+}
+
+/**
+ * @param {"people.choose" | "people.rename" | "people.erase"} word
+ * @param {Person | null} person
+ * @param {() => void} act
+ * @param {{pressed?: boolean}} [state]
+ */
+function button(word, person, act, { pressed } = {}) {
+  const made = create("button", { type: "button", textContent: pressed ? say("people.chosen") : say(word) });
+  made.setAttribute("aria-label", say(`${word}_of`, { name: person?.name ?? say("settings.guest") }));
+  if (pressed !== undefined) made.setAttribute("aria-pressed", String(pressed));
+  made.addEventListener("click", act);
+  return made;
+}
+
+/** @param {Person} person */
+function openRename(person) {
+  about = person;
+  newName.value = person.name;
+  byId("rename-problem").hidden = true;
+  renaming.showModal();
+}
+
+/** @param {Person} person */
+function openErase(person) {
+  attempt(async () => {
+    const kept = await ask("GET", `/records/people/${person.id}`);
+    about = person;
+    setText(byId("erase-title"), say("people.erase_title", { name: person.name }));
+    const lines = [
+      say("people.erase_record"),
+      kept.drives ? say("people.erase_drives", { count: kept.drives }) : "",
+      kept.profiles ? say("people.erase_profiles", { count: kept.profiles }) : "",
+      kept.episodes ? say("people.erase_episodes", { count: kept.episodes }) : "",
+    ].filter(Boolean);
+    byId("erase-list").replaceChildren(...lines.map((textContent) => create("li", { textContent })));
+    byId("erase-problem").hidden = true;
+    erasing.showModal();
+  });
+}
+
+add.addEventListener("submit", (event) => {
+  event.preventDefault();
+  attempt(async () => {
+    const person = await ask("POST", "/records/people", { name: nameField.value });
+    nameField.value = "";
+    choose(person);
+  });
+});
+renaming.querySelector("form")?.addEventListener("submit", (event) => {
+  event.preventDefault();
+  attempt(async () => {
+    if (!about) return;
+    const person = await ask("PUT", `/records/people/${about.id}`, { name: newName.value });
+    renaming.close();
+    if (settings.person?.id === person.id) settings.rename(person.name);
+    await refresh();
+  }, "rename-problem");
+});
+erasing.querySelector("form")?.addEventListener("submit", (event) => {
+  event.preventDefault();
+  attempt(async () => {
+    if (!about) return;
+    await ask("DELETE", `/records/people/${about.id}`);
+    erasing.close();
+    settings.forget(about);
+    setText(byId("told"), say("people.erased", { name: about.name }));
+    await refresh();
+  }, "erase-problem");
+});
+for (const close of document.querySelectorAll("[data-close]")) {
+  close.addEventListener("click", () => close.closest("dialog")?.close());
+}
+byId("import").addEventListener("click", () => file.click());
+file.addEventListener("change", () => {
+  const [chosen] = file.files ?? [];
+  file.value = "";
+  if (chosen) attempt(async () => {
+    const brought = await ask("POST", "/records/import", chosen);
+    setText(byId("told"), say("people.imported", { name: brought.name, count: brought.drives }));
+    await refresh();
+  });
+});
+settings.addEventListener("person", () => attempt(refresh));
+attempt(refresh);

@@ -1,0 +1,29 @@
+/** Requests about what the server keeps: JSON both ways. */
+
+import { say, sayNotice } from "../layout/words.js";
+
+/**
+ * @param {"GET" | "POST" | "PUT" | "DELETE"} method
+ * @param {string} path
+ * @param {unknown} [body] an object, or a file
+ * @returns {Promise<any>} what the server answers; null where it says nothing.
+ * @throws {Error} with a sentence for the person.
+ */
+export async function ask(method, path, body) {
+  const content = body === undefined ? undefined : body instanceof Blob ? body : JSON.stringify(body);
+  /** @type {Response} */
+  let answer;
+  try {
+    answer = await fetch(path, { method, body: content, cache: "no-store" });
+  } catch {
+    throw new Error(say("records.no_answer"));
+  }
+  const told = answer.status === 204 ? null : await answer.json().catch(() => null);
+  if (answer.ok) return told;
+  throw new Error(answer.status === 413 ? say("records.too_large") : told?.notice ? sayNotice(told.notice) : say("records.no_answer"));
+}
+
+/** A moment as people write it. @param {string} iso @param {Intl.DateTimeFormatOptions} [style] */
+export function sayTime(iso, style = { dateStyle: "medium", timeStyle: "short" }) {
+  return new Date(iso).toLocaleString(document.documentElement.lang, style);
+}

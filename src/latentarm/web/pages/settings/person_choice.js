@@ -1,0 +1,29 @@
+/** Who sits here, in the dialog of the settings: one of the people whom the server knows, or a guest. */
+
+import { create } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+import { ask } from "../records/ask.js";
+
+/** @import {Settings} from "./settings.js" */
+
+/** @param {HTMLSelectElement} select @param {Settings} settings */
+export function attachPersonChoice(select, settings) {
+  /** @param {{id: string, name: string}[]} people */
+  const fill = (people) => {
+    const guest = create("option", { value: "", textContent: say("settings.guest") });
+    select.replaceChildren(guest, ...people.map(({ id, name }) => create("option", { value: id, textContent: name })));
+    select.value = settings.person?.id ?? "";
+  };
+  select.addEventListener("change", () => {
+    const [chosen] = select.selectedOptions;
+    settings.become(chosen.value ? { id: chosen.value, name: chosen.text } : null);
+  });
+  return {
+    /** Show who there is now. */
+    async offer() {
+      fill(settings.person ? [settings.person] : []);
+      const found = await ask("GET", "/records/people").catch(() => null);
+      if (found) fill(found.people);
+    },
+  };
+}

@@ -1,0 +1,1 @@
+"""What the page's server keeps: people, and every drive of theirs."""

@@ -1,0 +1,68 @@
+"""Records on disk: one JSON document a file, checked when it is read and written whole or not at all."""
+
+import re
+import secrets
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Final, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from latentarm.errors import UserError
+from latentarm.files import write_text
+from latentarm.untrusted.documents import parse_object
+from latentarm.untrusted.opening import read_bytes
+
+DOCUMENT_LIMIT: Final = 1 << 17
+"""The longest record, bytes."""
+
+ID: Final = re.compile(r"[0-9a-f]{16}")
+"""Ids of people and drives: random, and so never a path or a name."""
+
+Record = TypeVar("Record", bound=BaseModel)
+
+
+def new_id() -> str:
+    """A random id, 64 bits."""
+    return secrets.token_hex(8)
+
+
+def now() -> str:
+    """The time as records keep it: ISO 8601 in UTC, to the second."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def read_record(kind: type[Record], path: Path) -> Record:
+    """A record from its file.
+
+    Raises:
+        UserError: the file is missing, too large, damaged or not such a record.
+    """
+    return parse_record(kind, read_bytes(path, DOCUMENT_LIMIT), str(path))
+
+
+def parse_record(kind: type[Record], content: bytes, where: str) -> Record:
+    """A record from its JSON.
+
+    Args:
+        kind: what it must be.
+        content: UTF-8.
+        where: what errors call it.
+
+    Raises:
+        UserError: it is damaged or not such a record.
+    """
+    parse_object(content, where)
+    try:
+        return kind.model_validate_json(content)
+    except ValidationError as error:
+        raise UserError(f"{where} is not a record of this version, or was changed by hand.") from error
+
+
+def write_record(record: BaseModel, path: Path) -> None:
+    """Write a record to its file.
+
+    Raises:
+        UserError: see `write_text`.
+    """
+    write_text(path, record.model_dump_json(indent=1) + "\n")

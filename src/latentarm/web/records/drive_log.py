@@ -1,0 +1,285 @@
+"""The log of the drive under way: what reports and inputs say, until the drive ends.
+
+It does nothing slow: it is called for every report. What takes longer is done by `Logged.trace`.
+"""
+
+from collections import Counter
+from dataclasses import dataclass, field
+from math import dist
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.kinematics.chain import Chain
+from latentarm.web.arm_process.task_run import Todo
+from latentarm.web.protocol.channel import Report, Things
+from latentarm.web.protocol.scene import Drawable, pose_of
+from latentarm.web.records.documents import new_id, now
+from latentarm.web.records.drive_record import DriveRecord, Ending, Mark, Trace, TracedThings
+
+PERIOD_S: Final = 0.1
+"""Moments of a trace are at least this far apart, s."""
+
+MOST_VALUES: Final = 200_000
+"""Values in a trace; a longer drive keeps every second moment, and again if that is too many."""
+
+GRAINS_S: Final = 1.0
+"""Grains are traced this often, s: there may be thousands."""
+
+LATE: Final = "input_late"
+"""Code of a stop for an input that came too late."""
+
+_ENABLED: Final = ("ready", "moving")
+_LONGEST_TICK_S: Final = 0.5
+_DIGITS: Final = 4
+
+
+@final
+@dataclass(frozen=True)
+class About:
+    """What is driven, and by whom.
+
+    Attributes:
+        person: id; None for a guest.
+        robot: its name.
+        todo: what is to be done.
+        run: the run's name, or None.
+        scene: what stands about the arm.
+        chain: the arm.
+    """
+
+    person: str | None
+    robot: str
+    todo: Todo
+    run: str | None
+    scene: Drawable
+    chain: Chain
+
+
+@final
+@dataclass(frozen=True)
+class _Moment:
+    t: float
+    q: tuple[float, ...]
+    tool: tuple[float, float, float]
+    u: tuple[float, ...]
+    width_m: float | None
+
+
+@final
+@dataclass(frozen=True)
+class Logged:
+    """A drive that has ended.
+
+    Attributes:
+        record: its figures; without the scene, which has not been kept yet.
+        scene: what stood about the arm.
+    """
+
+    record: DriveRecord
+    scene: Drawable
+    _chain: Chain
+    _period_s: float
+    _moments: list[_Moment]
+    _things: list[TracedThings]
+    _marks: list[Mark]
+
+    def trace(self) -> Trace:
+        """What is shown again; takes some milliseconds for each minute."""
+        q = np.array([moment.q for moment in self._moments])
+        links = self._chain.link_transforms(q)
+        bodies = [pose_of(np.concatenate([np.eye(4)[None], row])) for row in links]
+        return Trace(
+            period_s=self._period_s,
+            t=tuple(moment.t for moment in self._moments),
+            q=tuple(moment.q for moment in self._moments),
+            tool=tuple(moment.tool for moment in self._moments),
+            bodies=tuple(
+                tuple((x, y, z, w, i, j, k) for x, y, z, w, i, j, k in np.round(row, _DIGITS).tolist())
+                for row in bodies
+            ),
+            u=tuple(moment.u for moment in self._moments),
+            width_m=tuple(moment.width_m for moment in self._moments),
+            things=tuple(self._things),
+            marks=tuple(self._marks),
+        )
+
+
+@dataclass
+class _Open:
+    """The drive under way."""
+
+    about: About
+    first: Report
+    started: str = field(default_factory=now)
+    last: Report | None = None
+    enabled_s: float = 0.0
+    moving_s: float = 0.0
+    way_m: float = 0.0
+    help_s: float = 0.0
+    modes: Counter[str] = field(default_factory=Counter[str])
+    inputs: Counter[str] = field(default_factory=Counter[str])
+    reasons: Counter[str] = field(default_factory=Counter[str])
+    presses: int = 0
+    period_s: float = PERIOD_S
+    moments: list[_Moment] = field(default_factory=list["_Moment"])
+    things: list[TracedThings] = field(default_factory=list["TracedThings"])
+    marks: list[Mark] = field(default_factory=list["Mark"])
+    grains_s: float = -GRAINS_S
+    values: int = 0
+
+
+@final
+class DriveLog:
+    """Logs one drive after the other."""
+
+    def __init__(self) -> None:
+        self._open: _Open | None = None
+        self._u: tuple[float, ...] = ()
+        self._standing: Things | None = None
+
+    @property
+    def under_way(self) -> About | None:
+        """What is driven; None where no drive is under way."""
+        return None if self._open is None else self._open.about
+
+    def begins(self, report: Report) -> bool:
+        """Whether a drive begins with a report: `begin` is due then."""
+        self._standing = report.things or self._standing
+        return self._open is None and report.phase in _ENABLED
+
+    def begin(self, report: Report, about: About) -> None:
+        """Begin with a report of an enabled arm."""
+        self._open = _Open(about, report)
+        self._note_things(self._open, self._standing, 0.0)
+        self.take(report)
+
+    def take(self, report: Report) -> None:
+        """Go on with a report; nothing where no drive is under way."""
+        drive = self._open
+        if drive is None:
+            return
+        t = round(report.time_s - drive.first.time_s, 2)
+        before = drive.last
+        enabled, was = report.phase in _ENABLED, before is not None and before.phase in _ENABLED
+        if before is not None:
+            span_s = min(max(report.time_s - before.time_s, 0.0), _LONGEST_TICK_S)
+            drive.way_m += dist(report.tool, before.tool)
+            if was and before.phase == "moving":
+                drive.moving_s += span_s
+                drive.help_s += span_s * before.alpha
+            if was:
+                drive.enabled_s = t
+                drive.modes[before.mode] += 1
+        if was and not enabled:
+            code = "stop_pressed" if report.reason is None else report.reason.code
+            drive.reasons[code] += 1
+            drive.marks.append(Mark(t=t, code=code))
+        elif enabled and not was:
+            drive.marks.append(Mark(t=t, code="enabled"))
+        drive.last = report
+        if report.things is not None:
+            self._note_things(drive, report.things, t)
+        self._trace(drive, report, t)
+
+    def given(self, u: tuple[float, ...], source: str, *, gripper: bool) -> None:
+        """Note an input.
+
+        Args:
+            u: entries in [-1, 1].
+            source: with what kind of device.
+            gripper: whether it asks something of the gripper.
+        """
+        pressed = (any(u) and not any(self._u)) + gripper
+        self._u = tuple(round(value, 2) for value in u)
+        if self._open is not None and pressed:
+            self._open.presses += pressed
+            self._open.inputs[source] += pressed
+
+    def end(self, why: Ending) -> Logged | None:
+        """End the drive under way; None where there is none."""
+        drive, self._open = self._open, None
+        self._u = ()
+        if why == "run_changed":
+            self._standing = None
+        if drive is None or drive.last is None:
+            return None
+        if not drive.moments or drive.moments[-1].t < round(drive.last.time_s - drive.first.time_s, 2):
+            self._keep_moment(drive, drive.last, round(drive.last.time_s - drive.first.time_s, 2))
+        first, about = drive.first, drive.about
+        record = DriveRecord.model_validate(
+            {
+                "id": new_id(),
+                "person": about.person,
+                "started": drive.started,
+                "time_s": round(max(drive.enabled_s, 0.0), 2),
+                "moving_s": round(min(drive.moving_s, drive.enabled_s), 2),
+                "robot": about.robot[:200],
+                "task": about.todo.task[:200],
+                "choice": about.todo.choices[drive.last.task.choice][:200] if about.todo.choices else None,
+                "run": None if about.run is None else about.run[:200],
+                "profile": None if first.profile is None else first.profile[:64],
+                "modes": tuple(mode for mode, _ in drive.modes.most_common()) or (first.mode,),
+                "inputs": tuple(source for source, _ in drive.inputs.most_common()),
+                "presses": drive.presses,
+                "stops": drive.reasons.total(),
+                "late_stops": drive.reasons[LATE],
+                "reasons": dict(drive.reasons),
+                "way_m": round(drive.way_m, 3),
+                "help": round(min(drive.help_s / drive.moving_s, 1.0), 3) if drive.moving_s else None,
+                "steps_done": drive.last.task.done if about.todo.steps else None,
+                "steps": len(about.todo.steps) or None,
+                "outcome": drive.last.task.outcome,
+                "why": None if drive.last.task.why is None else drive.last.task.why.code,
+                "ended": why,
+                "scene": None,
+            }
+        )
+        return Logged(
+            record, about.scene, about.chain, drive.period_s, drive.moments, drive.things, drive.marks
+        )
+
+    def _trace(self, drive: _Open, report: Report, t: float) -> None:
+        newest = drive.moments[-1] if drive.moments else None
+        if newest is not None:
+            if t - newest.t < drive.period_s:
+                return
+            if _moment(report, self._u, newest.t) == newest:
+                return
+        self._keep_moment(drive, report, t)
+
+    def _keep_moment(self, drive: _Open, report: Report, t: float) -> None:
+        moment = _moment(report, self._u, t)
+        drive.moments.append(moment)
+        drive.values += len(moment.q) * 8 + 8
+        if drive.values > MOST_VALUES:
+            drive.period_s *= 2.0
+            drive.moments = drive.moments[::2]
+            drive.things = _halved(drive.things)
+            drive.values //= 2
+
+    def _note_things(self, drive: _Open, things: Things | None, t: float) -> None:
+        if things is None or (drive.things and t - drive.things[-1].t < drive.period_s):
+            return
+        newest = next((one.grains for one in reversed(drive.things) if one.grains is not None), None)
+        grains = things.grains if t - drive.grains_s >= GRAINS_S and things.grains != newest else None
+        if drive.things and grains is None and drive.things[-1].poses == things.poses:
+            return
+        if grains is not None:
+            drive.grains_s = t
+        drive.things.append(TracedThings(t=t, poses=things.poses, grains=grains))
+        drive.values += 7 * len(things.poses) + sum(map(len, grains or ()))
+
+
+def _halved(things: list[TracedThings]) -> list[TracedThings]:
+    """Every second state after the first, each with the newest grains, so that none is lost."""
+    pairs = zip(things[1::2], things[2::2], strict=False)
+    halved = [later.model_copy(update={"grains": later.grains or sooner.grains}) for sooner, later in pairs]
+    return [*things[:1], *halved, *(things[-1:] if len(things) > 1 and len(things) % 2 == 0 else ())]
+
+
+def _moment(report: Report, u: tuple[float, ...], t: float) -> _Moment:
+    x, y, z = (round(value, _DIGITS) for value in report.tool)
+    q = tuple(round(value, _DIGITS) for value in report.q)
+    width = None if report.gripper is None else round(report.gripper.width_m, _DIGITS)
+    return _Moment(t, q, (x, y, z), u, width)

@@ -1,0 +1,230 @@
+"""Every drive on disk: a record and a trace each, in the folder of the person who drove."""
+
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, final
+
+from latentarm.errors import UserError
+from latentarm.files import written_whole
+from latentarm.untrusted.opening import is_missing, read_bytes
+from latentarm.web.protocol.notice import NoticeError
+from latentarm.web.records.documents import read_record, write_record
+from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, Trace, checked_trace, packed
+
+UNDO_S: Final = 600.0
+"""How long a deletion can be undone, s."""
+
+DRIVES: Final = "drives"
+"""Folder of a person's drives in theirs."""
+
+TRACE: Final = ".trace.gz"
+"""Ending of a trace, in the place of ``.json``."""
+
+_TRASH: Final = "deleted"
+
+
+@final
+@dataclass(frozen=True)
+class Wanted:
+    """Which drives are asked for; None for any.
+
+    Attributes:
+        person: id; "" for guests.
+        task: name.
+        input: a kind of device that was used.
+        since: first day, ``YYYY-MM-DD`` in UTC.
+        until: last day, as above.
+    """
+
+    person: str | None = None
+    task: str | None = None
+    input: str | None = None
+    since: str | None = None
+    until: str | None = None
+
+    def takes(self, drive: DriveRecord) -> bool:
+        """Whether a drive is asked for."""
+        return (
+            self.person in (None, drive.person or "")
+            and self.task in (None, drive.task)
+            and (self.input is None or self.input in drive.inputs)
+            and (self.since is None or self.since <= drive.started[:10])
+            and (self.until is None or drive.started[:10] <= self.until)
+        )
+
+
+@final
+class Drives:
+    """All drives. What is deleted can be restored for `UNDO_S`, until the server is started again.
+
+    Methods other than `wanted` and `find` wait for the disk.
+
+    Args:
+        folder: of all records; need not be there yet.
+        people: has a folder for each person, in which their drives are.
+        now_s: the time, s; monotonic.
+
+    Attributes:
+        problems: of records that cannot be read, a sentence each.
+    """
+
+    def __init__(self, folder: Path, people: Path, now_s: Callable[[], float] = time.monotonic) -> None:
+        self._people = people
+        self._guests = folder / "guests" / DRIVES
+        self._trash = folder / _TRASH
+        self._now_s = now_s
+        self._lock = threading.Lock()
+        self._drives: dict[str, DriveRecord] = {}
+        self._deleted: dict[str, tuple[float, DriveRecord]] = {}
+        self.problems: list[str] = []
+        for path in self._trash.glob("*"):
+            with suppress(OSError):
+                path.unlink()
+        for path in sorted([*people.glob(f"*/{DRIVES}/*.json"), *self._guests.glob("*.json")]):
+            try:
+                self._take(path)
+            except UserError as error:
+                self.problems.append(str(error))
+
+    def wanted(self, wanted: Wanted) -> list[DriveRecord]:
+        """Drives, the newest first."""
+        found = [drive for drive in list(self._drives.values()) if wanted.takes(drive)]
+        return sorted(found, key=lambda drive: (drive.started, drive.id), reverse=True)
+
+    def find(self, drive: str) -> DriveRecord | None:
+        """The drive with an id."""
+        return self._drives.get(drive)
+
+    def keep(self, drive: DriveRecord, trace: Trace) -> None:
+        """Keep a new drive, the trace first.
+
+        Raises:
+            UserError: it cannot be written.
+        """
+        with self._lock:
+            path = self._path(drive)
+            with written_whole(path.with_suffix(TRACE)) as part:
+                part.write_bytes(packed(trace))
+            write_record(drive, path)
+            self._drives[drive.id] = drive
+
+    def trace(self, drive: str) -> bytes:
+        """A drive's trace, compressed with gzip, after it was checked.
+
+        Raises:
+            UserError: there is no such drive, or its trace is missing or damaged.
+        """
+        path = self._path(self._known(drive)).with_suffix(TRACE)
+        content = read_bytes(path, PACKED_LIMIT)
+        checked_trace(content, str(path))
+        return content
+
+    def entitle(self, drive: str, title: str) -> DriveRecord:
+        """Give a drive a title.
+
+        Raises:
+            UserError: there is no such drive, or it cannot be written.
+        """
+        with self._lock:
+            changed = self._known(drive).model_copy(update={"title": title})
+            write_record(changed, self._path(changed))
+            self._drives[drive] = changed
+            return changed
+
+    def delete(self, drive: str) -> None:
+        """Delete a drive; `restore` brings it back for a while.
+
+        Raises:
+            UserError: there is no such drive, or files cannot be moved.
+        """
+        with self._lock:
+            record = self._known(drive)
+            self._move(self._path(record), self._trash / f"{drive}.json")
+            del self._drives[drive]
+            self._deleted[drive] = (self._now_s() + UNDO_S, record)
+
+    def restore(self, drive: str) -> DriveRecord:
+        """Bring back a deleted drive.
+
+        Raises:
+            UserError: it is gone, or files cannot be moved.
+        """
+        with self._lock:
+            if drive not in self._deleted:
+                raise NoticeError("record_unknown")
+            _, record = self._deleted[drive]
+            self._move(self._trash / f"{drive}.json", self._path(record))
+            del self._deleted[drive]
+            self._drives[drive] = record
+            return record
+
+    def purge(self) -> None:
+        """Remove for good what can no longer be restored.
+
+        Raises:
+            UserError: files cannot be deleted.
+        """
+        with self._lock:
+            now_s = self._now_s()
+            self._purge([drive for drive, (until_s, _) in self._deleted.items() if until_s <= now_s])
+
+    def adopt(self, person: str) -> None:
+        """Read the drives of a person whose folder has just come from elsewhere."""
+        with self._lock:
+            for path in sorted((self._people / person / DRIVES).glob("*.json")):
+                self._take(path)
+
+    def packed(self, drive: str) -> bytes | None:
+        """A drive's trace as it is kept, unchecked; None where there is none."""
+        path = self._path(self._known(drive)).with_suffix(TRACE)
+        return None if is_missing(path) else read_bytes(path, PACKED_LIMIT)
+
+    def forget(self, person: str) -> None:
+        """Nothing of a person is known any more: their folder goes elsewhere, their deleted drives here.
+
+        Raises:
+            UserError: files cannot be deleted.
+        """
+        with self._lock:
+            self._purge([drive for drive, (_, record) in self._deleted.items() if record.person == person])
+            self._drives = {key: drive for key, drive in self._drives.items() if drive.person != person}
+
+    def _take(self, path: Path) -> None:
+        drive = read_record(DriveRecord, path)
+        if path != self._path(drive) or drive.id in self._drives:
+            raise UserError(f"{path} is the record of another drive or person than its place says.")
+        self._drives[drive.id] = drive
+
+    def _path(self, drive: DriveRecord) -> Path:
+        folder = self._guests if drive.person is None else self._people / drive.person / DRIVES
+        return folder / f"{drive.id}.json"
+
+    def _known(self, drive: str) -> DriveRecord:
+        found = self._drives.get(drive)
+        if found is None:
+            raise NoticeError("record_unknown")
+        return found
+
+    def _move(self, start: Path, end: Path) -> None:
+        """A record with its trace, the record last, so that there is never a record alone."""
+        try:
+            end.parent.mkdir(parents=True, exist_ok=True)
+            with suppress(FileNotFoundError):
+                start.with_suffix(TRACE).replace(end.with_suffix(TRACE))
+            start.replace(end)
+        except OSError as error:
+            raise UserError(f"{start} cannot be moved: {error.strerror or error}.") from error
+
+    def _purge(self, drives: list[str]) -> None:
+        for drive in drives:
+            path = self._trash / f"{drive}.json"
+            try:
+                for one in (path, path.with_suffix(TRACE)):
+                    one.unlink(missing_ok=True)
+            except OSError as error:
+                raise UserError(f"{path} cannot be deleted: {error.strerror or error}.") from error
+            del self._deleted[drive]

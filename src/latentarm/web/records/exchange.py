@@ -1,0 +1,145 @@
+"""Everything that is kept of a person as one zip file, and back. A file that comes in is a stranger's."""
+
+import io
+import re
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Final
+
+from latentarm.errors import UserError
+from latentarm.files import written_whole
+from latentarm.web.protocol.notice import NoticeError
+from latentarm.web.records.documents import DOCUMENT_LIMIT, ID, new_id, parse_record, write_record
+from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, checked_trace
+from latentarm.web.records.drives import DRIVES, TRACE
+from latentarm.web.records.people import PERSON_NAME, PersonRecord
+
+IMPORT_LIMIT: Final = 1 << 26
+"""The largest file that is taken, bytes."""
+
+SCENES: Final = "scenes/"
+PROFILES: Final = "profiles/"
+
+_UNPACKED_LIMIT: Final = 1 << 28
+_MOST_FILES: Final = 20_000
+_DRIVE: Final = re.compile(rf"{DRIVES}/({ID.pattern})\.json")
+_SCENE: Final = re.compile(rf"{SCENES}([0-9a-f]{{32}}\.json|meshes/[0-9a-f]{{64}})")
+_PROFILE: Final = re.compile(rf"{PROFILES}\d{{1,4}}/(config\.json|alignment\.safetensors)")
+_FIRST_DATE: Final = (1980, 1, 1, 0, 0, 0)
+
+
+def write_zip(path: Path, contents: Iterator[tuple[str, bytes]]) -> None:
+    """Write files into a zip.
+
+    Args:
+        path: of the zip.
+        contents: names in it, and what they hold.
+
+    Raises:
+        UserError: it cannot be written.
+    """
+    try:
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, content in contents:
+                archive.writestr(zipfile.ZipInfo(name, _FIRST_DATE), content, zipfile.ZIP_DEFLATED)
+    except OSError as error:
+        raise UserError(f"{path} cannot be written: {error.strerror or error}.") from error
+
+
+def read_zip(content: bytes) -> dict[str, bytes]:
+    """The files of such a zip that this version knows, by their names in it.
+
+    Raises:
+        NoticeError: it is no zip, damaged, encrypted, or unpacks to too much.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            entries = archive.infolist()
+            if len(entries) > _MOST_FILES or sum(one.file_size for one in entries) > _UNPACKED_LIMIT:
+                raise NoticeError("import_invalid")
+            known = [one for one in entries if _limit(one.filename)]
+            return {one.filename: _read(archive, one) for one in known}
+    except (zipfile.BadZipFile, zlib.error, OSError, EOFError, ValueError, NotImplementedError) as error:
+        raise NoticeError("import_invalid") from error
+    except RuntimeError as error:  # encrypted
+        raise NoticeError("import_invalid") from error
+
+
+def person_of(files: Mapping[str, bytes]) -> PersonRecord:
+    """The person that a zip is about.
+
+    Raises:
+        NoticeError: it names none.
+    """
+    try:
+        return parse_record(PersonRecord, files[PERSON_NAME], PERSON_NAME)
+    except (KeyError, UserError) as error:
+        raise NoticeError("import_invalid") from error
+
+
+def drives_of(files: Mapping[str, bytes]) -> list[tuple[DriveRecord, bytes | None]]:
+    """The drives of a zip, checked, each with its trace as it is kept.
+
+    Raises:
+        NoticeError: one is damaged.
+    """
+    found: list[tuple[DriveRecord, bytes | None]] = []
+    try:
+        for name, content in files.items():
+            if _DRIVE.fullmatch(name):
+                trace = files.get(name.removesuffix(".json") + TRACE)
+                if trace is not None:
+                    checked_trace(trace, name)
+                found.append((parse_record(DriveRecord, content, name), trace))
+    except UserError as error:
+        raise NoticeError("import_invalid") from error
+    return found
+
+
+def write_drives(drives: list[tuple[DriveRecord, bytes | None]], folder: Path, person: str) -> None:
+    """Write drives into a new person's folder, under new ids.
+
+    Raises:
+        UserError: they cannot be written.
+    """
+    for drive, trace in drives:
+        path = folder / DRIVES / f"{new_id()}.json"
+        if trace is not None:
+            with written_whole(path.with_suffix(TRACE)) as part:
+                part.write_bytes(trace)
+        write_record(drive.model_copy(update={"id": path.stem, "person": person}), path)
+
+
+def scenes_of(files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Scenes of a zip by their places among the scenes."""
+    return {name.removeprefix(SCENES): content for name, content in files.items() if _SCENE.fullmatch(name)}
+
+
+def profile_of(files: Mapping[str, bytes], index: int) -> dict[str, bytes]:
+    """Files of a person's profile by their names, in the order of `PersonRecord.profiles`."""
+    start = f"{PROFILES}{index}/"
+    return {
+        name.removeprefix(start): content
+        for name, content in files.items()
+        if name.startswith(start) and _PROFILE.fullmatch(name)
+    }
+
+
+def _limit(name: str) -> int:
+    """How many bytes a file may have; 0 for one that we do not know, which is left out."""
+    if name == PERSON_NAME or _DRIVE.fullmatch(name):
+        return DOCUMENT_LIMIT
+    trace = name.endswith(TRACE) and _DRIVE.fullmatch(name.removesuffix(TRACE) + ".json")
+    return PACKED_LIMIT if trace or _SCENE.fullmatch(name) or _PROFILE.fullmatch(name) else 0
+
+
+def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
+    """What an entry holds; what it declares of its size may be a lie."""
+    limit = _limit(entry.filename)
+    with archive.open(entry) as stream:
+        content = stream.read(limit + 1)
+    if len(content) > limit:
+        raise NoticeError("import_invalid")
+    return content

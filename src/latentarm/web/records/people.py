@@ -1,0 +1,219 @@
+"""The people who drive: one folder each, named by a random id and never by the name."""
+
+import shutil
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Final, Literal, final
+
+from pydantic import Field
+
+from latentarm.errors import UserError
+from latentarm.untrusted.names import MOST_CHARACTERS, clean_name, same_name
+from latentarm.web.protocol.notice import Message, NoticeError
+from latentarm.web.records.documents import ID, new_id, now, read_record, write_record
+
+VERSION: Final = 1
+MOST_PEOPLE: Final = 500
+MOST_SETTINGS: Final = 200
+PERSON_NAME: Final = "person.json"
+_STAGING: Final = ".adding-"
+
+PersonId = Annotated[str, Field(pattern=rf"^{ID.pattern}$")]
+SettingName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$")]
+SettingText = Annotated[str, Field(max_length=80)]
+Settings = Annotated[dict[SettingName, bool | float | SettingText], Field(max_length=MOST_SETTINGS)]
+"""The page knows what they mean, and checks each; the server only bounds them."""
+
+
+@final
+class KeptProfile(Message):
+    """A profile of a person.
+
+    Attributes:
+        run: name of the run that it belongs to.
+        name: of the profile.
+    """
+
+    run: Annotated[str, Field(min_length=1, max_length=200)]
+    name: Annotated[str, Field(min_length=1, max_length=64)]
+
+
+@final
+class PersonRecord(Message):
+    """A person.
+
+    Attributes:
+        version: of this record.
+        id: random.
+        name: in any script.
+        added: when, ISO 8601 in UTC.
+        settings: as the page keeps them.
+        profiles: what was learned of them.
+    """
+
+    version: Literal[1] = VERSION
+    id: PersonId
+    name: Annotated[str, Field(min_length=1, max_length=MOST_CHARACTERS)]
+    added: Annotated[str, Field(max_length=40)]
+    settings: Settings = Field(default_factory=dict)
+    profiles: Annotated[tuple[KeptProfile, ...], Field(max_length=1000)] = ()
+
+
+@final
+class People:
+    """Everybody's records. Methods that write wait for the disk; `find` and `all` do not.
+
+    Args:
+        folder: has a folder for each person; need not be there yet.
+
+    Attributes:
+        problems: of records that cannot be read, a sentence each.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._lock = threading.Lock()
+        self._people: dict[str, PersonRecord] = {}
+        self.problems: list[str] = []
+        for unfinished in folder.glob(f"{_STAGING}*"):
+            shutil.rmtree(unfinished, ignore_errors=True)
+        for path in sorted(folder.glob(f"*/{PERSON_NAME}")):
+            try:
+                person = read_record(PersonRecord, path)
+                if path.parent.name != person.id:
+                    raise UserError(f"{path} is the record of another person than its folder says.")
+                self._people[person.id] = person
+            except UserError as error:
+                self.problems.append(str(error))
+
+    def all(self) -> list[PersonRecord]:
+        """Everybody, by name."""
+        return sorted(self._people.values(), key=lambda person: (person.name.casefold(), person.id))
+
+    def find(self, person: str | None) -> PersonRecord | None:
+        """The person with an id; None for nobody."""
+        return None if person is None else self._people.get(person)
+
+    def folder_of(self, person: str) -> Path:
+        """Where everything of a person is kept."""
+        return self._folder / person
+
+    def add(self, name: str, settings: dict[str, bool | float | str] | None = None) -> PersonRecord:
+        """Add a person.
+
+        Raises:
+            UserError: it is no name, somebody has it already, there are too many people, or the record cannot
+                be written.
+        """
+        with self._lock:
+            if len(self._people) >= MOST_PEOPLE:
+                raise NoticeError("too_many_people", count=MOST_PEOPLE)
+            person = PersonRecord(
+                id=new_id(), name=self._free_name(name, None), added=now(), settings=settings or {}
+            )
+            return self._keep(person)
+
+    def adopt(self, brought: PersonRecord, fill: Callable[[Path, str], None]) -> PersonRecord:
+        """Add a person from elsewhere under a new id, whole or not at all.
+
+        Args:
+            brought: what was known of them; a number is added to a name that somebody has already.
+            fill: writes the rest into a folder, for the new id.
+
+        Raises:
+            UserError: see `add`; also what ``fill`` raises.
+        """
+        with self._lock:
+            if len(self._people) >= MOST_PEOPLE:
+                raise NoticeError("too_many_people", count=MOST_PEOPLE)
+            names = [
+                brought.name,
+                *(f"{brought.name[:34]} ({number})" for number in range(2, MOST_PEOPLE + 2)),
+            ]
+            person = brought.model_copy(update={"id": new_id(), "name": self._first_free(names)})
+            staging = self._folder / f"{_STAGING}{person.id}"
+            try:
+                write_record(person, staging / PERSON_NAME)
+                fill(staging, person.id)
+                staging.replace(self.folder_of(person.id))
+            except OSError as error:
+                raise UserError(f"{staging} cannot be written: {error.strerror or error}.") from error
+            finally:
+                shutil.rmtree(staging, ignore_errors=True)
+            self._people[person.id] = person
+            return person
+
+    def rename(self, person: str, name: str) -> PersonRecord:
+        """Give a person another name.
+
+        Raises:
+            UserError: see `add`; also if there is no such person.
+        """
+        with self._lock:
+            known = self._known(person)
+            return self._keep(known.model_copy(update={"name": self._free_name(name, person)}))
+
+    def keep_settings(self, person: str, settings: dict[str, bool | float | str]) -> PersonRecord:
+        """Replace a person's settings.
+
+        Raises:
+            UserError: there is no such person, or the record cannot be written.
+        """
+        with self._lock:
+            return self._keep(self._known(person).model_copy(update={"settings": settings}))
+
+    def add_profile(self, person: str, run: str, name: str) -> PersonRecord:
+        """Note that a profile is theirs.
+
+        Raises:
+            UserError: there is no such person, or the record cannot be written.
+        """
+        with self._lock:
+            known = self._known(person)
+            profiles = dict.fromkeys([*known.profiles, KeptProfile(run=run, name=name)])
+            return self._keep(known.model_copy(update={"profiles": tuple(profiles)}))
+
+    def remove(self, person: str) -> None:
+        """Delete a person's folder, with everything in it.
+
+        Raises:
+            UserError: there is no such person, or files cannot be deleted.
+        """
+        with self._lock:
+            self._known(person)
+            folder = self.folder_of(person)
+            try:
+                shutil.rmtree(folder)
+            except OSError as error:
+                raise UserError(f"{folder} cannot be deleted: {error.strerror or error}.") from error
+            del self._people[person]
+
+    def _known(self, person: str) -> PersonRecord:
+        found = self._people.get(person)
+        if found is None:
+            raise NoticeError("person_unknown")
+        return found
+
+    def _keep(self, person: PersonRecord) -> PersonRecord:
+        write_record(person, self.folder_of(person.id) / PERSON_NAME)
+        self._people[person.id] = person
+        return person
+
+    def _first_free(self, names: list[str]) -> str:
+        for name in names[:-1]:
+            try:
+                return self._free_name(name, None)
+            except NoticeError as error:
+                if error.notice.code != "person_name_taken":
+                    raise
+        return self._free_name(names[-1], None)
+
+    def _free_name(self, name: str, of: str | None) -> str:
+        try:
+            clean = clean_name(name)
+        except UserError as error:
+            raise NoticeError("person_name_invalid", count=MOST_CHARACTERS) from error
+        if any(same_name(clean, other.name) for other in self._people.values() if other.id != of):
+            raise NoticeError("person_name_taken", name=clean)
+        return clean

@@ -1,0 +1,281 @@
+"""Recordings of this and of earlier server starts: journals in the folder that the server records to."""
+
+import sqlite3
+import threading
+import time
+from collections.abc import Callable
+from contextlib import closing, suppress
+from pathlib import Path
+from typing import Annotated, Final, Literal, final
+
+from pydantic import Field
+
+from latentarm.control.journal import list_journal
+from latentarm.control.recordings import JOURNAL_SUFFIX
+from latentarm.errors import UserError
+from latentarm.untrusted.opening import is_missing
+from latentarm.web.protocol.notice import Message, NoticeError
+from latentarm.web.records.documents import read_record, write_record
+from latentarm.web.records.drives import UNDO_S
+
+_TITLES: Final = "recordings.json"
+_HIDDEN: Final = ".deleted-"
+_BESIDE: Final = ("", "-wal", "-shm", "-journal")
+_MOST: Final = 2000
+
+FileName = Annotated[str, Field(max_length=255)]
+Title = Annotated[str, Field(max_length=80)]
+
+
+@final
+class RecordedEpisode(Message):
+    """An episode of a recording: what was done, how long it took, s, by whom, and whether it is whole."""
+
+    number: int
+    task: str
+    seconds: float
+    person: str
+    complete: bool
+
+
+@final
+class RecordingFile(Message):
+    """A recording.
+
+    Attributes:
+        name: of its file.
+        title: given by people; "" for none.
+        bytes: its size.
+        episodes: what is in it.
+        in_use: whether it can still be written to, and so not be deleted.
+        problem: why it cannot be read; None if it can.
+    """
+
+    name: str
+    title: str
+    bytes: int
+    episodes: tuple[RecordedEpisode, ...]
+    in_use: bool
+    problem: str | None
+
+
+@final
+class _Titles(Message):
+    version: Literal[1] = 1
+    titles: Annotated[dict[FileName, Title], Field(max_length=_MOST)] = Field(default_factory=dict)
+
+
+@final
+class Recordings:
+    """Journals by the names of their files. All methods wait for the disk.
+
+    Args:
+        out: folder of the journals.
+        folder: of all records, for the titles.
+        in_use: path of the journal that is written now, or None.
+        now_s: the time, s; monotonic.
+    """
+
+    def __init__(
+        self,
+        out: Path,
+        folder: Path,
+        in_use: Callable[[], Path | None],
+        now_s: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._out = out
+        self._titles_path = folder / _TITLES
+        self._in_use = in_use
+        self._now_s = now_s
+        self._lock = threading.Lock()
+        self._deleted: dict[str, float] = {}
+        self._listed: dict[str, tuple[tuple[int, int], tuple[RecordedEpisode, ...], str | None]] = {}
+        for path in out.glob(f"{_HIDDEN}*"):
+            with suppress(OSError):
+                path.unlink()
+
+    def all(self) -> list[RecordingFile]:
+        """Every recording, the newest first.
+
+        Raises:
+            UserError: the titles cannot be read.
+        """
+        with self._lock:
+            titles = self._titles()
+            return [self._look(path, titles.get(path.name, "")) for path in reversed(self._journals())]
+
+    def entitle(self, name: str, title: str) -> None:
+        """Give a recording a title.
+
+        Raises:
+            UserError: there is no such recording, or titles cannot be written.
+        """
+        with self._lock:
+            self._path(name)
+            known = {path.name for path in self._journals()}
+            titles = {key: text for key, text in self._titles().items() if key in known}
+            write_record(_Titles(titles={**titles, name: title}), self._titles_path)
+
+    def delete(self, name: str) -> None:
+        """Delete a recording; `restore` brings it back for a while.
+
+        Raises:
+            UserError: there is no such recording, it is in use, or files cannot be moved.
+        """
+        with self._lock:
+            path = self._path(name)
+            if self._used(path):
+                raise NoticeError("recording_in_use")
+            _move(path, path.with_name(_HIDDEN + name))
+            self._deleted[name] = self._now_s() + UNDO_S
+
+    def restore(self, name: str) -> None:
+        """Bring back a deleted recording.
+
+        Raises:
+            UserError: it is gone, or files cannot be moved.
+        """
+        with self._lock:
+            if name not in self._deleted:
+                raise NoticeError("record_unknown")
+            _move(self._out / (_HIDDEN + name), self._out / name)
+            del self._deleted[name]
+
+    def purge(self) -> None:
+        """Remove for good what can no longer be restored.
+
+        Raises:
+            UserError: files cannot be deleted.
+        """
+        with self._lock:
+            for name in [name for name, until_s in self._deleted.items() if until_s <= self._now_s()]:
+                _unlink(self._out / (_HIDDEN + name))
+                del self._deleted[name]
+
+    def of_person(self, person: str) -> list[tuple[str, RecordedEpisode]]:
+        """Episodes of a person, each with the name of its file."""
+        with self._lock:
+            looked = [self._look(path, "") for path in self._journals()]
+        return [(file.name, one) for file in looked for one in file.episodes if one.person == person]
+
+    def forget(self, person: str, name: str) -> None:
+        """Delete every episode of a person, in recordings that could still be restored as well.
+
+        Args:
+            person: id, as the episodes have it.
+            name: theirs; titles that hold it go too.
+
+        Raises:
+            UserError: a journal cannot be changed.
+        """
+        with self._lock:
+            for hidden in list(self._deleted):
+                looked = self._look(self._out / (_HIDDEN + hidden), "")
+                if looked.problem is not None or any(one.person == person for one in looked.episodes):
+                    _unlink(self._out / (_HIDDEN + hidden))
+                    del self._deleted[hidden]
+            for path in self._journals():
+                looked = self._look(path, "")
+                if any(one.person == person for one in looked.episodes):
+                    only = all(one.person == person for one in looked.episodes)
+                    if only and not looked.in_use:
+                        _unlink(path)
+                    else:
+                        _erase(path, person)
+            titles = self._titles()
+            left = {key: text for key, text in titles.items() if name.casefold() not in text.casefold()}
+            if left != titles:
+                write_record(_Titles(titles=left), self._titles_path)
+
+    def _journals(self) -> list[Path]:
+        found = [path for path in self._out.glob(f"*{JOURNAL_SUFFIX}") if not path.name.startswith(".")]
+        return sorted(found)[-_MOST:]
+
+    def _path(self, name: str) -> Path:
+        """A path for a name that a page has sent: only of a journal that is there."""
+        for path in self._journals():
+            if path.name == name:
+                return path
+        raise NoticeError("record_unknown")
+
+    def _used(self, path: Path) -> bool:
+        used = self._in_use()
+        return used is not None and used.resolve() == path.resolve()
+
+    def _look(self, path: Path, title: str) -> RecordingFile:
+        episodes: tuple[RecordedEpisode, ...] = ()
+        problem: str | None = None
+        size = 0
+        try:
+            size, state = _state(path)
+            known = self._listed.get(path.name)
+            if known is not None and known[0] == state:
+                _, episodes, problem = known
+            else:
+                episodes = tuple(
+                    RecordedEpisode(
+                        number=entry.number,
+                        task=entry.header.task,
+                        seconds=round(entry.duration_s, 1),
+                        person=entry.header.provenance.person,
+                        complete=entry.complete,
+                    )
+                    for entry in list_journal(path)
+                )
+                self._listed[path.name] = (state, episodes, None)
+        except (UserError, OSError) as error:
+            problem = str(error)
+        return RecordingFile(
+            name=path.name,
+            title=title,
+            bytes=size,
+            episodes=episodes,
+            in_use=self._used(path),
+            problem=problem,
+        )
+
+    def _titles(self) -> dict[str, str]:
+        return {} if is_missing(self._titles_path) else read_record(_Titles, self._titles_path).titles
+
+
+def _state(path: Path) -> tuple[int, tuple[int, int]]:
+    """Bytes of a journal with its log, and what changes whenever it is written to."""
+    files = [path.with_name(path.name + end) for end in _BESIDE[:2]]
+    found = [file.stat() for file in files if not is_missing(file)]
+    size = sum(one.st_size for one in found)
+    return size, (size, max(one.st_mtime_ns for one in found))
+
+
+def _move(start: Path, end: Path) -> None:
+    """A journal with its log, which comes first: a journal without its log would be taken for whole."""
+    try:
+        for beside in reversed(_BESIDE):
+            with suppress(FileNotFoundError):
+                start.with_name(start.name + beside).replace(end.with_name(end.name + beside))
+    except OSError as error:
+        raise UserError(f"{start} cannot be moved: {error.strerror or error}.") from error
+
+
+def _unlink(path: Path) -> None:
+    try:
+        for beside in _BESIDE:
+            path.with_name(path.name + beside).unlink(missing_ok=True)
+    except OSError as error:
+        raise UserError(f"{path} cannot be deleted: {error.strerror or error}.") from error
+
+
+def _erase(path: Path, person: str) -> None:
+    """Take a person's episodes out of a journal, so that none of their bytes stays in the file."""
+    mine = "SELECT id FROM episodes WHERE json_extract(about, '$.provenance.person') = ?"
+    try:
+        with closing(sqlite3.connect(path, isolation_level=None, timeout=5.0)) as database:
+            database.execute("PRAGMA trusted_schema = OFF")
+            database.execute("PRAGMA secure_delete = ON")
+            database.execute("BEGIN IMMEDIATE")
+            database.execute(f"DELETE FROM samples WHERE episode IN ({mine})", (person,))  # noqa: S608
+            database.execute(f"DELETE FROM episodes WHERE id IN ({mine})", (person,))  # noqa: S608
+            database.execute("COMMIT")
+            database.execute("VACUUM")
+            database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    except sqlite3.Error as error:
+        raise UserError(f"{path} cannot be changed ({error}): end the recording first.") from error

@@ -1,0 +1,214 @@
+"""All that is kept of a person, in one place: what there is, taking it along, bringing it, deleting it."""
+
+import json
+import shutil
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Final, final
+
+from latentarm.alignment.profile import load_profile, profile_folder
+from latentarm.demonstrations.folders import staged_folder
+from latentarm.errors import UserError
+from latentarm.models.saving import WEIGHTS_LIMIT
+from latentarm.untrusted.opening import read_bytes
+from latentarm.web.protocol.notice import Message, NoticeError
+from latentarm.web.records.documents import new_id
+from latentarm.web.records.drives import TRACE, Drives, Wanted
+from latentarm.web.records.exchange import (
+    PROFILES,
+    SCENES,
+    drives_of,
+    person_of,
+    profile_of,
+    read_zip,
+    scenes_of,
+    write_drives,
+    write_zip,
+)
+from latentarm.web.records.people import PERSON_NAME, KeptProfile, People, PersonRecord
+from latentarm.web.records.recordings import Recordings
+from latentarm.web.records.scenes import Scenes
+
+FOLDER: Final = "records"
+"""Folder of all records, where the server records to."""
+
+
+@final
+class Contents(Message):
+    """How much is kept of a person."""
+
+    drives: int
+    profiles: int
+    episodes: int
+
+
+@final
+class Imported(Message):
+    """What was brought: the person, their drives, their profiles, and how many profiles fit no run here."""
+
+    person: str
+    name: str
+    drives: int
+    profiles: int
+    left_out: int
+
+
+@final
+class Records:
+    """Everything that the server keeps of people. Methods wait for the disk.
+
+    Args:
+        out: where the server records to.
+        runs: folders of runs by name.
+        in_use: path of the journal that is written now, or None.
+    """
+
+    def __init__(
+        self, out: Path, runs: Callable[[], Mapping[str, Path]], in_use: Callable[[], Path | None]
+    ) -> None:
+        folder = out / FOLDER
+        self.people = People(folder / "people")
+        self.drives = Drives(folder, folder / "people")
+        self.scenes = Scenes(folder / "scenes")
+        self.recordings = Recordings(out, folder, in_use)
+        self._folder = folder
+        self._runs = runs
+
+    def contents(self, person: str) -> Contents:
+        """How much is kept of a person.
+
+        Raises:
+            UserError: there is no such person.
+        """
+        known = self._known(person)
+        return Contents(
+            drives=len(self.drives.wanted(Wanted(person=person))),
+            profiles=len(self._profiles(known)),
+            episodes=len(self.recordings.of_person(person)),
+        )
+
+    def export(self, person: str) -> Path:
+        """Everything of a person as a zip: settings, drives with traces, profiles, a list of recordings.
+
+        Returns:
+            A temporary file, for the caller to delete.
+
+        Raises:
+            UserError: there is no such person, or something cannot be read or written.
+        """
+        known = self._known(person)
+        path = self._folder / f".export-{new_id()}.zip"
+        try:
+            write_zip(path, self._everything(known))
+        except UserError:
+            path.unlink(missing_ok=True)
+            raise
+        return path
+
+    def bring(self, content: bytes) -> Imported:
+        """Add a person from what `export` gave, under a new id.
+
+        Raises:
+            UserError: it is damaged, or cannot be written.
+        """
+        files = read_zip(content)
+        brought, drives = person_of(files), drives_of(files)
+        profiles = brought.profiles
+        for place, scene in scenes_of(files).items():
+            self.scenes.take(place, scene)
+        person = self.people.adopt(
+            brought.model_copy(update={"profiles": ()}),
+            lambda folder, person: write_drives(drives, folder, person),
+        )
+        self.drives.adopt(person.id)
+        taken = [
+            self._take_profile(person.id, profile, profile_of(files, index))
+            for index, profile in enumerate(profiles)
+        ]
+        return Imported(
+            person=person.id,
+            name=person.name,
+            drives=len(drives),
+            profiles=sum(taken),
+            left_out=len(taken) - sum(taken),
+        )
+
+    def erase(self, person: str) -> None:
+        """Delete everything of a person for good, the person last, so that it can be tried again if it fails.
+
+        Raises:
+            UserError: there is no such person, or something cannot be deleted.
+        """
+        known = self._known(person)
+        for folder in self._profiles(known).values():
+            try:
+                shutil.rmtree(folder)
+            except OSError as error:
+                raise UserError(f"{folder} cannot be deleted: {error.strerror or error}.") from error
+        self.recordings.forget(person, known.name)
+        self.people.remove(person)
+        self.drives.forget(person)
+
+    def purge(self) -> None:
+        """Remove for good what can no longer be restored.
+
+        Raises:
+            UserError: files cannot be deleted.
+        """
+        self.drives.purge()
+        self.recordings.purge()
+
+    def _known(self, person: str) -> PersonRecord:
+        found = self.people.find(person)
+        if found is None:
+            raise NoticeError("person_unknown")
+        return found
+
+    def _profiles(self, person: PersonRecord) -> dict[KeptProfile, Path]:
+        """Folders of those profiles of a person that are still there."""
+        runs = self._runs()
+        found = {one: profile_folder(runs[one.run], one.name) for one in person.profiles if one.run in runs}
+        return {one: folder for one, folder in found.items() if folder.is_dir()}
+
+    def _everything(self, person: PersonRecord) -> Iterator[tuple[str, bytes]]:
+        profiles = self._profiles(person)
+        kept = person.model_copy(update={"profiles": tuple(profiles)})
+        yield PERSON_NAME, kept.model_dump_json(indent=1).encode()
+        scenes: set[str] = set()
+        for drive in self.drives.wanted(Wanted(person=person.id)):
+            place = f"drives/{drive.id}.json"
+            yield place, drive.model_dump_json(indent=1).encode()
+            trace = self.drives.packed(drive.id)
+            if trace is not None:
+                yield place.removesuffix(".json") + TRACE, trace
+            scenes |= {drive.scene} if drive.scene else set()
+        places = {
+            name: content for scene in sorted(scenes) for name, content in self.scenes.files(scene).items()
+        }
+        for name, content in places.items():
+            yield f"{SCENES}{name}", content
+        for index, folder in enumerate(profiles.values()):
+            for file in sorted(folder.iterdir()):
+                yield f"{PROFILES}{index}/{file.name}", read_bytes(file, WEIGHTS_LIMIT)
+        episodes = [{"file": name, **one.model_dump()} for name, one in self.recordings.of_person(person.id)]
+        yield "recordings.json", json.dumps(episodes, indent=1).encode()
+
+    def _take_profile(self, person: str, profile: KeptProfile, files: Mapping[str, bytes]) -> bool:
+        """Whether a profile that was brought fits a run that is here."""
+        run = self._runs().get(profile.run)
+        if run is None or not files:
+            return False
+        try:
+            folder = profile_folder(run, profile.name)
+            with staged_folder(folder) as staging:
+                for name, content in files.items():
+                    (staging / name).write_bytes(content)
+        except UserError:  # there is one of this name
+            return False
+        try:
+            load_profile(run, profile.name)
+        except UserError:  # of another model, or damaged
+            shutil.rmtree(folder)
+            return False
+        self.people.add_profile(person, profile.run, profile.name)
+        return True

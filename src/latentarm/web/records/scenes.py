@@ -1,0 +1,102 @@
+"""What stood about the arm in earlier drives, so that they can be shown again whatever is driven now."""
+
+import hashlib
+import json
+import re
+import threading
+from pathlib import Path
+from typing import Final, final
+
+from latentarm.files import written_whole
+from latentarm.models.reading import Section
+from latentarm.untrusted.opening import is_missing, read_bytes
+from latentarm.web.protocol.scene import Drawable
+
+_SCENE_LIMIT: Final = 1 << 22
+_MESH_LIMIT: Final = 1 << 26
+_MESHES: Final = "meshes"
+_DIGEST: Final = re.compile(r"[0-9a-f]{64}")
+
+
+@final
+class Scenes:
+    """Scenes by a digest of what they show; each mesh is kept once. Methods wait for the disk.
+
+    Args:
+        folder: need not be there yet.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._lock = threading.Lock()
+
+    def keep(self, scene: Drawable) -> str:
+        """Keep a scene, unless it is kept already.
+
+        Returns:
+            Its id.
+
+        Raises:
+            UserError: it cannot be written.
+        """
+        meshes = {
+            str(number): hashlib.sha256(content).hexdigest() for number, content in scene.meshes.items()
+        }
+        document = json.dumps({"scene": scene.description, "meshes": meshes}, sort_keys=True).encode()
+        key = hashlib.sha256(document).hexdigest()[:32]
+        with self._lock:
+            for number, digest in meshes.items():
+                self._write(self._folder / _MESHES / digest, scene.meshes[int(number)])
+            self._write(self._folder / f"{key}.json", document)
+        return key
+
+    def files(self, key: str) -> dict[str, bytes]:
+        """A scene's files by their places in the folder: the scene, then its meshes.
+
+        Raises:
+            UserError: it is not there, or damaged.
+        """
+        digests = [str(digest) for digest in self._read(key).section("meshes").values.values()]
+        places = [f"{key}.json", *(f"{_MESHES}/{one}" for one in digests if _DIGEST.fullmatch(one))]
+        return {place: read_bytes(self._folder / place, _MESH_LIMIT) for place in dict.fromkeys(places)}
+
+    def take(self, place: str, content: bytes) -> None:
+        """Keep a file that `files` gave, if it is what its place says; otherwise it is left out.
+
+        Raises:
+            UserError: it cannot be written.
+        """
+        digest = hashlib.sha256(content).hexdigest()
+        if place in (f"{digest[:32]}.json", f"{_MESHES}/{digest}"):
+            with self._lock:
+                self._write(self._folder / place, content)
+
+    def description(self, key: str) -> bytes:
+        """A scene as ``/scene.json`` has it.
+
+        Raises:
+            UserError: there is no such scene, or it is damaged.
+        """
+        return json.dumps(self._read(key).values["scene"]).encode()
+
+    def mesh(self, key: str, number: str) -> bytes | None:
+        """A mesh of a scene as ``/mesh/ID`` has it; None if it has no such mesh.
+
+        Raises:
+            UserError: there is no such scene, or it is damaged.
+        """
+        digest = self._read(key).section("meshes").values.get(number)
+        if not isinstance(digest, str) or not _DIGEST.fullmatch(digest):
+            return None
+        return read_bytes(self._folder / _MESHES / digest, _MESH_LIMIT)
+
+    def _read(self, key: str) -> Section:
+        scene = Section.of_file(self._folder / f"{key}.json", _SCENE_LIMIT)
+        scene.section("scene")
+        return scene
+
+    def _write(self, path: Path, content: bytes) -> None:
+        if not is_missing(path):
+            return
+        with written_whole(path) as part:
+            part.write_bytes(content)

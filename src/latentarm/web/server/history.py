@@ -1,0 +1,123 @@
+"""Every drive of the page, from its first report to the disk."""
+
+import asyncio
+from collections.abc import Callable
+from functools import partial
+from typing import Final, final
+
+from latentarm.errors import UserError
+from latentarm.web.protocol.channel import Report
+from latentarm.web.protocol.notice import Notice, notice_of
+from latentarm.web.records.drive_log import About, DriveLog, Logged
+from latentarm.web.records.drive_record import Ending
+from latentarm.web.records.records import Records
+from latentarm.web.server.sessions import Sessions
+from latentarm.web.server.states import States
+
+PURGE_S: Final = 60.0
+"""How often what was deleted is removed for good, s."""
+
+
+@final
+class History:
+    """Logs what is driven; drives are written by another thread.
+
+    Args:
+        states: tells every report.
+        sessions: says who drives.
+        records: where they are kept.
+
+    Attributes:
+        problem: why the last drive was not kept; None if it was.
+    """
+
+    def __init__(self, states: States, sessions: Sessions, records: Records) -> None:
+        self._states = states
+        self._sessions = sessions
+        self._records = records
+        self._log = DriveLog()
+        self._keeping: set[asyncio.Task[None]] = set()
+        self.problem: Notice | None = None
+        states.heard.append(self._hear)
+
+    async def follow(self) -> None:
+        """Remove what can no longer be restored, until cancelled."""
+        while True:
+            await asyncio.sleep(PURGE_S)
+            try:
+                await asyncio.to_thread(self._records.purge)
+            except UserError as error:
+                self.problem = notice_of(error)
+
+    @property
+    def person(self) -> str | None:
+        """Id of the person whose drive is under way, or None."""
+        about = self._log.under_way
+        return None if about is None else about.person
+
+    def given(self, u: tuple[float, ...], source: str, *, gripper: bool) -> None:
+        """Note an input of the driver's; see `DriveLog.given`."""
+        self._log.given(u, source, gripper=gripper)
+
+    def end(self, why: Ending) -> None:
+        """End the drive under way, if there is one."""
+        logged = self._log.end(why)
+        if logged is None:
+            return
+        self._do(partial(self._write, logged))
+
+    def keep_profile(self, person: str, run: str, name: str) -> None:
+        """Note that a profile that has just been kept is a person's."""
+        self._do(partial(self._records.people.add_profile, person, run, name))
+
+    async def settled(self) -> None:
+        """Wait until every drive that has ended is on the disk."""
+        await asyncio.gather(*self._keeping)
+
+    async def close(self) -> None:
+        """End the drive under way and wait for the disk."""
+        self.end("server_ended")
+        await self.settled()
+
+    def _hear(self, report: Report) -> None:
+        loaded = self._states.loaded
+        about = self._log.under_way
+        if about is not None and about.scene is not loaded.scene:
+            self.end("run_changed")
+        if not self._log.begins(report):
+            self._log.take(report)
+            return
+        driver = self._sessions.driver
+        self._log.begin(
+            report,
+            About(
+                person=None if driver is None or self._gone(driver.person) else driver.person,
+                robot=loaded.robot_name,
+                todo=loaded.todo,
+                run=loaded.name,
+                scene=loaded.scene,
+                chain=loaded.chain,
+            ),
+        )
+
+    def _gone(self, person: str | None) -> bool:
+        """Whether a person was deleted while their page was open."""
+        return self._records.people.find(person) is None
+
+    def _do(self, work: Callable[[], object]) -> None:
+        task = asyncio.create_task(self._keep(work))
+        self._keeping.add(task)
+        task.add_done_callback(self._keeping.discard)
+
+    async def _keep(self, work: Callable[[], object]) -> None:
+        try:
+            await asyncio.to_thread(work)
+            self.problem = None
+        except UserError as error:
+            self.problem = notice_of(error)
+
+    def _write(self, logged: Logged) -> None:
+        if logged.record.person is not None and self._gone(logged.record.person):
+            return
+        scene = self._records.scenes.keep(logged.scene)
+        self._records.drives.keep(logged.record.model_copy(update={"scene": scene}), logged.trace())

@@ -1,0 +1,61 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { momentAt, standing } from "#pages/history/player.js";
+import { byWeek, counted, figures, median, mondayOf, MOST_WEEKS } from "#pages/history/weeks.js";
+
+const drive = (started, rest = {}) => ({ started, time_s: 10, stops: 0, outcome: null, ...rest });
+
+test("a week begins on Monday, also over the end of a year", () => {
+  assert.equal(mondayOf("2026-11-23T00:00:00+00:00"), "2026-11-23");
+  assert.equal(mondayOf("2026-11-29T23:59:59+00:00"), "2026-11-23");
+  assert.equal(mondayOf("2027-01-01T08:00:00+00:00"), "2026-12-28");
+});
+
+test("weeks without drives are there and say nothing", () => {
+  const weeks = byWeek([drive("2026-11-23T10:00:00+00:00"), drive("2026-11-03T10:00:00+00:00", { stops: 3 })]);
+  assert.deepEqual(weeks.map(({ monday }) => monday), ["2026-11-02", "2026-11-09", "2026-11-16", "2026-11-23"]);
+  assert.deepEqual(weeks.map(({ drives }) => drives), [1, 0, 0, 1]);
+  assert.deepEqual(weeks.map(({ timeS }) => timeS), [10, null, null, 10]);
+  assert.equal(weeks[0].stops, 3);
+  assert.deepEqual(byWeek([]), []);
+});
+
+test("only the last weeks are compared", () => {
+  const weeks = byWeek([drive("2025-01-01T00:00:00+00:00"), drive("2026-11-23T00:00:00+00:00")]);
+  assert.equal(weeks.length, MOST_WEEKS);
+  assert.equal(weeks[MOST_WEEKS - 1].monday, "2026-11-23");
+});
+
+test("success counts only drives whose outcome is known", () => {
+  const at = "2026-11-23T00:00:00+00:00";
+  assert.equal(figures([drive(at), drive(at)]).success, null);
+  assert.equal(figures([drive(at), drive(at, { outcome: "success" }), drive(at, { outcome: "failure" })]).success, 0.5);
+  assert.equal(median([3, 1, 2, 10]), 2.5);
+  assert.deepEqual(counted(["a", "b", "b"]), [["b", 2], ["a", 1]]);
+});
+
+const pose = (x) => [x, 0, 0, 1, 0, 0, 0];
+const TRACE = {
+  period_s: 0.1,
+  t: [0, 0.1, 5, 5.1],
+  tool: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]],
+  bodies: [[pose(0)], [pose(1)], [pose(2)], [pose(3)]],
+  width_m: [null, null, null, null],
+  things: [{ t: 0, poses: [pose(0)], grains: [[1, 1, 1]] }, { t: 5, poses: [pose(5)], grains: null }],
+  marks: [{ t: 0, code: "enabled" }, { t: 4, code: "stop_pressed" }, { t: 4.5, code: "enabled" }],
+};
+
+test("a replay glides between moments, and stands where nothing changed", () => {
+  const things = standing(TRACE);
+  assert.equal(momentAt(TRACE, things, 0.05).bodies[0][0], 0.5);
+  assert.equal(momentAt(TRACE, things, 3).tool[0], 1);
+  assert.equal(momentAt(TRACE, things, 5).tool[0], 2);
+  assert.equal(momentAt(TRACE, things, 99).tool[0], 3);
+});
+
+test("a replay shows things as they stood, with the grains of before, and when the arm was stopped", () => {
+  const things = standing(TRACE);
+  assert.deepEqual(momentAt(TRACE, things, 5).things, { poses: [pose(5)], grains: [[1, 1, 1]] });
+  assert.deepEqual([3.9, 4.2, 4.6].map((t) => momentAt(TRACE, things, t).stopped), [false, true, false]);
+});

@@ -1,0 +1,210 @@
+"""Names in any script, drives logged from reports, and files of records that are broken or a stranger's."""
+
+import io
+import json
+import shutil
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from latentarm.errors import UserError
+from latentarm.untrusted.names import MOST_CHARACTERS, clean_name
+from latentarm.web.arm_process.drive_setup import Spec, load_setup
+from latentarm.web.protocol.channel import Report
+from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.scene import drawable
+from latentarm.web.records.drive_log import LATE, MOST_VALUES, About, DriveLog
+from latentarm.web.records.drive_record import checked_trace, packed
+from latentarm.web.records.drives import Drives, Wanted
+from latentarm.web.records.people import People
+from latentarm.web.records.records import FOLDER, Records
+
+HOURLY = [HealthCheck.function_scoped_fixture]
+LETTERS = st.characters(categories=("L", "N", "M", "S", "P", "Zs"))
+
+
+@pytest.fixture
+def records(tmp_path):
+    return Records(tmp_path, dict, lambda: None)
+
+
+@pytest.fixture(scope="module")
+def about():
+    setup = load_setup(Spec())
+    return About(None, "panda", setup.todo, None, drawable(setup.task, None), setup.task.robot.chain)
+
+
+@given(name=st.text(LETTERS, min_size=1, max_size=40))
+@settings(max_examples=25, deadline=None, suppress_health_check=HOURLY)
+def test_any_name_is_kept_or_refused_in_a_sentence(tmp_path, name):
+    folder = tmp_path / "people"
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        person = People(folder).add(name)
+    except UserError:
+        with pytest.raises(UserError, match="name"):
+            clean_name(name)
+        return
+    assert clean_name(person.name) == person.name
+    assert len(person.name) <= MOST_CHARACTERS
+    (path,) = folder.iterdir()
+    assert path.name == person.id
+    assert People(folder).find(person.id) == person
+
+
+@pytest.mark.parametrize("name", ["Zoë Müller", "李雷", "محمد", "नेहा", "O’Brien-Łukasz", "👩‍🦽", "佐藤 花子"])
+def test_names_of_people_are_names(name):
+    assert clean_name(f"  {name} ") == clean_name(name)
+
+
+def report(tick, phase, tool, code=None, **changes):
+    return Report(
+        nonce="", tick=tick, time_s=100.0 + 0.01 * tick, driver=1, phase=phase, note=None,
+        reason=None if code is None else Notice(code=code), held_back=None, mode="assisted", axes=0, run=None,
+        profile=None, loading=False,
+        q=(0.0, *[0.1 * tool] * 6), speed=0.0, tool=(tool, 0.0, 0.0), gripper=None,
+        things=None, ghosts=None, belief=(), alpha=0.5, bound_rad=None, recording=None, late_share=0.0,
+        late_p99_ms=0.0, **changes,
+    )  # fmt: skip
+
+
+def logged(about, reports):
+    log = DriveLog()
+    for one in reports:
+        if log.begins(one):
+            log.begin(one, about)
+        else:
+            log.take(one)
+    return log.end("reset")
+
+
+def drive(about):
+    """Enabled for 1 s, moving for 2 s by 0.2 m, late, disengaged for 1 s, enabled and moving for 1 s."""
+    moving = [report(100 + k, "moving", 0.001 * k) for k in range(200)]
+    stopped = [report(300 + k, "disengaged", 0.199, LATE) for k in range(100)]
+    again = [report(400 + k, "moving", 0.199) for k in range(101)]
+    ready = [report(k, "ready", 0.0) for k in range(100)]
+    return logged(about, [report(-1, "disengaged", 0.0), *ready, *moving, *stopped, *again])
+
+
+def test_the_figures_of_a_drive_are_those_of_its_reports(about):
+    record = drive(about).record
+    assert record.time_s == pytest.approx(5.0, abs=0.03)
+    assert record.moving_s == pytest.approx(3.0, abs=0.03)
+    assert record.way_m == pytest.approx(0.199, abs=1e-3)
+    assert (record.stops, record.late_stops, record.reasons) == (1, 1, {LATE: 1})
+    assert record.help == 0.5
+    assert (record.ended, record.outcome, record.steps_done) == ("reset", None, None)
+
+
+def test_a_trace_is_thin_and_comes_back(about):
+    trace = drive(about).trace()
+    assert 20 <= len(trace.t) <= 24
+    assert np.diff(trace.t).min() >= 0.1 - 1e-9
+    assert [mark.code for mark in trace.marks] == ["enabled", LATE, "enabled"]
+    assert checked_trace(packed(trace), "it") == trace
+
+
+def test_a_long_drive_keeps_fewer_moments_of_all_of_it(about):
+    end = 10 * 60 * 15
+    trace = logged(about, [later(k, 0.1 * (k % 7)) for k in range(end)]).trace()
+    assert len(trace.t) * 64 <= 1.1 * MOST_VALUES
+    assert trace.t[-1] == pytest.approx(0.1 * (end - 1), abs=trace.period_s)
+    assert max(np.diff(trace.t)) < 4 * trace.period_s
+
+
+def later(k, tool):
+    return report(0, "moving", tool).model_copy(update={"time_s": 0.1 * k})
+
+
+def kept(records, about):
+    person = records.people.add("Ada")
+    done = drive(replace(about, person=person.id))
+    records.drives.keep(done.record, done.trace())
+    return person, done.record
+
+
+def test_what_was_kept_is_there_for_the_next_server(records, about, tmp_path):
+    person, record = kept(records, about)
+    again = Records(tmp_path, dict, lambda: None)
+    assert again.drives.wanted(Wanted(person=person.id)) == [record]
+    assert again.people.problems + again.drives.problems == []
+
+
+def test_a_deletion_can_be_undone_until_its_time_is_over(records, about, tmp_path):
+    now = [0.0]
+    _, record = kept(records, about)
+    folder = tmp_path / FOLDER
+    drives = Drives(folder, folder / "people", lambda: now[0])
+    drives.delete(record.id)
+    drives.restore(record.id)
+    drives.trace(record.id)
+    drives.delete(record.id)
+    now[0] = 601.0
+    drives.purge()
+    with pytest.raises(UserError):
+        drives.restore(record.id)
+    assert [path for path in folder.rglob("*") if record.id in path.name] == []
+
+
+@pytest.mark.parametrize(
+    "damage", [b"", b"{", b'{"version": 2}', b'{"id": "../../x"}', b"\xff", b"[" * 100_000]
+)
+def test_a_damaged_record_is_named_and_the_rest_is_there(records, about, tmp_path, damage):
+    _, record = kept(records, about)
+    bea = records.people.add("Bea")
+    path = tmp_path / FOLDER / "people" / bea.id / "person.json"
+    path.write_bytes(damage)
+    again = Records(tmp_path, dict, lambda: None)
+    assert [person.name for person in again.people.all()] == ["Ada"]
+    assert again.drives.find(record.id) == record
+    assert str(path) in again.people.problems[0]
+
+
+@given(at=st.integers(0, 10**6), byte=st.integers(0, 255))
+@settings(max_examples=15, deadline=None, suppress_health_check=HOURLY)
+def test_a_damaged_export_adds_a_person_or_nothing(records, about, at, byte):
+    if not records.people.all():
+        kept(records, about)
+    person = records.people.all()[0]
+    path = records.export(person.id)
+    content = bytearray(path.read_bytes())
+    path.unlink()
+    content[at % len(content)] = byte
+    before = len(records.people.all())
+    try:
+        brought = records.bring(bytes(content))
+    except UserError:
+        assert len(records.people.all()) == before
+        return
+    records.erase(brought.person)
+    assert len(records.people.all()) == before
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        {"../../evil.json": b"{}", "drives/../../x.json": b"{}"},
+        {"drives/0123456789abcdef.json": b'{"version": 1}'},
+        {"drives/0123456789abcdef.json": b" " * (1 << 18)},
+    ],
+)
+def test_an_export_of_a_stranger_writes_nowhere_else(records, tmp_path, names):
+    ada = {"version": 1, "id": "0123456789abcdef", "name": "Ada", "added": ""}
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as zipped:
+        zipped.writestr("person.json", json.dumps(ada))
+        for name, content in names.items():
+            zipped.writestr(name, content)
+    if "../../evil.json" in names:
+        assert records.bring(archive.getvalue()).drives == 0
+    else:
+        with pytest.raises(UserError):
+            records.bring(archive.getvalue())
+    assert [path.name for path in tmp_path.iterdir()] in ([], [FOLDER])
+    found = {path.name for path in tmp_path.rglob("*") if path.is_file()}
+    assert found <= {"person.json"}
