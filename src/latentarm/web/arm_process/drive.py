@@ -15,17 +15,20 @@ from latentarm.demonstrations.provenance import provenance_now
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.ghosts import GhostPaths
+from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import (
     Channel,
+    ChooseHelp,
     ChooseMode,
     ChooseProfile,
     ChooseRun,
     Enable,
     GripperState,
     HeldBack,
+    HelpLevel,
     ModeName,
     Order,
     Phase,
@@ -68,12 +71,14 @@ class Steering:
     Attributes:
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
+        help: how much the robot helps with latent actions.
         tick: counts the ticks of all drives.
         ending_episode: whether the episode ends as soon as the arm is at rest.
     """
 
     mode: ModeName
     axes: int = 0
+    help: HelpLevel = USUAL_HELP
     tick: int = 0
     ending_episode: bool = False
 
@@ -213,6 +218,8 @@ class Drive:
             case ChooseMode(mode=mode, axes=axes):
                 if mode in self._setup.modes:
                     self._choose(mode, self._steering.axes if axes is None else axes)
+            case ChooseHelp(level=level):
+                self._choose_help(level)
             case Record(on=True, task=task, person=person):
                 self._begin_episode(task, person)
             case Record():
@@ -238,8 +245,20 @@ class Drive:
         steering = self._steering
         steering.mode = mode
         steering.axes = min(max(axes, 0), len(self._setup.axes) - 1)
-        self._setup.help.on = mode == "assisted"
+        if mode == "latent" and "assisted" in self._setup.modes:
+            steering.help = "off"
+        elif mode == "assisted" and steering.help == "off":
+            steering.help = USUAL_HELP
+        self._setup.help.level = steering.help if mode == "assisted" else "off"
         self._step.choose_mode(self._setup.mode_index(mode, steering.axes))
+
+    def _choose_help(self, level: HelpLevel) -> None:
+        """A level for now where latent actions are driven, and else for when they will be."""
+        if "assisted" not in self._setup.modes:
+            return
+        self._steering.help = level
+        if self._steering.mode != "end_effector":
+            self._choose("latent" if level == "off" else "assisted", self._steering.axes)
 
     def _begin_episode(self, task: str, person: str) -> None:
         self._steering.ending_episode = False
@@ -330,6 +349,7 @@ class Drive:
             held_back=held_back[0] if held_back and phase == "moving" else None,
             mode=self._steering.mode,
             axes=self._steering.axes,
+            help=self._steering.help if "assisted" in self._setup.modes else None,
             run=None if spec.run is None else str(spec.run),
             profile=spec.profile,
             loading=self.change is not None,

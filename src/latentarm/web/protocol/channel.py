@@ -22,6 +22,9 @@ _GIVEN_LIMIT: Final = 1024
 _REASON_LIMIT: Final = 512
 
 ModeName = Literal["latent", "assisted", "end_effector"]
+"""``assisted`` is ``latent`` with the robot's help, at a level other than ``off``."""
+
+HelpLevel = Literal["off", "low", "medium", "high"]
 HeldBack = Literal["clearance", "freshness", "workspace", "joint_position"]
 Phase = Literal["disengaged", "neutral_needed", "ready", "moving", "stopping"]
 Point = tuple[float, float, float]
@@ -48,6 +51,21 @@ class AskedGripper(Message):
 
 
 @final
+class Paced(Message):
+    """What a driver's co-pilot leaves of the driver's speed.
+
+    Attributes:
+        copilot: counts the co-pilots.
+        pace: share of the driver's speed, in [0, 1].
+        nonce: the newest that the co-pilot's page had seen: it says how old this is.
+    """
+
+    copilot: int
+    pace: Annotated[float, Field(ge=0.0, le=1.0)]
+    nonce: str
+
+
+@final
 class Given(Message):
     """The driver's input.
 
@@ -59,6 +77,7 @@ class Given(Message):
         latched: continues without being held, for a limited time.
         source: with what kind of device.
         gripper: the newest thing that this driver has asked of the gripper; None before the first.
+        paced: the newest that the driver's co-pilot has said; None without a co-pilot.
     """
 
     driver: int
@@ -68,6 +87,7 @@ class Given(Message):
     latched: bool
     source: str = ""
     gripper: AskedGripper | None = None
+    paced: Paced | None = None
 
 
 @final
@@ -91,6 +111,14 @@ class ChooseMode(Message):
     order: Literal["mode"] = "mode"
     mode: ModeName
     axes: int | None
+
+
+@final
+class ChooseHelp(Message):
+    """How much the robot helps with learned motions; ``off`` is the mode ``latent``."""
+
+    order: Literal["help"] = "help"
+    level: HelpLevel
 
 
 @final
@@ -126,7 +154,7 @@ class Reset(Message):
     order: Literal["reset"] = "reset"
 
 
-Order = Enable | ChooseMode | ChooseProfile | ChooseRun | Record | Reset
+Order = Enable | ChooseMode | ChooseHelp | ChooseProfile | ChooseRun | Record | Reset
 _ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="order")])
 
 
@@ -203,6 +231,7 @@ class Report(Message):
         held_back: why it moves slower than asked; None if it does not.
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
+        help: how much the robot helps with learned motions; None where it cannot.
         run: path of the run that is driven, as it was named; None without one.
         profile: whose alignment.
         loading: whether something else is being loaded; there are no further reports until it is.
@@ -230,6 +259,7 @@ class Report(Message):
     held_back: HeldBack | None
     mode: ModeName
     axes: int
+    help: HelpLevel | None
     run: str | None
     profile: str | None
     loading: bool

@@ -10,7 +10,17 @@ from typing import Annotated, Final, Literal, final
 from pydantic import Field, TypeAdapter
 
 from latentarm.types import GripperAsk
-from latentarm.web.protocol.channel import Ghosts, GripperState, HeldBack, ModeName, Phase, Point, Things
+from latentarm.web.protocol.channel import (
+    Ghosts,
+    GripperState,
+    HeldBack,
+    HelpLevel,
+    ModeName,
+    Phase,
+    Point,
+    Things,
+)
+from latentarm.web.protocol.copilot_messages import CopilotMessage, CopilotState, Person
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
@@ -79,6 +89,14 @@ class Mode(Message):
 
 
 @final
+class HelpFromRobot(Message):
+    """How much the robot helps with learned motions; at any time."""
+
+    type: Literal["help"]
+    level: HelpLevel
+
+
+@final
 class Profile(Message):
     """Use a person's alignment, or null for none; while the arm is not enabled."""
 
@@ -137,6 +155,7 @@ ClientMessage = (
     | PressEnable
     | PressStop
     | Mode
+    | HelpFromRobot
     | Profile
     | AskToDrive
     | HandOver
@@ -148,6 +167,7 @@ ClientMessage = (
     | CancelTraining
     | PickRun
     | PersonaliseMessage
+    | CopilotMessage
 )
 _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
     Annotated[ClientMessage, Field(discriminator="type")]
@@ -225,6 +245,7 @@ class State(Message):
         held_back: why it moves slower than asked, or null.
         mode: how the arm is steered.
         axes: which pair of the end-effector's.
+        help: how much the robot helps with learned motions, or null where it cannot.
         profile: whose alignment.
         bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
         tool: m.
@@ -239,6 +260,8 @@ class State(Message):
         watchers: how many other pages.
         asking: id of the page that asks to drive, or null.
         asking_name: what its person is called.
+        copilot: who may slow the driver down, or null.
+        copilot_asking: who asks to be that, or null.
         recording: null where nothing was ever recorded.
         trail: counts how often the trail was emptied.
         late_share: share of the control loop's deadlines that were missed.
@@ -254,6 +277,7 @@ class State(Message):
     held_back: HeldBack | None
     mode: ModeName
     axes: int
+    help: HelpLevel | None
     profile: str | None
     bodies: tuple[tuple[float, ...], ...]
     tool: Point
@@ -268,6 +292,8 @@ class State(Message):
     watchers: int
     asking: str | None
     asking_name: str | None
+    copilot: CopilotState | None
+    copilot_asking: Person | None
     recording: RecordingState | None
     trail: int
     late_share: float
