@@ -34,11 +34,11 @@ export function statusOf({ open, state, silenceMs, engaged }, { halted, refused,
  * @param {State} state
  * @param {boolean} canEnable
  */
-function phaseWords({ phase, note, reason, held_back }, canEnable) {
+function phaseWords({ phase, note, reason, held_back, copilot }, canEnable) {
   if (note !== null) return sayNotice(note);
   const parameters = { reason: reason === null ? "" : sayNotice(reason) };
   switch (phase) {
-    case "ready": return say("status.ready");
+    case "ready": return copilot?.pace === 0 ? say("status.copilot_holds", { name: copilot.name }) : say("status.ready");
     case "moving": return held_back === null ? say("status.moving") : say("status.held_back", { cause: say(`held_back.${held_back}`) });
     case "stopping": return say("status.stopping", parameters);
     default: return canEnable ? say(`status.${phase}`, parameters) : parameters.reason;

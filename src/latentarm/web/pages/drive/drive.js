@@ -1,14 +1,18 @@
 /** The Drive page: puts its parts together. */
 
+import { attachCopilot } from "../connection/copilot.js";
 import { attachDpad } from "../inputs/dpad.js";
 import { DriveInput } from "../inputs/drive_input.js";
 import { attachGamepad } from "../inputs/gamepad.js";
 import { attachGripper } from "../inputs/gripper.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
+import { attachLatchLimit } from "../inputs/latch_limit.js";
+import { moreChoices } from "../inputs/page_choices.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { modeInput } from "../inputs/shaping.js";
 import { attachStick } from "../inputs/stick.js";
+import { attachTremor } from "../inputs/tremor.js";
 import { byId, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
@@ -17,6 +21,7 @@ import { attachViews } from "../views/attach_views.js";
 import { motionWords, placeWords } from "../views/directions.js";
 import { attachPredictions, personalPaths } from "../views/predictions.js";
 import { attachBelief } from "./belief.js";
+import { attachHelp } from "./help.js";
 import { attachModes } from "./modes.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
@@ -29,6 +34,7 @@ const WORDS_MS = 250;
 /** @type {Drawing | null} */
 let drawing = null;
 const { settings, connection, status, lease, stop } = attachPage({
+  scans: true,
   drop: () => input.drop(),
   repaint: () => drawing?.repaint(),
 });
@@ -36,7 +42,8 @@ const { settings, connection, status, lease, stop } = attachPage({
 const shaped = (/** @type {number} */ x, /** @type {number} */ y) =>
   modeInput(settings.values, connection.state, connection.welcome, x, y);
 
-const input = new DriveInput(connection, shaped);
+const input = new DriveInput(connection, shaped, attachTremor(settings));
+attachLatchLimit(input, connection, settings);
 input.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
 
 /** This page drives first, if nobody else does, and then enables the arm: one press for both. */
@@ -45,7 +52,9 @@ const enable = () => {
 };
 byId("enable").addEventListener("click", enable);
 
-const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection);
+const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection, settings);
+const help = attachHelp({ fieldset: byId("help"), text: byId("help-text") }, connection, settings);
+attachCopilot(connection);
 attachTrialBanner(connection, settings, lease);
 attachProfileChoice(connection, settings);
 attachRecording({
@@ -70,8 +79,10 @@ const scanner = attachScanning({
   help: byId("scan-help"),
 }, input, settings, () => {
   const mode = { id: "mode", label: say("scanning.other_mode"), act: modes.next };
-  return input.live ? [...directionChoices(), ...gripper.choices(), mode, { id: "stop", label: say("layout.stop"), act: stop }]
-    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode];
+  const stops = { id: "stop", label: say("layout.stop"), act: stop };
+  const more = moreChoices(help.choices(), stops);
+  return input.live ? [...directionChoices(), ...gripper.choices(), mode, stops, more]
+    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, more];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, {
