@@ -196,7 +196,7 @@ def take(run: Path, names: list[str], out: Path) -> None:
                     page.goto(site.address)
                     page.locator(".label").first.wait_for(state="attached")
                     page.wait_for_timeout(SETTLE_MS)
-                    page.get_by_role("radio", name="Learned, with help").check()
+                    page.get_by_role("radio", name="Learned motions").check()
                     page.get_by_role("button", name="Arm back to start").click()
                     page.evaluate("scrollTo(0, 0)")
                     page.wait_for_timeout(SETTLE_MS)

@@ -239,7 +239,8 @@ def seated(page: Page, arm: Arm) -> Page:
     """The page drives, and puts the arm back."""
     page.get_by_role("button", name="Ask to drive").click()
     page.get_by_role("button", name="Let others drive").wait_for()
-    page.get_by_role("radio", name="Learned, with help").check()
+    page.get_by_role("radio", name="Learned motions").check()
+    page.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Medium").check()
     arm.wait(lambda: arm.state["mode"] == "assisted")
     page.get_by_role("button", name="Arm back to start").click()
     time.sleep(0.5)
