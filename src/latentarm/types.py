@@ -231,11 +231,14 @@ class Input:
         switch_mode: the person asks for the controller's next mode.
         gripper: what the person asks of the gripper; None asks nothing. Like a mode switch it counts once,
             however long it is held.
+        pace: share of the asked-for speed, in [0, 1], that a second person leaves the first. It counts before
+            the safety filters, and for the robot's help too.
     """
 
     u: FloatArray
     switch_mode: bool = False
     gripper: GripperAsk | None = None
+    pace: float = 1.0
 
 
 @dataclass(frozen=True)

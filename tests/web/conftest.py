@@ -25,7 +25,15 @@ from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.arm_process.recording import EpisodeWriter
-from latentarm.web.protocol.channel import AskedGripper, Given, Order, Report, new_channel, parse_report
+from latentarm.web.protocol.channel import (
+    AskedGripper,
+    Given,
+    Order,
+    Paced,
+    Report,
+    new_channel,
+    parse_report,
+)
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
@@ -132,6 +140,7 @@ class Desk:
         latched: bool = False,
         driver: int = 1,
         gripper: GripperAsk | None = None,
+        paced: Paced | None = None,
     ) -> None:
         self.sequence += 1
         known = nonce or (self.reports[-1].nonce if self.reports else "")
@@ -143,6 +152,7 @@ class Desk:
             latched=latched,
             source="keyboard",
             gripper=gripper and AskedGripper(ask=gripper, seq=self.sequence, nonce=known),
+            paced=paced,
         )
         self.channel.given.write(given.model_dump_json().encode())
 

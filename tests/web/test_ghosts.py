@@ -39,7 +39,7 @@ def driven(setup, q, u, mode):
 
 @pytest.mark.parametrize("mode", ["latent", "assisted", "end_effector"])
 def test_the_arm_goes_where_the_ghosts_show(setup, mode):
-    setup.help.on = mode == "assisted"
+    setup.help.level = "medium" if mode == "assisted" else "off"
     index = setup.mode_index(mode, 0)
     at = setup.task.robot.chain.forward(setup.start).position
     try:
@@ -50,7 +50,7 @@ def test_the_arm_goes_where_the_ghosts_show(setup, mode):
             # The ramp, which ghosts leave out, costs a good part of the first second.
             assert np.linalg.norm(shown - there) < 0.45 * np.linalg.norm(shown - at) + 0.005
     finally:
-        setup.help.on = False
+        setup.help.level = "off"
 
 
 def test_ghosts_do_not_go_through_the_table(setup):

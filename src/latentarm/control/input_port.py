@@ -69,6 +69,12 @@ class InputPort(InputSource):
                 self._issued.popitem(last=False)
         return nonce
 
+    def nonce_age_s(self, nonce: str) -> float:
+        """How long ago a nonce was issued, s; infinite where it was not, or in the future."""
+        with self._lock:
+            age_s = self._clock.now_s() - self._issued.get(nonce, -math.inf)
+        return age_s if age_s >= 0.0 else math.inf
+
     def offer(self, given: Input, nonce: str, sequence: int) -> bool:
         """Hand in an input.
 

@@ -307,7 +307,7 @@ class Step:
             return self._record(time_s, q, Passed(self._stack.stop()))
         if neutral and not self._shared.acts_at_rest:
             return self._record(time_s, q, self._passed(self._no_motion, q, input_age_s))
-        return self._driven(u, input_age_s, q, time_s)
+        return self._driven(u, float(given.pace), input_age_s, q, time_s)
 
     def _doubts(self, q: FloatArray, time_s: float, *, new: bool) -> bool:
         """Whether a reading cannot be true; the arm is disengaged for it."""
@@ -331,7 +331,9 @@ class Step:
         except Exception:  # noqa: BLE001 - an age that is no number is refused further on
             return False
 
-    def _driven(self, u: FloatArray, input_age_s: float, q: FloatArray, time_s: float) -> StepRecord:
+    def _driven(
+        self, u: FloatArray, pace: float, input_age_s: float, q: FloatArray, time_s: float
+    ) -> StepRecord:
         """Lines 6 to 10 for an input that asks for motion, or at rest if the robot helps there too."""
         shared = self._shared
         belief = shared.belief
@@ -344,7 +346,7 @@ class Step:
                 choices, bound_rad = shared.update(u, context, self._mode, alpha)
                 # A person who lets go commands no motion, whatever the decoder makes of zero.
                 z, a_h = (u, self._no_motion) if u is self._no_input else choices.chosen(u)
-                wanted = blend(a_h, a_r, alpha) if a_h.shape == q.shape else a_h
+                wanted = pace * blend(a_h, a_r, alpha) if a_h.shape == q.shape else a_h
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
             stop = Stop(f"The controller failed ({_said(error)}).")
             return self._record(time_s, q, self._refused(stop), u)
@@ -387,6 +389,8 @@ class Step:
                 return stale
             u = np.asarray(given.u)
             bool(given.switch_mode)
+            if not 0.0 <= float(given.pace) <= 1.0:
+                return Stop("The input's pace is outside [0, 1].")
             if not self._gripper.known(given.gripper):
                 return Stop("The input asks the gripper for something that it cannot do.")
         except Exception as error:  # noqa: BLE001 - a ragged list, None, whatever an interface gives

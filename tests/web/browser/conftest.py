@@ -254,7 +254,8 @@ def seated(page: Page, arm: Arm) -> Page:
     arm.start_again()
     page.get_by_role("button", name="Ask to drive").click()
     page.get_by_role("button", name="Let others drive").wait_for()
-    page.get_by_role("radio", name="Learned, with help").check()
+    page.get_by_role("radio", name="Learned motions").check()
+    page.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Medium").check()
     arm.wait(lambda: arm.state["mode"] == "assisted")
     return page
 

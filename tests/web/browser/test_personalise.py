@@ -135,6 +135,7 @@ def question(page, arm, number):
 def straightness(page, arm, person, drag, press_until_moving, press_enable, drive_back):
     """The cosine between the way of the tool from its start and what the person means by up."""
     page.get_by_role("radio", name="Learned motions").check()
+    page.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Off").check()
     arm.wait(lambda: arm.state["mode"] == "latent")
     drive_back(page, arm)
     begin = arm.tool

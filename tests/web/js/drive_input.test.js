@@ -26,7 +26,7 @@ beforeEach(() => {
   const connection = new Connection(null);
   socket = FakeSocket.newest;
   socket.opens();
-  input = new DriveInput(connection, (x, y) => [x, y]);
+  input = new DriveInput(connection, (x, y) => [x, y], (x, y) => [x, y]);
   halted = [];
   input.addEventListener("halted", (event) => halted.push(event.detail));
   state();

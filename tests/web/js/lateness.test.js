@@ -65,7 +65,7 @@ function driving() {
   const connection = new Connection("");
   const socket = FakeSocket.newest;
   socket.opens();
-  const input = new DriveInput(connection, (x, y) => [x, y]);
+  const input = new DriveInput(connection, (x, y) => [x, y], (x, y) => [x, y]);
   const state = (fields) => socket.says(stateOf({ you: true, phase: "ready", ...fields }));
   state({ phase: "disengaged" });
   input.enable();

@@ -74,3 +74,18 @@ test("a button that has the focus does not act when Space comes up after a stop"
   socket.says(stateOf({ phase: "disengaged" }));
   assert.ok(!key("keyup", "Space").defaultPrevented);
 });
+
+test("where Space is a switch it stops nothing and is left to scanning; Escape stops", () => {
+  const others = new EventTarget();
+  globalThis.window = others;
+  const connection = new Connection("");
+  FakeSocket.newest.opens();
+  FakeSocket.newest.says(stateOf({ you: true, phase: "moving" }));
+  FakeSocket.newest.taken();
+  attachStop(connection, () => (dropped += 1), () => false);
+  assert.ok(!key("keydown", "Space").defaultPrevented);
+  assert.equal(dropped, 0);
+  key("keydown", "Escape");
+  assert.equal(dropped, 1);
+  assert.deepEqual(FakeSocket.newest.taken().map(({ type }) => type), ["stop"]);
+});

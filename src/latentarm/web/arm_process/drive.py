@@ -15,6 +15,7 @@ from latentarm.demonstrations.provenance import provenance_now
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.ghosts import GhostPaths
+from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.late_stops import LateStops
 from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.page_inputs import PageInputs
@@ -25,12 +26,14 @@ from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import (
     BeginTask,
     Channel,
+    ChooseHelp,
     ChooseMode,
     ChooseProfile,
     ChooseRun,
     Enable,
     GripperState,
     HeldBack,
+    HelpLevel,
     ModeName,
     Order,
     Phase,
@@ -74,6 +77,7 @@ class Steering:
     Attributes:
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
+        help: how much the robot helps with latent actions.
         tick: counts the ticks of all drives.
         ending_episode: whether the episode ends as soon as the arm is at rest.
         run: of the task, as far as it has come; None where it is to begin.
@@ -81,6 +85,7 @@ class Steering:
 
     mode: ModeName
     axes: int = 0
+    help: HelpLevel = USUAL_HELP
     tick: int = 0
     ending_episode: bool = False
     run: TaskRun | None = None
@@ -234,6 +239,8 @@ class Drive:
                 self._set_out(record)
             case Return():
                 self._end_way_back()
+            case ChooseHelp(level=level):
+                self._choose_help(level)
             case Record(on=True, task=task, person=person):
                 self._begin_episode(task, person)
             case Record():
@@ -259,15 +266,29 @@ class Drive:
 
     def _choose(self, mode: ModeName, axes: int) -> None:
         steering = self._steering
-        before = steering.mode, steering.axes
+        before = steering.mode, steering.axes, steering.help
         steering.mode = mode
         steering.axes = min(max(axes, 0), len(self._setup.axes) - 1)
-        if before != (steering.mode, steering.axes):
+        if mode == "latent" and "assisted" in self._setup.modes:
+            steering.help = "off"
+        elif mode == "assisted" and steering.help == "off":
+            steering.help = USUAL_HELP
+        if before != (steering.mode, steering.axes, steering.help):
             # A stick that is held would go on, with another meaning.
             self._neutral.demand()
         self._way_back.end()
-        self._setup.help.on = mode == "assisted"
+        self._setup.help.level = steering.help if mode == "assisted" else "off"
         self._step.choose_mode(self._setup.mode_index(mode, steering.axes))
+
+    def _choose_help(self, level: HelpLevel) -> None:
+        """A level for now where latent actions are driven, and else for when they will be."""
+        if "assisted" not in self._setup.modes:
+            return
+        if level != self._steering.help:
+            self._neutral.demand()
+        self._steering.help = level
+        if self._steering.mode != "end_effector":
+            self._choose("latent" if level == "off" else "assisted", self._steering.axes)
 
     def _set_out(self, record: StepRecord) -> None:
         """Begin the way back to the start."""
@@ -277,7 +298,7 @@ class Drive:
         # An episode is one motion of a person's.
         self._end_episode()
         self._note_until_s = -math.inf
-        self._setup.help.on = False
+        self._setup.help.level = "off"
         self._step.choose_mode(self._setup.way_back)
         self._way_back.begin(record.time_s)
 
@@ -393,6 +414,7 @@ class Drive:
             late_stops=self._late.count,
             mode=self._steering.mode,
             axes=self._steering.axes,
+            help=self._steering.help if "assisted" in self._setup.modes else None,
             run=None if spec.run is None else str(spec.run),
             seed=spec.seed,
             profile=spec.profile,

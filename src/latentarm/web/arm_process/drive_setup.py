@@ -9,7 +9,6 @@ import numpy as np
 
 from latentarm.arms.catalogue import ARMS, make_scene_arm
 from latentarm.arms.contract import Arm, SceneArm
-from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.safety.config import SafetyConfig
@@ -27,10 +26,10 @@ from latentarm.tasks.place import Place, ScenePlace
 from latentarm.tasks.surroundings import surroundings_of, watched
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray
-from latentarm.web.arm_process.ghosts import Help
+from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
 from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
-from latentarm.web.protocol.channel import ModeName
+from latentarm.web.protocol.channel import HelpLevel, ModeName
 
 SEEDS: Final = 2**31
 """How many seeds there are."""
@@ -108,7 +107,7 @@ class DriveSetup:
             end-effector.
         latent_dim: d, axes of the latent actions; 0 without a run.
         axes: names of the pairs of axes of end-effector control.
-        help: whether and how much the robot helps.
+        help: how much the robot helps.
         start: (n,), where the arm starts, rad.
         todo: what is to be done.
         run_fingerprint: of the run's weights; "" without a run.
@@ -133,6 +132,10 @@ class DriveSetup:
         if not self.latent_dim:
             return ("end_effector",)
         return ("latent", "assisted", "end_effector") if self.task.goals else ("latent", "end_effector")
+
+    def first_mode(self, help_: HelpLevel) -> ModeName:
+        """How the arm is steered at first: by the latent actions, with help unless it is ``off``."""
+        return "assisted" if "assisted" in self.modes and help_ != "off" else self.modes[0]
 
     @property
     def objects(self) -> tuple[str, ...]:
@@ -235,7 +238,7 @@ def load_setup(spec: Spec) -> DriveSetup:
         controller=JoinedController([end_effector] if latent is None else [latent, end_effector]),
         latent_dim=0 if latent is None else latent.input_dim,
         axes=end_effector.modes,
-        help=Help(FixedAlpha()),
+        help=Help(),
         start=begun.start,
         todo=begun.todo,
         run_fingerprint="" if spec.run is None else weights_fingerprint(spec.run),

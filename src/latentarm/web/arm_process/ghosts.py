@@ -5,12 +5,13 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.assistance.blending import Arbitration, assistive_action, blend
+from latentarm.assistance.blending import assistive_action, blend
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.kinematics.obstacles import HalfSpace
 from latentarm.tasks.place import Place
 from latentarm.types import Context, FloatArray
+from latentarm.web.arm_process.help import Help
 from latentarm.web.protocol.channel import Ghosts, Point
 
 AHEAD_S: Final = 1.0
@@ -20,28 +21,6 @@ _DIRECTIONS: Final = {"up": (1, 1.0), "down": (1, -1.0), "left": (0, -1.0), "rig
 """Axis and sign of the input."""
 
 _SAME_M: Final = 1e-9
-
-
-@final
-class Help(Arbitration):
-    """Help that can be switched on and off while the arm is driven.
-
-    Args:
-        inner: says how much while it is on.
-    """
-
-    def __init__(self, inner: Arbitration) -> None:
-        self._inner = inner
-        self.on = False
-
-    @property
-    def acts_at_rest(self) -> bool:
-        """No: an arm whose person lets go stands still."""
-        return False
-
-    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
-        """What ``inner`` says, or zero; see `Arbitration.alpha`."""
-        return self._inner.alpha(u, belief) if self.on else np.zeros(u.shape[:-1])
 
 
 @final
@@ -56,7 +35,7 @@ class GhostPaths:
     Args:
         task: the robot, its goals and what it must keep clear of.
         controller: what a deflection asks for.
-        help_: whether and how much the robot helps.
+        help_: how much the robot helps.
     """
 
     def __init__(self, task: Place, controller: Controller, help_: Help) -> None:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Final, final
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputPort, InputSource
 from latentarm.types import Input
-from latentarm.web.protocol.channel import Given, parse_given
+from latentarm.web.protocol.channel import Given, Paced, parse_given
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.shared_memory import LatestSlot
 
@@ -19,6 +20,9 @@ stop's."""
 
 LATCH_MAX_S: Final = 10.0
 """How long a latched input continues, s."""
+
+COPILOT_TIMEOUT_S: Final = 0.5
+"""How long what a co-pilot says counts, s: five times as long as their page takes to say it again."""
 
 
 @final
@@ -30,7 +34,8 @@ class PageInputs(InputSource):
         clock: the loop's.
         input_dim: axes of the controller.
         dead_zone: a smaller deflection is neutral.
-        stop: stops the arm: when a latched motion has lasted too long, or another person starts to drive.
+        stop: stops the arm: when a latched motion has lasted too long, another person starts to drive, or
+            the driver's co-pilot comes, goes, or is not heard of.
 
     Attributes:
         driver: whose inputs are taken; -1 before the first.
@@ -50,6 +55,7 @@ class PageInputs(InputSource):
         self._version = slot.version
         self._port = InputPort(input_dim, clock)
         self._latched_since_s = math.inf
+        self._paced: Paced | None = None
         self.driver = -1
         self.fresh = self.deflected = False
         self.devices: set[str] = set()
@@ -63,11 +69,20 @@ class PageInputs(InputSource):
         if now_s - self._latched_since_s > LATCH_MAX_S:
             self._latched_since_s = math.inf
             self._stop(Notice(code="latch_ended", parameters={"seconds": round(LATCH_MAX_S)}))
-        return given, age_s
+        return replace(given, pace=self._pace()), age_s
 
     def issue_nonce(self) -> str:
         """A nonce for the driver's page to echo."""
         return self._port.issue_nonce()
+
+    def _pace(self) -> float:
+        """What the co-pilot leaves of the driver's speed; nothing where they are not heard of."""
+        if self._paced is None:
+            return 1.0
+        if self._port.nonce_age_s(self._paced.nonce) <= COPILOT_TIMEOUT_S:
+            return self._paced.pace
+        self._stop(Notice(code="copilot_late"))
+        return 0.0
 
     def _take(self) -> None:
         found = self._slot.read()
@@ -82,6 +97,9 @@ class PageInputs(InputSource):
             self._port = InputPort(self._input_dim, self._clock)
             self._latched_since_s = math.inf
             self._stop(Notice(code="driver_changed"))
+        if _copilot(given.paced) != _copilot(self._paced):
+            self._stop(Notice(code="copilot_changed"))
+        self._paced = given.paced
         u, asked = np.array(given.u), given.gripper
         # Its own number, which must grow, makes it count once; its own nonce makes it count only in time.
         if asked is not None and self._port.offer(Input(u, gripper=asked.ask), asked.nonce, asked.seq):
@@ -102,3 +120,7 @@ class PageInputs(InputSource):
     def _used(self, device: str) -> None:
         if device:
             self.devices.add(device)
+
+
+def _copilot(paced: Paced | None) -> int | None:
+    return None if paced is None else paced.copilot

@@ -25,6 +25,7 @@ from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.errors import UserError
 from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
+from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.protocol.channel import (
     ORDER_LIMIT,
@@ -73,7 +74,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
         setup = load_setup(spec)
         clock = MonotonicClock()
         writer = EpisodeWriter(spec.out, spec.journal)
-        steering = Steering(setup.modes[0])
+        steering = Steering(setup.first_mode(USUAL_HELP))
         arm = _arm(setup, clock)
         # Nothing loaded by now is ever garbage, so the collector need not scan it.
         gc.collect()
@@ -100,8 +101,8 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                         (setup, arm), note = _loaded(partial(_other_run, spec, clock), (setup, arm))
                         if note is None:
                             before.close()
-                            steering.mode, steering.axes = setup.modes[0], 0
                             steering.run = None
+                            steering.mode, steering.axes = setup.first_mode(steering.help), 0
         finally:
             arm.close()
             writer.close()

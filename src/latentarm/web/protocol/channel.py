@@ -23,6 +23,9 @@ _GIVEN_LIMIT: Final = 1024
 _REASON_LIMIT: Final = 512
 
 ModeName = Literal["latent", "assisted", "end_effector"]
+"""``assisted`` is ``latent`` with the robot's help, at a level other than ``off``."""
+
+HelpLevel = Literal["off", "low", "medium", "high"]
 HeldBack = Literal["clearance", "freshness", "workspace", "joint_position"]
 Phase = Literal["disengaged", "neutral_needed", "ready", "moving", "stopping"]
 Point = tuple[float, float, float]
@@ -49,6 +52,21 @@ class AskedGripper(Message):
 
 
 @final
+class Paced(Message):
+    """What a driver's co-pilot leaves of the driver's speed.
+
+    Attributes:
+        copilot: counts the co-pilots.
+        pace: share of the driver's speed, in [0, 1].
+        nonce: the newest that the co-pilot's page had seen: it says how old this is.
+    """
+
+    copilot: int
+    pace: Annotated[float, Field(ge=0.0, le=1.0)]
+    nonce: str
+
+
+@final
 class Given(Message):
     """The driver's input.
 
@@ -60,6 +78,7 @@ class Given(Message):
         latched: continues without being held, for a limited time.
         source: with what kind of device.
         gripper: the newest thing that this driver has asked of the gripper; None before the first.
+        paced: the newest that the driver's co-pilot has said; None without a co-pilot.
     """
 
     driver: int
@@ -69,6 +88,7 @@ class Given(Message):
     latched: bool
     source: str = ""
     gripper: AskedGripper | None = None
+    paced: Paced | None = None
 
 
 @final
@@ -92,6 +112,14 @@ class ChooseMode(Message):
     order: Literal["mode"] = "mode"
     mode: ModeName
     axes: int | None
+
+
+@final
+class ChooseHelp(Message):
+    """How much the robot helps with learned motions; ``off`` is the mode ``latent``."""
+
+    order: Literal["help"] = "help"
+    level: HelpLevel
 
 
 @final
@@ -149,7 +177,7 @@ class BeginTask(Message):
     anew: bool
 
 
-Order = Enable | ChooseMode | ChooseProfile | ChooseRun | Return | Record | Reset | BeginTask
+Order = Enable | ChooseMode | ChooseHelp | ChooseProfile | ChooseRun | Return | Record | Reset | BeginTask
 _ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="order")])
 
 
@@ -263,6 +291,7 @@ class Report(Message):
             drive this.
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
+        help: how much the robot helps with learned motions; None where it cannot.
         run: path of the run that is driven, as it was named; None without one.
         seed: says where things were placed and where the arm started.
         profile: whose alignment.
@@ -296,6 +325,7 @@ class Report(Message):
     late_stops: int
     mode: ModeName
     axes: int
+    help: HelpLevel | None
     run: str | None
     seed: int
     profile: str | None

@@ -15,12 +15,14 @@ from latentarm.web.protocol.channel import (
     Ghosts,
     GripperState,
     HeldBack,
+    HelpLevel,
     ModeName,
     Phase,
     Point,
     TaskState,
     Things,
 )
+from latentarm.web.protocol.copilot_messages import CopilotMessage, CopilotState, Person
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
@@ -99,6 +101,14 @@ class Mode(Message):
     type: Literal["mode"]
     mode: ModeName
     axes: Annotated[int, Field(ge=0, le=8)] | None = None
+
+
+@final
+class HelpFromRobot(Message):
+    """How much the robot helps with learned motions; at any time."""
+
+    type: Literal["help"]
+    level: HelpLevel
 
 
 @final
@@ -185,6 +195,7 @@ ClientMessage = (
     | PressEnable
     | PressStop
     | Mode
+    | HelpFromRobot
     | Profile
     | AskToDrive
     | HandOver
@@ -198,6 +209,7 @@ ClientMessage = (
     | CancelTraining
     | PickRun
     | PersonaliseMessage
+    | CopilotMessage
 )
 _CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
     Annotated[ClientMessage, Field(discriminator="type")]
@@ -323,6 +335,7 @@ class State(Message):
         late_stops: how often the arm has stopped in this drive because no input came in time.
         mode: how the arm is steered.
         axes: which pair of the end-effector's.
+        help: how much the robot helps with learned motions, or null where it cannot.
         profile: whose alignment.
         bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
         tool: m.
@@ -338,6 +351,8 @@ class State(Message):
         watchers: how many other pages.
         asking: id of the page that asks to drive, or null.
         asking_name: what its person is called.
+        copilot: who may slow the driver down, or null.
+        copilot_asking: who asks to be that, or null.
         recording: null where nothing was ever recorded.
         trail: counts how often the trail was emptied.
         late_share: share of the control loop's deadlines that were missed.
@@ -357,6 +372,7 @@ class State(Message):
     late_stops: int
     mode: ModeName
     axes: int
+    help: HelpLevel | None
     profile: str | None
     bodies: tuple[tuple[float, ...], ...]
     tool: Point
@@ -372,6 +388,8 @@ class State(Message):
     watchers: int
     asking: str | None
     asking_name: str | None
+    copilot: CopilotState | None
+    copilot_asking: Person | None
     recording: RecordingState | None
     trail: int
     late_share: float

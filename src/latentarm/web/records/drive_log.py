@@ -227,6 +227,7 @@ class DriveLog:
                 "reasons": dict(drive.reasons),
                 "way_m": round(drive.way_m, 3),
                 "help": round(min(drive.help_s / drive.moving_s, 1.0), 3) if drive.moving_s else None,
+                "help_level": drive.last.help,
                 "steps_done": drive.last.task.done if about.todo.steps else None,
                 "steps": len(about.todo.steps) or None,
                 "outcome": drive.last.task.outcome,

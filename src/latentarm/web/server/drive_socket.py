@@ -10,6 +10,7 @@ from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.protocol.channel import (
     AskedGripper,
     BeginTask,
+    ChooseHelp,
     ChooseMode,
     ChooseProfile,
     Enable,
@@ -18,6 +19,7 @@ from latentarm.web.protocol.channel import (
     Reset,
     Return,
 )
+from latentarm.web.protocol.copilot_messages import AcceptCopilot, AskToCopilot, CopilotPace, EndCopilot
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.messages import (
     FRAME_LIMIT,
@@ -27,6 +29,7 @@ from latentarm.web.protocol.messages import (
     DriverInput,
     HandOver,
     Hello,
+    HelpFromRobot,
     Mode,
     PressEnable,
     PressStop,
@@ -160,13 +163,19 @@ class DriveSocket:
         finally:
             if sender is not None:
                 sender.cancel()
-            if page is not None and self._sessions.leave(page):
-                self._driver_changed(_of(page, "driver_gone"))
+            if page is not None:
+                self._leave(page)
 
     def _join(self, hello: Hello) -> Page | None:
         """The page of a person with a record, or of a guest; None if there are too many pages."""
         known = self._people.find(hello.person)
         return self._sessions.join(hello.name) if known is None else self._sessions.join(known.name, known.id)
+
+    def _leave(self, page: Page) -> None:
+        if self._sessions.copilot.leaves(page.id):
+            self._copilot_changed("copilot_gone", page)
+        if self._sessions.leave(page):
+            self._driver_changed(_of(page, "driver_gone"))
 
     async def _send_states(self, socket: WebSocket, page: Page) -> None:
         """States as fast as the page takes them, always the newest: nothing queues up.
@@ -200,10 +209,24 @@ class DriveSocket:
             self.stop(page, message.why)
         elif isinstance(message, AskToDrive):
             self._sessions.ask(page)
+        elif isinstance(message, AskToCopilot | CopilotPace | EndCopilot) and not self._sessions.drives(page):
+            self._take_from_copilot(page, message)
         elif isinstance(message, TrailClear):
             self._states.clear_trail()
         elif self._sessions.drives(page):
             self._take_from_driver(page, message)
+
+    def _take_from_copilot(self, page: Page, message: AskToCopilot | CopilotPace | EndCopilot) -> None:
+        copilot = self._sessions.copilot
+        match message:
+            case AskToCopilot():
+                if self._sessions.driver is not None:
+                    copilot.ask(page.id)
+            case CopilotPace(pace=pace, nonce=nonce):
+                copilot.says(page.id, pace, nonce)
+            case EndCopilot():
+                if copilot.leaves(page.id):
+                    self._copilot_changed("copilot_ended", page)
 
     def _suits(self, message: ClientMessage) -> bool:
         """Whether an input or an answer has no more axes than what is driven."""
@@ -222,6 +245,16 @@ class DriveSocket:
                 self._control.order(Enable(driver=self._sessions.turn, stops=self._control.stops))
             case Mode(mode=mode, axes=axes):
                 self._control.order(ChooseMode(mode=mode, axes=axes))
+            case HelpFromRobot(level=level):
+                self._control.order(ChooseHelp(level=level))
+            case AcceptCopilot(to=to):
+                copilot = self._sessions.named(to)
+                if copilot is not None and self._sessions.copilot.accept(to):
+                    self._copilot_changed("copilot_began", copilot)
+            case EndCopilot():
+                copilot = self._sessions.named(self._sessions.copilot.page)
+                if self._sessions.copilot.end() and copilot is not None:
+                    self._copilot_changed("copilot_ended", copilot)
             case Profile(name=name):
                 self._control.order(ChooseProfile(name=name))
             case RecordEpisode(on=on, task=task):
@@ -272,6 +305,10 @@ class DriveSocket:
         self._control.stop(why)
         self._control.order(Record(on=False, task=""))
 
+    def _copilot_changed(self, why: NoticeCode, copilot: Page) -> None:
+        """The arm stops for it: nobody's speed changes without their knowledge."""
+        self._control.stop(Notice(code=why, parameters={"name": copilot.name}))
+
     def _give(self, message: DriverInput) -> None:
         self._history.given(message.u, message.source, gripper=message.gripper is not None)
         padded = message.u + (0.0,) * (self._states.loaded.input_dim - len(message.u))
@@ -286,6 +323,7 @@ class DriveSocket:
                 latched=message.latched,
                 source=message.source,
                 gripper=self._asked,
+                paced=self._sessions.copilot.paced,
             )
         )
 

@@ -4,6 +4,8 @@ import secrets
 from dataclasses import dataclass
 from typing import Final, final
 
+from latentarm.web.server.copilot import Copilot
+
 MOST: Final = 16
 """Pages that may be connected at once."""
 
@@ -29,7 +31,11 @@ class Sessions:
     """At most one page drives; handing over is explicit on both sides.
 
     The first page drives. Later ones ask: they drive if nobody does, or else when the driver hands over or
-    lets others drive. `turn` counts the changes; inputs with an older turn are ignored.
+    lets others drive. `turn` counts the changes; inputs with an older turn are ignored. A co-pilot is one
+    driver's: with the driver it changes.
+
+    Attributes:
+        copilot: the driver's.
     """
 
     def __init__(self) -> None:
@@ -37,6 +43,7 @@ class Sessions:
         self._driver: str | None = None
         self._asking: str | None = None
         self._turn = 0
+        self.copilot = Copilot()
 
     @property
     def turn(self) -> int:
@@ -52,6 +59,10 @@ class Sessions:
     def asking(self) -> Page | None:
         """Who asks to drive."""
         return None if self._asking is None else self._pages[self._asking]
+
+    def named(self, page_id: str | None) -> Page | None:
+        """The connected page with this id."""
+        return None if page_id is None else self._pages.get(page_id)
 
     @property
     def count(self) -> int:
@@ -122,5 +133,6 @@ class Sessions:
     def _give_to(self, page_id: str | None) -> None:
         self._driver = page_id
         self._turn += 1
+        self.copilot.end()
         if self._asking == page_id:
             self._asking = None

@@ -15,6 +15,7 @@ from latentarm.errors import UserError
 from latentarm.types import FloatArray
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.protocol.channel import Ghosts, GripperState, Report, Things
+from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.messages import RecordingState, State
 from latentarm.web.protocol.notice import Notice, notice_of, sentence
 from latentarm.web.protocol.scene import pose_of
@@ -230,6 +231,7 @@ class States:
 
     def _state(self, report: Report, *, ghosts: bool, things: bool) -> State:
         driver, asking = self._sessions.driver, self._sessions.asking
+        would = self._sessions.named(self._sessions.copilot.asking)
         recording = report.recording
         away = self._loading or time.monotonic() - self._heard_s > SILENT_S
         return State(
@@ -245,6 +247,7 @@ class States:
             late_stops=report.late_stops,
             mode=report.mode,
             axes=report.axes,
+            help=report.help,
             profile=report.profile,
             bodies=self._bodies(report),
             tool=_rounded(report.tool),
@@ -260,6 +263,8 @@ class States:
             watchers=self._sessions.count - (driver is not None),
             asking=None if asking is None else asking.id,
             asking_name=None if asking is None else asking.name,
+            copilot=self._copilot(),
+            copilot_asking=None if would is None else Person(id=would.id, name=would.name),
             recording=recording
             and RecordingState(
                 on=recording.on,
@@ -271,6 +276,13 @@ class States:
             late_share=round(report.late_share, 5),
             you=False,
         )
+
+    def _copilot(self) -> CopilotState | None:
+        copilot = self._sessions.copilot
+        page = self._sessions.named(copilot.page)
+        if page is None or copilot.paced is None:
+            return None
+        return CopilotState(id=page.id, name=page.name, pace=round(copilot.paced.pace, 2))
 
     def _shown_note(self, report: Report) -> Notice | None:
         if self._note is not None and time.monotonic() < self._note_until_s and report.phase != "stopping":

@@ -1,9 +1,18 @@
 // Written by `make message-types` from the messages that the server declares.
 
+export interface AcceptCopilot {
+  type: "accept_copilot";
+  to: string;
+}
+
 export interface AnswerQuestion {
   type: "answer";
   question: number;
   u: number[];
+}
+
+export interface AskToCopilot {
+  type: "ask_to_copilot";
 }
 
 export interface AskToDrive {
@@ -30,6 +39,18 @@ export interface CancelTraining {
   type: "cancel_training";
 }
 
+export interface CopilotPace {
+  type: "copilot_pace";
+  pace: number;
+  nonce: string;
+}
+
+export interface CopilotState {
+  id: string;
+  name: string;
+  pace: number;
+}
+
 export interface DiscardAlignment {
   type: "discard_alignment";
 }
@@ -42,6 +63,10 @@ export interface DriverInput {
   source: "pointer" | "keyboard" | "dpad" | "gamepad" | "switch";
   latched: boolean;
   gripper?: "open" | "close" | "toggle" | null;
+}
+
+export interface EndCopilot {
+  type: "end_copilot";
 }
 
 export interface Ghosts {
@@ -67,6 +92,11 @@ export interface Hello {
   version: 1;
   name?: string | null;
   person?: string | null;
+}
+
+export interface HelpFromRobot {
+  type: "help";
+  level: "off" | "low" | "medium" | "high";
 }
 
 export interface KeepAlignment {
@@ -110,8 +140,13 @@ export interface NamedThing {
 }
 
 export interface Notice {
-  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "at_start" | "asking" | "asking_already" | "checking_run" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "import_invalid" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "loop_late" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "page_refused" | "page_stopped" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "profile_exists" | "question_began" | "record_unknown" | "recording_ended" | "return_not_now" | "return_pushed" | "return_stuck" | "recording_in_use" | "request_invalid" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "work_broke_off";
+  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "at_start" | "asking" | "asking_already" | "checking_run" | "copilot_began" | "copilot_changed" | "copilot_ended" | "copilot_gone" | "copilot_late" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "import_invalid" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "loop_late" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "page_refused" | "page_stopped" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "profile_exists" | "question_began" | "record_unknown" | "recording_ended" | "return_not_now" | "return_pushed" | "return_stuck" | "recording_in_use" | "request_invalid" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "work_broke_off";
   parameters: Record<string, string | number>;
+}
+
+export interface Person {
+  id: string;
+  name: string;
 }
 
 export interface Personalise {
@@ -215,6 +250,7 @@ export interface State {
   late_stops: number;
   mode: "latent" | "assisted" | "end_effector";
   axes: number;
+  help: "off" | "low" | "medium" | "high" | null;
   profile: string | null;
   bodies: number[][];
   tool: [number, number, number];
@@ -230,6 +266,8 @@ export interface State {
   watchers: number;
   asking: string | null;
   asking_name: string | null;
+  copilot: CopilotState | null;
+  copilot_asking: Person | null;
   recording: RecordingState | null;
   trail: number;
   late_share: number;
@@ -312,6 +350,6 @@ export interface Why {
   thing: string;
 }
 
-export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ReturnArm | ResetArm | BeginRun | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment;
+export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | HelpFromRobot | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ReturnArm | ResetArm | BeginRun | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace;
 
 export type ServerMessage = Welcome | State | LearningState | Refused;

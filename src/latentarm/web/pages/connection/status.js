@@ -56,13 +56,15 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
  * @param {boolean} canEnable
  * @param {Reader} reader
  */
-function driverWords({ phase, note, reason, held_back, returning, let_go_first }, canEnable, reader) {
+function driverWords({ phase, note, reason, held_back, returning, let_go_first, copilot }, canEnable, reader) {
   if (concerns(note, true)) return sayTo(note, reader);
   const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
   const cause = held_back && say(`held_back.${held_back}`);
   if (returning) return cause === null ? say("status.returning") : say("status.returning_held_back", { cause });
   switch (phase) {
-    case "ready": return say(let_go_first ? "status.let_go" : "status.ready");
+    case "ready":
+      if (copilot?.pace === 0) return say("status.copilot_holds", { name: copilot.name });
+      return say(let_go_first ? "status.let_go" : "status.ready");
     case "moving": return cause === null ? say("status.moving") : say("status.held_back", { cause });
     case "stopping": return say("status.stopping", parameters);
     default: return canEnable ? say(`status.${phase}`, parameters) : parameters.reason;

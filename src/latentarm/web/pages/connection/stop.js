@@ -1,12 +1,17 @@
-/** Stop: on press, on Space and on Escape, from every page and every dialog. It needs no focus and no mouse. */
+/**
+ * Stop: on press, on Escape and on Space, from every page and every dialog. It needs no focus and no mouse.
+ *
+ * Where a person has made Space one of their switches, Space is that while they scan.
+ */
 
 /** @import {Connection} from "./connection.js" */
 
 /**
  * @param {Connection} connection
  * @param {() => void} [alsoHere] what this page lets go of
+ * @param {() => boolean} [spaceStops] whether Space is no switch
  */
-export function attachStop(connection, alsoHere = () => {}) {
+export function attachStop(connection, alsoHere = () => {}, spaceStops = () => true) {
   const stop = () => {
     alsoHere();
     // Where the connection is doubtful, by another way as well; the arm also stops by itself when inputs cease.
@@ -21,6 +26,7 @@ export function attachStop(connection, alsoHere = () => {}) {
   }, { capture: true });
   window.addEventListener("keydown", (event) => {
     if (event.code !== "Space" && event.code !== "Escape") return;
+    if (event.code === "Space" && !spaceStops()) return;
     const writing = event.code === "Space" && isWritingIn(event.target);
     // While the arm stands disengaged, Space may press buttons and tick boxes as it always does.
     const pressing = event.code === "Space" && !connection.engaged && isControl(event.target);

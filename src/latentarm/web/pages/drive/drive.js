@@ -3,6 +3,7 @@
 import { attachEnableButton, enableButtonOf } from "../connection/enable_button.js";
 import { attachDialogs, dialogIsOpen } from "../inputs/dialogs.js";
 import { attachCard } from "../card/card.js";
+import { attachCopilot } from "../connection/copilot.js";
 import { attachDpad } from "../inputs/dpad.js";
 import { DriveInput } from "../inputs/drive_input.js";
 import { attachGamepad } from "../inputs/gamepad.js";
@@ -11,9 +12,12 @@ import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
 import { attachNeutralFirst } from "../inputs/neutral_first.js";
 import { paced } from "../inputs/paced.js";
+import { attachLatchLimit } from "../inputs/latch_limit.js";
+import { moreChoices } from "../inputs/page_choices.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { modeInput } from "../inputs/shaping.js";
 import { attachStick } from "../inputs/stick.js";
+import { attachTremor } from "../inputs/tremor.js";
 import { byId, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
@@ -24,6 +28,7 @@ import { motionWords } from "../views/directions.js";
 import { attachPredictions, personalPaths } from "../views/predictions.js";
 import { attachBelief } from "./belief.js";
 import { attachLateStops } from "./late_stops.js";
+import { attachHelp } from "./help.js";
 import { attachModes } from "./modes.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
@@ -41,6 +46,7 @@ const WORDS_MS = 250;
 /** @type {Drawing | null} */
 let drawing = null;
 const { settings, connection, status, lease, stop, feedback } = attachPage({
+  scans: true,
   drop: () => {
     practice.stopped();
     input.drop();
@@ -51,7 +57,8 @@ const { settings, connection, status, lease, stop, feedback } = attachPage({
 const shaped = (/** @type {number} */ x, /** @type {number} */ y) =>
   modeInput(settings.values, connection.state, connection.welcome, x, y);
 
-const input = new DriveInput(connection, shaped);
+const input = new DriveInput(connection, shaped, attachTremor(settings));
+attachLatchLimit(input, connection, settings);
 input.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
 status.watch(() => input.lateness.wasSlow);
 attachDialogs(input);
@@ -71,7 +78,9 @@ attachEnableButton(byId("enable"), connection, enable);
 attachLateStops(byId("late-stops"), connection);
 const wayBack = attachWayBack({ button: byId("way-back"), why: byId("way-back-why") }, connection);
 
-const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection);
+const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection, settings);
+const help = attachHelp({ fieldset: byId("help"), text: byId("help-text") }, connection, settings);
+attachCopilot(connection);
 attachTrialBanner(connection, settings, lease);
 attachProfileChoice(connection, settings);
 attachRecording({
@@ -107,8 +116,9 @@ const scanner = attachScanning({
   if (does === "ask") return [{ id: "ask", label: say(label), act: () => connection.send({ type: "ask_to_drive" }) }, stopIt];
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
-  return input.live ? [...directionChoices(), ...gripper.choices(), mode, ...wayBack.choices(), stopIt]
-    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices(), ...practice.choices()];
+  const more = moreChoices(help.choices(), [...wayBack.choices(), ...practice.choices()], stopIt);
+  return input.live ? [...directionChoices(), ...gripper.choices(), mode, stopIt, more]
+    : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices(), more];
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, {

@@ -4,10 +4,11 @@ import { create } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
+/** @import {Settings} from "../settings/settings.js" */
 /** @import {State, Welcome} from "../connection/messages.js" */
 /** @import {WordKey} from "../layout/words.js" */
 
-/** @typedef {State["mode"]} ModeName */
+/** @typedef {Exclude<State["mode"], "assisted">} ModeName with help or without is chosen apart */
 /** @typedef {{mode: ModeName, axes: number}} Steering a mode, and which pair of the end-effector's axes */
 
 /** How long the server may take to change the mode, ms. */
@@ -20,25 +21,40 @@ const ANSWER_MS = 300;
  * @param {Pick<State, "mode" | "axes">} state
  * @returns {Steering}
  */
-export function nextSteering({ modes, end_effector_modes }, { mode, axes }) {
-  if (mode === "end_effector" && axes + 1 < end_effector_modes.length) return { mode, axes: axes + 1 };
-  return { mode: modes[(modes.indexOf(mode) + 1) % modes.length], axes: 0 };
+export function nextSteering(welcome, { mode, axes }) {
+  const modes = steeringModes(welcome);
+  if (mode === "end_effector" && axes + 1 < welcome.end_effector_modes.length) return { mode, axes: axes + 1 };
+  return { mode: modes[(modes.indexOf(withoutHelp(mode)) + 1) % modes.length], axes: 0 };
+}
+
+/** @param {Pick<Welcome, "modes">} welcome @returns {ModeName[]} */
+function steeringModes({ modes }) {
+  return /** @type {ModeName[]} */ (modes.filter((mode) => mode !== "assisted"));
+}
+
+/** @param {State["mode"]} mode @returns {ModeName} */
+function withoutHelp(mode) {
+  return mode === "assisted" ? "latent" : mode;
 }
 
 /**
  * @param {{mode: HTMLElement, axes: HTMLElement}} parts the two fieldsets
  * @param {Connection} connection
+ * @param {Settings} settings
  */
-export function attachModes(parts, connection) {
+export function attachModes(parts, connection, settings) {
   let askedAt = -Infinity;
 
   const ask = (/** @type {Steering} */ { mode, axes }) => {
     askedAt = performance.now();
-    connection.send(mode === "end_effector" ? { type: "mode", mode, axes } : { type: "mode", mode });
+    const helped = settings.values.help !== "off" && connection.welcome?.modes.includes("assisted");
+    if (mode === "end_effector") connection.send({ type: "mode", mode, axes });
+    else connection.send({ type: "mode", mode: helped ? "assisted" : mode });
   };
   connection.addEventListener("welcome", () => {
     if (!connection.welcome) return;
-    const { modes, end_effector_modes } = connection.welcome;
+    const { end_effector_modes } = connection.welcome;
+    const modes = steeringModes(connection.welcome);
     fill(parts.mode, "mode", modes.map((mode) => say(`modes.${mode}`)), (index) => ask({ mode: modes[index], axes: 0 }));
     const axes = end_effector_modes.map((name) => say(/** @type {WordKey} */ (`axes.${name}`)));
     fill(parts.axes, "axes", axes, (index) => ask({ mode: "end_effector", axes: index }));
@@ -47,7 +63,7 @@ export function attachModes(parts, connection) {
     const { state, welcome } = connection;
     // What was just chosen stays chosen until the server has had time to say otherwise.
     if (!state || performance.now() - askedAt < ANSWER_MS) return;
-    check(parts.mode, welcome?.modes.indexOf(state.mode) ?? -1, state.you);
+    check(parts.mode, welcome ? steeringModes(welcome).indexOf(withoutHelp(state.mode)) : -1, state.you);
     check(parts.axes, state.axes, state.you);
     parts.axes.hidden = state.mode !== "end_effector";
   });

@@ -22,9 +22,11 @@ export class DriveInput extends Deflection {
   /**
    * @param {Connection} connection
    * @param {(x: number, y: number) => number[]} shaped from stick (right, up) to what is sent
+   * @param {(x: number, y: number, source: Source | null) => [number, number]} steady before that, against a tremor
    */
-  constructor(connection, shaped) {
+  constructor(connection, shaped, steady) {
     super();
+    this._steady = steady;
     this._connection = connection;
     this._shaped = shaped;
     /** @type {ReturnType<typeof setInterval> | undefined} */
@@ -89,7 +91,7 @@ export class DriveInput extends Deflection {
    */
   ask(gripper, source) {
     if (!this.live) return false;
-    return this._connection.sendInput(this._shaped(this.x, this.y), this.source ?? source, this.latched, gripper);
+    return this._connection.sendInput(this._meant(), this.source ?? source, this.latched, gripper);
   }
 
   /** Let go of everything, and send no more until the person enables again. */
@@ -123,7 +125,11 @@ export class DriveInput extends Deflection {
   /** @param {Source} source */
   _send(source) {
     if (!this.flowing || !this._connection.driving) return;
-    this._connection.sendInput(this._shaped(this.x, this.y), source, this.latched);
+    this._connection.sendInput(this._meant(), source, this.latched);
+  }
+
+  _meant() {
+    return this._shaped(...this._steady(this.x, this.y, this.source));
   }
 
   _onState() {

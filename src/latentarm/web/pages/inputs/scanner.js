@@ -1,18 +1,31 @@
 /**
- * Scanning with one or two switches: choices light up in turn, a press chooses. A direction moves until the next press.
+ * Scanning with one or two switches: choices light up, and one of them is taken. A direction moves the arm.
  *
- * With one switch the light goes on by itself; with two, the second switch moves it on.
+ * How the light goes on: by itself (`auto`), while the switch is held (`inverse`, and letting go takes the choice), with
+ * each press (`step`, and waiting takes the choice), or with a second switch. How a direction moves: until the next press
+ * (`latch`), or while the switch is held (`hold`).
  */
 
 import { DIRECTIONS } from "./deflection.js";
+import { SwitchTiming } from "./switch_timing.js";
 
 /** @import {Direction, PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */
 
 /** After a motion that ended by itself, a press is still meant for the motion, ms. */
 const LATE_PRESS_MS = 800;
+/** A direction that waits to be held is forgotten after this long, ms. */
+const READY_MS = 6000;
 
-/** @typedef {{id: string, label: string, act?: () => void}} Choice what is called like a direction moves */
+/**
+ * @typedef {object} Choice what is called like a direction moves
+ * @property {string} id
+ * @property {string} label
+ * @property {() => void} [act]
+ * @property {Choice[]} [inner] what it opens
+ * @property {boolean} [back] leads back to where it was opened from
+ * @property {boolean} [stays] is one of several small changes: the light stays there
+ */
 
 /** Event "change" when other choices are offered, or another one is lit or moves. */
 export class Scanner extends EventTarget {
@@ -24,20 +37,40 @@ export class Scanner extends EventTarget {
     super();
     this._input = input;
     this._settings = settings;
-    /** @type {Choice[]} */
+    /** @type {Choice[]} What there is to choose from now. */
     this.choices = [];
     /** Index of the choice that a press takes. */
     this.lit = 0;
     /** @type {string | null} The direction that the arm moves in. */
     this.moving = null;
+    /** @type {string | null} The direction that the arm will move in while the switch is held. */
+    this.ready = null;
+    /** @type {Choice[]} */
+    this._offered = [];
+    /** Ids of the choices that were opened, the outermost first. @type {string[]} */
+    this._path = [];
     this._movedUntil = -Infinity;
-    /** @type {ReturnType<typeof setInterval> | undefined} */
+    /** Whether the person is going through the choices, where that begins with a press. */
+    this._going = false;
+    /** Whether the press under way has ended a motion, and means no more. */
+    this._spent = false;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._timer = undefined;
+    const times = () => this._settings.values;
+    const nothing = () => {};
+    this._switches = [
+      new SwitchTiming(times, {
+        pressed: () => this._pressed(), released: () => this._released(), repeated: () => this._repeated(),
+      }),
+      new SwitchTiming(times, { pressed: () => this._next(), released: nothing, repeated: () => this._next() }),
+    ];
     input.addEventListener("dropped", () => {
       if (this.moving !== null) this._movedUntil = performance.now();
+      this._forget();
       this._rest();
     });
     settings.addEventListener("change", () => this._restart());
+    window.addEventListener("blur", () => this._forget());
   }
 
   /** Whether the person steers with switches. */
@@ -45,18 +78,21 @@ export class Scanner extends EventTarget {
     return this._settings.values.panel === "switch";
   }
 
+  /** How the light goes on. @returns {"two" | "auto" | "inverse" | "step"} */
+  get style() {
+    const { switches, scan } = this._settings.values;
+    return switches === "2" ? "two" : scan;
+  }
+
+  /** Whether what is lit was opened from another choice. */
+  get inside() {
+    return this._path.length > 0;
+  }
+
   /** @param {Choice[]} choices what there is to choose from now; the light starts again where they are others, not where one is only called otherwise */
   offer(choices) {
-    const [ids, before] = [choices, this.choices].map((all) => all.map(({ id }) => id).join());
-    const renamed = choices.some(({ label }, index) => label !== this.choices[index]?.label);
-    this.choices = choices;
-    if (ids === before) {
-      if (renamed) this._changed();
-      return;
-    }
-    this.lit = 0;
-    this._changed();
-    this._restart();
+    this._offered = choices;
+    this._show(this._opened());
   }
 
   /** Light the next choice. */
@@ -64,6 +100,7 @@ export class Scanner extends EventTarget {
     if (!this.choices.length) return;
     this.lit = (this.lit + 1) % this.choices.length;
     this._changed();
+    this._restart();
   }
 
   /** Take the choice that is lit, or end the motion. */
@@ -75,38 +112,148 @@ export class Scanner extends EventTarget {
     if (performance.now() - this._movedUntil < LATE_PRESS_MS) return;
     const choice = this.choices[this.lit];
     if (!choice) return;
-    const direction = DIRECTIONS[/** @type {Direction} */ (choice.id)];
-    if (direction) {
-      this._input.hold("switch", ...direction, true);
-      // Another way of pressing may have been first.
-      if (this._input.source === "switch") this.moving = choice.id;
-    } else {
-      choice.act?.();
-    }
+    this._going = false;
+    if (choice.id in DIRECTIONS) this._direct(choice.id);
+    else if (choice.inner) this._open([...this._path, choice.id]);
+    else this._act(choice);
     this._changed();
     this._restart();
   }
 
-  /** A gamepad's button as a switch: the first chooses, the second goes on. @param {number} number @param {boolean} down */
+  /**
+   * A switch goes down or comes up: the first chooses, the second goes on.
+   *
+   * @param {number} number 0 or 1; a gamepad's button
+   * @param {boolean} down
+   * @returns {boolean} whether it is a switch.
+   */
   press(number, down) {
     if (!this.on || number >= Number(this._settings.values.switches)) return false;
-    if (down && number === 0) this.choose();
-    else if (down) this.next();
+    const one = this._switches[number];
+    if (!down) one.up();
+    else if (number === 0) one.down(this.moving !== null);
+    else one.down();
     return true;
   }
 
+  /** A switch was taken away: nothing is chosen by that, and nothing goes on that was held. */
+  lost() {
+    this._forget();
+    if (this.moving !== null && !this._input.latched) this._rest();
+  }
+
+  _pressed() {
+    this._spent = this.moving !== null;
+    if (this._spent) this._rest();
+    else if (this.ready !== null) this._move(this.ready, false);
+    else if (this.style === "auto" || this.style === "two") this.choose();
+    else this._go();
+  }
+
+  _released() {
+    if (this._spent) return;
+    if (this.moving !== null && !this._input.latched) this._rest();
+    else if (this.style === "inverse" && this._going) this.choose();
+  }
+
+  _repeated() {
+    if (this.style === "step" && this._going) this.next();
+  }
+
+  _next() {
+    if (this.moving === null) this.next();
+  }
+
+  /** Begin to go through the choices, or go on, where that takes a press. */
+  _go() {
+    const goesOn = this._going && this.style === "step";
+    this._going = true;
+    if (goesOn) this.next();
+    else this._restart();
+  }
+
+  /** @param {string} direction */
+  _direct(direction) {
+    const holds = this._settings.values.switchMotion === "hold";
+    // A choice that is taken by letting go or by waiting leaves nothing held.
+    if (holds && (this.style === "inverse" || this.style === "step")) this.ready = direction;
+    // Nor does a click by a screen reader.
+    else this._move(direction, !(holds && this._switches[0].held));
+  }
+
+  /** @param {string} direction @param {boolean} latched */
+  _move(direction, latched) {
+    this._input.hold("switch", ...DIRECTIONS[/** @type {Direction} */ (direction)], latched);
+    // Another way of pressing may have been first.
+    if (this._input.source === "switch") this.moving = direction;
+    this.ready = null;
+    this._changed();
+    this._restart();
+  }
+
+  /** @param {Choice} choice */
+  _act(choice) {
+    if (choice.back) this._open(this._path.slice(0, -1));
+    else if (this.inside && !choice.stays) this._open([]);
+    choice.act?.();
+  }
+
+  /** @param {string[]} path */
+  _open(path) {
+    this._path = path;
+    this._show(this._opened());
+  }
+
+  /** What there is to choose from along the path, as far as that is offered still. */
+  _opened() {
+    let choices = this._offered;
+    for (const [depth, id] of this._path.entries()) {
+      const inner = choices.find((choice) => choice.id === id)?.inner;
+      if (!inner) {
+        this._path = this._path.slice(0, depth);
+        break;
+      }
+      choices = inner;
+    }
+    return choices;
+  }
+
+  /** @param {Choice[]} choices */
+  _show(choices) {
+    const [ids, before] = [choices, this.choices].map((all) => all.map(({ id }) => id).join());
+    const renamed = choices.some(({ label }, index) => label !== this.choices[index]?.label);
+    this.choices = choices;
+    if (ids !== before) {
+      this.lit = 0;
+      this._going = false;
+      this.ready = null;
+    }
+    if (ids !== before || renamed) this._changed();
+    if (ids !== before) this._restart();
+  }
+
+  _forget() {
+    for (const one of this._switches) one.forget();
+    this._going = false;
+  }
+
   _rest() {
-    this.moving = null;
+    this.moving = this.ready = null;
     this._input.release("switch");
     this._changed();
     this._restart();
   }
 
+  /** What happens if nothing is pressed or let go for a while. */
   _restart() {
-    clearInterval(this._timer);
-    if (this.on && this._settings.values.switches === "1" && this.moving === null) {
-      this._timer = setInterval(() => this.next(), this._settings.values.dwellS * 1000);
-    }
+    clearTimeout(this._timer);
+    const { dwellS, firstS } = this._settings.values;
+    if (!this.on || this.moving !== null) return;
+    const waitMs = 1000 * (dwellS + (this.lit === 0 ? firstS : 0));
+    if (this.ready !== null) this._timer = setTimeout(() => this._rest(), READY_MS);
+    else if (this.style === "auto") this._timer = setTimeout(() => this.next(), waitMs);
+    else if (this.style === "inverse" && this._going) this._timer = setTimeout(() => this.next(), waitMs);
+    else if (this.style === "step" && this._going) this._timer = setTimeout(() => this.choose(), waitMs);
   }
 
   _changed() {

@@ -4,7 +4,9 @@ import { create, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { DIRECTION_NAMES } from "./deflection.js";
 import { isInteractive } from "./keyboard.js";
+import { keyWords } from "./keys.js";
 import { Scanner } from "./scanner.js";
+import { attachSpeech } from "./speech.js";
 
 /** @import {PersonInput} from "./deflection.js" */
 /** @import {Choice} from "./scanner.js" */
@@ -19,6 +21,20 @@ export function directionChoices() {
 }
 
 /**
+ * A choice that opens others. Stop, where it is given, and the way back stand among them.
+ *
+ * @param {string} id
+ * @param {string} label
+ * @param {Choice[]} inner
+ * @param {Choice[]} [always] what must be in reach from there too
+ * @returns {Choice}
+ */
+export function groupOf(id, label, inner, always = []) {
+  const back = { id: `${id}-back`, label: say("scanning.back"), back: true };
+  return { id, label: say("scanning.group", { name: label }), inner: [...inner, ...always, back] };
+}
+
+/**
  * @param {{list: HTMLElement, press: HTMLButtonElement, next: HTMLButtonElement, help: HTMLElement}} parts
  * @param {PersonInput} input
  * @param {Settings} settings
@@ -26,42 +42,88 @@ export function directionChoices() {
  */
 export function attachScanning(parts, input, settings, offered) {
   const scanner = new Scanner(input, settings);
-  const choose = () => scanner.choose();
-  const next = () => scanner.next();
+  const speak = attachSpeech(settings);
 
   const paint = () => {
     parts.list.replaceChildren(...scanner.choices.map((choice, index) => {
       const item = create("li", { textContent: choice.label });
       item.dataset.choice = choice.id;
-      if (index === scanner.lit) item.setAttribute("aria-current", "true");
       if (choice.id === scanner.moving) item.dataset.moving = "true";
+      if (choice.id === scanner.ready) item.dataset.ready = "true";
+      if (index === scanner.lit) {
+        item.setAttribute("aria-current", "true");
+        item.dataset.hint = hint();
+      }
       return item;
     }));
+    const label = scanner.choices[scanner.lit]?.label ?? "";
+    speak(!scanner.on ? "" : scanner.moving === null ? label : say("scanning.says_moving", { direction: label }));
+  };
+  /** What a press would do, above the name of what is lit. */
+  const hint = () => {
+    if (scanner.moving !== null) return say(settings.values.switchMotion === "hold" ? "scanning.let_go" : "scanning.press_to_stop");
+    if (scanner.ready !== null) return say("scanning.hold_to_move");
+    return say(`scanning.hint_${scanner.style}`);
   };
   const explain = () => {
-    const { switches, switchKey, nextKey } = settings.values;
+    const { switches, switchKey, nextKey, switchMotion } = settings.values;
+    const keys = { switchKey: keyWords(switchKey), nextKey: keyWords(nextKey) };
     parts.next.hidden = switches !== "2";
-    setText(parts.help, switches === "2" ? say("scanning.two", { nextKey, switchKey }) : say("scanning.one", { switchKey }));
+    setText(parts.help, `${say(`scanning.${scanner.style}`, keys)} ${say(`scanning.motion_${switchMotion}`)}`);
+    paint();
   };
-  const button = (/** @type {HTMLButtonElement} */ element, /** @type {() => void} */ act) => {
+  const button = (/** @type {HTMLButtonElement} */ element, /** @type {number} */ number) => {
+    /** @type {number | null} */
+    let pointer = null;
     element.addEventListener("pointerdown", (event) => {
-      if (event.button === 0) act();
+      if (event.button !== 0 || pointer !== null) return;
+      pointer = event.pointerId;
+      element.setPointerCapture(pointer);
+      scanner.press(number, true);
     });
+    for (const ends of ["pointerup", "pointercancel", "lostpointercapture"]) {
+      element.addEventListener(ends, (event) => {
+        if (/** @type {PointerEvent} */ (event).pointerId !== pointer) return;
+        pointer = null;
+        if (ends === "pointerup") scanner.press(number, false);
+        else scanner.lost();
+      });
+    }
+    // A click without a pointer comes from a screen reader: there is nothing to hold.
     element.addEventListener("click", (event) => {
-      if (event.detail === 0) act();
+      if (event.detail !== 0) return;
+      if (number === 0) scanner.choose();
+      else scanner.next();
     });
+    element.addEventListener("contextmenu", (event) => event.preventDefault());
   };
-  button(parts.press, choose);
-  button(parts.next, next);
+  button(parts.press, 0);
+  button(parts.next, 1);
+
+  const switchOf = (/** @type {string} */ code) => [settings.values.switchKey, settings.values.nextKey].indexOf(code);
+  /** Keys that are down as switches. @type {Map<string, number>} */
+  const held = new Map();
   window.addEventListener("keydown", (event) => {
-    if (!scanner.on || event.repeat || (isInteractive(event.target) && event.target !== parts.press)) return;
-    const act = { [settings.values.nextKey]: next, [settings.values.switchKey]: choose }[event.code];
-    if (!act) return;
+    const number = switchOf(event.code);
+    if (number < 0 || !scanner.on || number >= Number(settings.values.switches)) return;
+    // A focused control keeps its keys only while nothing could move.
+    const elsewhere = isInteractive(event.target) && event.target !== parts.press && event.target !== parts.next;
+    if (elsewhere && (!input.live || inDialog(event.target))) return;
     // Before the keyboard's own meaning of the key, and before the click that Enter would make of it.
     event.preventDefault();
     event.stopImmediatePropagation();
-    act();
+    if (event.repeat) return;
+    held.set(event.code, number);
+    scanner.press(number, true);
   }, { capture: true });
+  window.addEventListener("keyup", (event) => {
+    const number = held.get(event.code);
+    if (number === undefined) return;
+    held.delete(event.code);
+    event.preventDefault();
+    scanner.press(number, false);
+  }, { capture: true });
+  window.addEventListener("blur", () => held.clear());
 
   scanner.addEventListener("change", paint);
   settings.addEventListener("change", explain);
@@ -69,4 +131,9 @@ export function attachScanning(parts, input, settings, offered) {
   scanner.offer(offered());
   explain();
   return scanner;
+}
+
+/** @param {EventTarget | null} target */
+function inDialog(target) {
+  return target instanceof HTMLElement && target.closest("dialog") !== null;
 }

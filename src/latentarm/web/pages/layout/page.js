@@ -8,6 +8,7 @@ import { attachStop } from "../connection/stop.js";
 import { attachFeedback } from "../feedback/feedback.js";
 import { attachWakeLock } from "../feedback/wake_lock.js";
 import { attachPersonSync } from "../settings/person_sync.js";
+import { isSwitch } from "../inputs/keys.js";
 import { Settings } from "../settings/settings.js";
 import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
@@ -15,20 +16,24 @@ import { byId, setText } from "./dom.js";
 import { readWords, say } from "./words.js";
 
 /**
- * @param {{drop?: () => void, repaint?: () => void, runChanged?: () => void}} [page] what this page lets go of at a
- *   Stop, draws anew when the theme changes, and does when another run has been loaded
+ * @param {{drop?: () => void, repaint?: () => void, runChanged?: () => void, scans?: boolean}} [page] what this page lets
+ *   go of at a Stop, draws anew when the theme changes, and does when another run has been loaded; whether switches scan it
  */
-export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = () => location.reload() } = {}) {
+export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = () => location.reload(), scans = false } = {}) {
   readWords();
   const settings = new Settings();
   const connection = new Connection(settings.person);
   const status = attachStatus({ line: byId("status"), text: byId("status-text") }, connection);
   const lease = new DriverLease(connection);
+  const spaceStops = () => !scans || !isSwitch(settings.values, "Space");
   const stop = attachStop(connection, () => {
     lease.forget();
     drop();
-  });
+  }, spaceStops);
   attachPersonSync(settings);
+  const showKeys = () => byId("stop").setAttribute("aria-keyshortcuts", spaceStops() ? "Space Escape" : "Escape");
+  settings.addEventListener("change", showKeys);
+  showKeys();
   const dialog = attachSettingsDialog(byId("settings", HTMLDialogElement), byId("settings-open"), settings);
   attachTheme(byId("theme"), settings, repaint);
   const feedback = attachFeedback(connection, settings);
@@ -49,7 +54,7 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
     if (!connection.welcome) return;
     const { robot, run, limits, profiles } = connection.welcome;
     setText(byId("about"), run ? say("layout.about_run", { robot, run }) : say("layout.about_no_run", { robot }));
-    setText(byId("latch-max"), String(limits.latch_max_s));
+    /** @type {HTMLInputElement | null} */ (document.querySelector("input[name=latchS]"))?.setAttribute("max", String(limits.latch_max_s));
     dialog.offer(profiles);
   });
   connection.addEventListener("run_changed", runChanged);

@@ -3,6 +3,7 @@
 import { attachDpad } from "../inputs/dpad.js";
 import { attachGamepad } from "../inputs/gamepad.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
+import { buttonChoice, linkChoices, moreChoices } from "../inputs/page_choices.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { latentInput } from "../inputs/shaping.js";
@@ -31,8 +32,13 @@ let again = location.hash === "#again";
 /** Whether this page has asked for a trial, and goes to drive once it is there. */
 let leaving = false;
 
+/** Buttons of each step, most wanted first. @type {Record<string, string[]>} */
+const STEP_BUTTONS = {
+  begin: ["begin-go"], working: ["working-cancel"], learned: ["try", "keep", "discard", "ask-again"], kept: ["another"],
+};
+
 const input = new AnswerInput();
-const { settings, connection, lease, stop } = attachPage({ drop: () => input.drop(), repaint: () => drawing?.repaint() });
+const { settings, connection, lease, stop } = attachPage({ scans: true, drop: () => input.drop(), repaint: () => drawing?.repaint() });
 const trial = attachTrial(connection, settings, lease);
 const begin = /** @type {{person: HTMLInputElement, questions: HTMLSelectElement}} */ (
   /** @type {unknown} */ (byId("begin", HTMLFormElement).elements)
@@ -55,15 +61,19 @@ attachKeyboard(input, settings, { enable: answer, nextMode: () => {}, axes: () =
 attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, press: (number, down) => scanner.press(number, down) });
 attachInputChoice(input, settings);
 
-/** @returns {Choice[]} */
+/** What a switch reaches at each step: the step's own buttons, and then the pages and settings. @returns {Choice[]} */
 function offered() {
+  const step = stepOf(state, again);
+  const stops = { id: "stop", label: say("layout.stop"), act: stop };
+  if (step !== "asking") return [...STEP_BUTTONS[step].flatMap(buttonChoice), ...linkChoices(byId(step)), moreChoices([], [], stops)];
   const choices = [
     ...directionChoices(),
     { id: "answer", label: say("personalise.send"), act: answer },
     { id: "skip", label: say("personalise.skip"), act: skip },
     { id: "again", label: say("personalise.show_again"), act: () => replay.again() },
   ];
-  return state?.back ? [...choices, { id: "back", label: say("personalise.back"), act: back }] : choices;
+  const backs = state?.back ? [{ id: "back", label: say("personalise.back"), act: back }] : [];
+  return [...choices, ...backs, ...buttonChoice("answer-cancel"), moreChoices([], [], stops)];
 }
 
 /** What the stick means now, as the person drives, or null where it is at rest for them. */
@@ -131,11 +141,13 @@ function show() {
   const now = stepOf(state, again);
   const hadFocus = /** @type {HTMLElement | null} */ (document.activeElement?.closest(".step") ?? null);
   for (const name of STEPS) byId(name).hidden = name !== now;
+  moveSwitch(now);
   // Who was on a button that is gone goes on at the new step.
   if (hadFocus?.hidden) byId(now).querySelector("h2")?.focus({ preventScroll: true });
   byId("problem").hidden = !state?.why;
   setText(byId("problem"), state?.why ? sayNotice(state.why) : "");
-  if (now === "begin") begin.person.value ||= state?.name || settings.name;
+  // Who begins by a switch types no name.
+  if (now === "begin") begin.person.value ||= state?.name || settings.name || (scanner.on ? say("settings.guest") : "");
   if (state && now === "asking") setText(byId("question"), say("personalise.question_of", { number: state.number, of: state.of }));
   if (state && now === "working") showWorking(state);
   if (state && now === "learned") showLearned(state);
@@ -158,6 +170,14 @@ function showLearned({ name, answers, error, error_without }) {
   setText(byId("learned-text"), say("personalise.learned_text", { count: answers }));
   setText(byId("missed-with"), missedWords(error));
   setText(byId("missed-without"), missedWords(error_without));
+}
+
+/** The switch stands at every step, with the stick's other ways of pressing while questions are asked. @param {string} step */
+function moveSwitch(step) {
+  const panel = byId("panel-switch");
+  if (panel.closest(".step")?.id === step) return;
+  if (step === "asking") byId("panel-dpad").after(panel);
+  else byId(step).append(panel);
 }
 
 /** Which question is shown; it may come again after a reload. */

@@ -12,9 +12,20 @@ import * as storage from "./storage.js";
  * @property {boolean} invertY
  * @property {"hold" | "step" | "latch"} press what a press does
  * @property {number} stepS length of a step, s
+ * @property {number} latchS how long a motion goes on without being held, s
+ * @property {"off" | "light" | "medium" | "strong"} tremor how much a trembling hand is steadied
+ * @property {"off" | "low" | "medium" | "high"} help how much the robot helps
  * @property {"stick" | "dpad" | "switch"} panel what is pressed
  * @property {"1" | "2"} switches how many
+ * @property {"auto" | "inverse" | "step"} scan how the light goes on with one switch
+ * @property {"latch" | "hold"} switchMotion how a direction moves: until the next press, or while the switch is held
  * @property {number} dwellS how long a choice stays lit, s
+ * @property {number} firstS how much longer the first one does, s
+ * @property {number} acceptS how long a switch must be held before that counts, s
+ * @property {number} releaseS for how long nothing counts after a switch was let go, s
+ * @property {number} repeatS how often a switch that is held counts again, s; 0 for never
+ * @property {boolean} speak whether what is lit is spoken
+ * @property {number} speakVolume in [0, 1]
  * @property {string} switchKey key that chooses
  * @property {string} nextKey key that goes on
  * @property {"any" | "0" | "1" | "2" | "3"} gamepadStop button that stops
@@ -39,9 +50,20 @@ export const DEFAULTS = Object.freeze({
   invertY: false,
   press: "hold",
   stepS: 0.5,
+  latchS: 10,
+  tremor: "off",
+  help: "medium",
   panel: "stick",
   switches: "1",
+  scan: "auto",
+  switchMotion: "latch",
   dwellS: 1.2,
+  firstS: 0,
+  acceptS: 0,
+  releaseS: 0,
+  repeatS: 0,
+  speak: false,
+  speakVolume: 0.8,
   switchKey: "Enter",
   nextKey: "Backspace",
   gamepadStop: "1",
@@ -60,12 +82,19 @@ export const DEFAULTS = Object.freeze({
 export const NO_PROFILE = "-";
 
 /** @type {Record<string, [number, number]>} */
-const LIMITS = { sensitivity: [0.1, 1], deadZone: [0, 0.5], stepS: [0.2, 2], dwellS: [0.4, 5] };
+const LIMITS = {
+  sensitivity: [0.1, 1], deadZone: [0, 0.5], stepS: [0.2, 2], latchS: [1, 10], dwellS: [0.4, 5], firstS: [0, 3],
+  acceptS: [0, 2], releaseS: [0, 2], repeatS: [0, 3], speakVolume: [0, 1],
+};
 /** @type {Record<string, string[]>} */
 const CHOICES = {
   press: ["hold", "step", "latch"],
   panel: ["stick", "dpad", "switch"],
   switches: ["1", "2"],
+  scan: ["auto", "inverse", "step"],
+  switchMotion: ["latch", "hold"],
+  tremor: ["off", "light", "medium", "strong"],
+  help: ["off", "low", "medium", "high"],
   gamepadStop: ["any", "0", "1", "2", "3"],
   seat: ["facing", "behind"],
   sounds: ["none", "success", "all"],

@@ -2,6 +2,7 @@
 
 import { byId, create } from "../layout/dom.js";
 import { say, sayNumber, sayPercent } from "../layout/words.js";
+import { keyWords } from "../inputs/keys.js";
 import { attachLanguage } from "./language.js";
 import { attachPersonChoice } from "./person_choice.js";
 import { NO_PROFILE } from "./settings.js";
@@ -11,7 +12,11 @@ import { NO_PROFILE } from "./settings.js";
 const seconds = (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 1) });
 
 /** The text next to a slider. @type {Record<string, (value: number) => string>} */
-const TEXTS = { sensitivity: sayPercent, deadZone: sayPercent, stepS: seconds, dwellS: seconds };
+const TEXTS = {
+  sensitivity: sayPercent, deadZone: sayPercent, speakVolume: sayPercent, stepS: seconds, latchS: seconds, dwellS: seconds,
+  firstS: seconds, acceptS: seconds, releaseS: seconds,
+  repeatS: (value) => (value === 0 ? say("settings.never") : seconds(value)),
+};
 
 /**
  * @param {HTMLDialogElement} dialog
@@ -27,6 +32,7 @@ export function attachSettingsDialog(dialog, opener, settings) {
       const value = settings.values[/** @type {keyof Values} */ (field.name)];
       if (field.type === "checkbox") field.checked = Boolean(value);
       else if (field.type === "radio") field.checked = field.value === value;
+      else if (field.matches(".key")) field.value = field.dataset.asking ? say("settings.press_key") : keyWords(String(value));
       else if (document.activeElement !== field || field.type === "range") field.value = String(value);
     }
     for (const text of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-shows]"))) {
@@ -72,16 +78,15 @@ export function attachSettingsDialog(dialog, opener, settings) {
 
 /** Enter in a key's field, then the key itself. @param {HTMLInputElement} field @param {KeyboardEvent} event @param {Settings} settings */
 function askForKey(field, event, settings) {
-  if (event.code === "Tab" || event.code === "Escape" || event.code === "Space") {
+  if (event.code === "Tab" || event.code === "Escape" || (event.code === "Space" && !field.dataset.asking)) {
     delete field.dataset.asking;
-    field.value = String(settings.values[/** @type {"switchKey" | "nextKey"} */ (field.name)]);
+    field.value = keyWords(settings.values[/** @type {"switchKey" | "nextKey"} */ (field.name)]);
     return;
   }
   event.preventDefault();
   if (field.dataset.asking) {
     delete field.dataset.asking;
     settings.change({ [field.name]: event.code });
-    field.value = event.code;
   } else if (event.code === "Enter") {
     field.dataset.asking = "yes";
     field.value = say("settings.press_key");

@@ -1,0 +1,47 @@
+"""How much the robot helps, in levels that a person chooses while the arm is driven."""
+
+from typing import Final, final
+
+from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
+from latentarm.types import FloatArray
+from latentarm.web.protocol.channel import HelpLevel
+
+USUAL_HELP: Final[HelpLevel] = "medium"
+"""The level at the start."""
+
+LEVELS: Final[dict[HelpLevel, Arbitration]] = {
+    "off": FixedAlpha(0.0),
+    "low": ConfidenceAlpha(0.05),
+    "medium": ConfidenceAlpha(0.1),
+    "high": ConfidenceAlpha(0.3),
+}
+"""Help grows with the robot's confidence, so that there is none while it does not know what is wanted.
+
+Measured by ``scripts/help_levels.py``: ``medium`` halves the mean time to what the robot knows of, and keeps
+nobody from anything else; ``high`` takes a little less time, and keeps most people from anything else."""
+
+
+@final
+class Help(Arbitration):
+    """Help whose level can be changed while the arm is driven.
+
+    Attributes:
+        level: how much.
+    """
+
+    def __init__(self) -> None:
+        self.level: HelpLevel = "off"
+
+    @property
+    def on(self) -> bool:
+        """Whether there is any."""
+        return self.level != "off"
+
+    @property
+    def acts_at_rest(self) -> bool:
+        """No: an arm whose person lets go stands still."""
+        return False
+
+    def alpha(self, u: FloatArray, belief: FloatArray) -> FloatArray:
+        """What the level says, or zero; see `Arbitration.alpha`."""
+        return LEVELS[self.level].alpha(u, belief)

@@ -1,0 +1,86 @@
+/** How much the robot helps: the person chooses a level, which is kept with their settings. */
+
+import { setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {State} from "../connection/messages.js" */
+/** @import {Settings, Values} from "../settings/settings.js" */
+/** @import {Choice} from "../inputs/scanner.js" */
+
+/** @type {Values["help"][]} */
+export const LEVELS = ["off", "low", "medium", "high"];
+
+/** What the robot does at the level that is on. @param {Pick<State, "mode" | "help">} state */
+export function helpWords({ mode, help }) {
+  if (help === null) return "";
+  return say(mode === "end_effector" ? "help.not_here" : `help.${help}_does`);
+}
+
+/**
+ * Asks for the person's level once they drive, and again whenever they choose another one.
+ *
+ * @param {{fieldset: HTMLElement, text: HTMLElement}} parts
+ * @param {Connection} connection
+ * @param {Settings} settings
+ */
+export function attachHelp(parts, connection, settings) {
+  const radios = /** @type {HTMLInputElement[]} */ ([...parts.fieldset.querySelectorAll("input")]);
+  /** @type {Values["help"] | null} What was asked for since this page drives. */
+  let asked = null;
+
+  const ask = () => {
+    const { state } = connection;
+    if (!connection.driving || state === null) {
+      asked = null;
+      return;
+    }
+    const wanted = settings.values.help;
+    if (state.help === null || wanted === asked) return;
+    asked = wanted;
+    if (wanted !== state.help) connection.send({ type: "help", level: wanted });
+  };
+  const choose = (/** @type {Values["help"]} */ help) => {
+    // The same level again, where another page or the server has changed it since.
+    asked = null;
+    settings.change({ help });
+  };
+  const show = () => {
+    const { state } = connection;
+    if (!state) return;
+    parts.fieldset.hidden = state.help === null;
+    for (const radio of radios) {
+      const checked = radio.value === (state.you ? settings.values.help : state.help);
+      if (radio.checked !== checked) radio.checked = checked;
+      if (radio.disabled === state.you) radio.disabled = !state.you;
+    }
+    setText(parts.text, helpWords(state));
+  };
+  for (const radio of radios) {
+    radio.addEventListener("change", () => choose(/** @type {Values["help"]} */ (radio.value)));
+  }
+  connection.addEventListener("welcome", () => {
+    asked = null;
+  });
+  connection.addEventListener("state", () => {
+    ask();
+    show();
+  });
+  settings.addEventListener("change", () => {
+    ask();
+    show();
+  });
+
+  return {
+    /** The levels to choose from with a switch. @returns {Choice[]} */
+    choices() {
+      const now = connection.state?.help ?? null;
+      if (now === null) return [];
+      return LEVELS.map((level) => ({
+        id: `help-${level}`,
+        label: say(level === now ? "scanning.now" : "scanning.plain", { name: say(`help.${level}`) }),
+        act: () => choose(level),
+      }));
+    },
+  };
+}
