@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
+from latentarm.web.arm_process.drive_setup import RELEASE_FRACTION, DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.help import LEVELS, USUAL_HELP
 from latentarm.web.protocol.channel import ChooseHelp, ChooseMode, Enable
 
@@ -36,11 +36,12 @@ def test_help_is_on_at_first_where_there_is_something_to_help_with(setup: DriveS
     assert load_setup(Spec()).first_mode(USUAL_HELP) == "end_effector"
 
 
-def driven(desk, orders, until_s=2.5):
-    """Push from 0.5 s on; the orders by when they are given, s."""
+def driven(desk, orders, until_s=2.5, let_go=()):
+    """Push from 0.5 s on, but for the spans in which one lets go; the orders by when they are given, s."""
 
     def tick(now_s):
-        desk.give(0.0 if now_s < 0.5 else 1.0, 0.0)
+        pushed = now_s >= 0.5 and not any(begin <= now_s < end for begin, end in let_go)
+        desk.give(1.0 if pushed else 0.0, 0.0)
         for at_s, order in {0.1: Enable(driver=1, stops=desk.channel.stop.version), **orders}.items():
             if abs(now_s - at_s) < 0.005:
                 desk.order(order)
@@ -82,17 +83,21 @@ def test_a_level_is_a_mode_too(desk):
     assert not any(record.alpha for record in desk.records if 1.45 < record.time_s < 1.95)
 
 
-def test_a_level_takes_hold_while_the_arm_moves_and_it_never_jumps(desk):
+def test_a_level_takes_hold_once_the_stick_was_let_go_and_the_arm_never_jumps(desk):
     driven(
         desk,
-        {0.2: ChooseHelp(level="high"), 1.5: ChooseHelp(level="off"), 2.0: ChooseHelp(level="high")},
+        {0.2: ChooseHelp(level="high"), 1.5: ChooseHelp(level="off"), 2.5: ChooseHelp(level="high")},
         3.5,
+        let_go=((1.8, 1.9), (2.6, 2.7)),
     )
     alphas = {
-        at_s: max(r.alpha for r in desk.records if abs(r.time_s - at_s) < 0.05) for at_s in (1.4, 1.8, 3.4)
+        at_s: max(r.alpha for r in desk.records if abs(r.time_s - at_s) < 0.05) for at_s in (1.4, 2.3, 3.4)
     }
-    assert alphas[1.8] == 0.0
+    assert alphas[2.3] == 0.0
     assert max(alphas[1.4], alphas[3.4]) > 0.0
+    speeds, times = desk.speeds(), desk.times()
+    assert not speeds[(times > 1.5 + 0.15) & (times < 1.8)].any()
+    assert speeds[(times > 2.2) & (times < 2.5)].min() > 0.0
     commands = np.array([record.command.velocity for record in desk.records if record.time_s < 3.5])
     gained = np.abs(np.diff(commands, axis=0))
-    assert (gained <= 0.2 * desk.setup.task.robot.limits.acceleration * 0.01 + 1e-9).all()
+    assert (gained <= RELEASE_FRACTION * desk.setup.task.robot.limits.acceleration * 0.01 + 1e-9).all()

@@ -1,6 +1,7 @@
 """Pages are HTML of our own, in the language of whoever asks, and load nothing of a framework."""
 
 import gzip
+import posixpath
 import re
 import subprocess
 import sys
@@ -60,11 +61,25 @@ def test_templates_are_not_served(client):
     assert client.get(f"/static/{version}/%2e%2e/server/app.py").status_code == 404
 
 
-def test_the_drive_page_loads_at_most_300_kb_of_script():
-    assets = Assets()
-    scripts = [asset for name, asset in assets._assets.items() if name.endswith(".js")]
-    assert sum(len(asset.compressed) for asset in scripts) < 300_000
-    assert all(gzip.decompress(asset.compressed) == asset.content for asset in scripts)
+def modules_of(script, assets, found=None):
+    """A script and everything that it imports, in time or at once."""
+    found = {} if found is None else found
+    if script in found:
+        return found
+    found[script] = assets._assets[script]
+    imports = r'^(?:import|export) [^"\n]*"(\.[^"]+\.js)"|await import\("(\.[^"]+\.js)"\)'
+    for named in re.findall(imports, found[script].content.decode(), re.MULTILINE):
+        path = posixpath.join(posixpath.dirname(script), "".join(named))
+        modules_of(posixpath.normpath(path), assets, found)
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_a_page_loads_at_most_300_kb_of_script(page):
+    loaded = modules_of(page.script, Assets())
+    assert all(gzip.decompress(asset.compressed) == asset.content for asset in loaded.values())
+    assert sum(len(asset.compressed) for asset in loaded.values()) < 300_000
+    assert page.name != "drive" or THREE in loaded
 
 
 def test_nothing_of_nicegui_is_imported():

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from latentarm.errors import UserError
 from latentarm.untrusted.names import MOST_CHARACTERS, clean_name
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
-from latentarm.web.protocol.channel import Report
+from latentarm.web.protocol.channel import Report, TaskState
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.records.drive_log import LATE, MOST_VALUES, About, DriveLog
@@ -65,6 +65,8 @@ def report(tick, phase, tool, code=None, **changes):
     return Report(
         nonce="", tick=tick, time_s=100.0 + 0.01 * tick, driver=1, phase=phase, note=None,
         reason=None if code is None else Notice(code=code), held_back=None, mode="assisted", axes=0, run=None,
+        returning=False, at_start=False, let_go_first=False, late_stops=0, help="medium", seed=0,
+        task=TaskState(choice=0, done=0, outcome=None, why=None, time_s=0.0),
         profile=None, loading=False,
         q=(0.0, *[0.1 * tool] * 6), speed=0.0, tool=(tool, 0.0, 0.0), gripper=None,
         things=None, ghosts=None, belief=(), alpha=0.5, bound_rad=None, recording=None, late_share=0.0,
@@ -98,7 +100,7 @@ def test_the_figures_of_a_drive_are_those_of_its_reports(about):
     assert record.way_m == pytest.approx(0.199, abs=1e-3)
     assert (record.stops, record.late_stops, record.reasons) == (1, 1, {LATE: 1})
     assert record.help == 0.5
-    assert (record.ended, record.outcome, record.steps_done) == ("reset", None, None)
+    assert (record.ended, record.outcome, record.steps_done) == ("reset", None, 0)
 
 
 def test_a_trace_is_thin_and_comes_back(about):

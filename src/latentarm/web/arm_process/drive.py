@@ -154,7 +154,7 @@ class Drive:
         self._note = note
         self._note_until_s = -math.inf if note is None else clock.now_s() + NOTE_S
         self.change: Change | None = None
-        self._choose(steering.mode, steering.axes)
+        self._choose(steering.mode, steering.axes, steering.help)
 
     def run(self, ticks: int | None = None) -> Change | None:
         """Drive until something else is to be driven, or the process is to end.
@@ -234,7 +234,7 @@ class Drive:
                     self._enable_until_s = record.time_s + ENABLE_WAITS_S
             case ChooseMode(mode=mode, axes=axes):
                 if mode in self._setup.modes:
-                    self._choose(mode, self._steering.axes if axes is None else axes)
+                    self._choose(mode, self._steering.axes if axes is None else axes, self._steering.help)
             case Return(on=True):
                 self._set_out(record)
             case Return():
@@ -264,31 +264,35 @@ class Drive:
         self.change = change
         self._loop.finish()
 
-    def _choose(self, mode: ModeName, axes: int) -> None:
+    def _choose(self, mode: ModeName, axes: int, level: HelpLevel) -> None:
         steering = self._steering
-        before = steering.mode, steering.axes, steering.help
+        before = steering.mode, steering.axes, self._help_now
         steering.mode = mode
         steering.axes = min(max(axes, 0), len(self._setup.axes) - 1)
+        steering.help = level
         if mode == "latent" and "assisted" in self._setup.modes:
             steering.help = "off"
-        elif mode == "assisted" and steering.help == "off":
+        elif mode == "assisted" and level == "off":
             steering.help = USUAL_HELP
-        if before != (steering.mode, steering.axes, steering.help):
+        if before != (steering.mode, steering.axes, self._help_now):
             # A stick that is held would go on, with another meaning.
             self._neutral.demand()
         self._way_back.end()
-        self._setup.help.level = steering.help if mode == "assisted" else "off"
+        self._setup.help.level = self._help_now
         self._step.choose_mode(self._setup.mode_index(mode, steering.axes))
+
+    @property
+    def _help_now(self) -> HelpLevel:
+        return self._steering.help if self._steering.mode == "assisted" else "off"
 
     def _choose_help(self, level: HelpLevel) -> None:
         """A level for now where latent actions are driven, and else for when they will be."""
         if "assisted" not in self._setup.modes:
             return
-        if level != self._steering.help:
-            self._neutral.demand()
-        self._steering.help = level
-        if self._steering.mode != "end_effector":
-            self._choose("latent" if level == "off" else "assisted", self._steering.axes)
+        if self._steering.mode == "end_effector":
+            self._steering.help = level
+        else:
+            self._choose("latent" if level == "off" else "assisted", self._steering.axes, level)
 
     def _set_out(self, record: StepRecord) -> None:
         """Begin the way back to the start."""
@@ -303,7 +307,7 @@ class Drive:
         self._way_back.begin(record.time_s)
 
     def _end_way_back(self) -> None:
-        self._choose(self._steering.mode, self._steering.axes)
+        self._choose(self._steering.mode, self._steering.axes, self._steering.help)
 
     def _follow_way_back(self, record: StepRecord) -> None:
         """End the way back where it is over, or the arm was stopped."""
