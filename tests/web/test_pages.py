@@ -99,6 +99,9 @@ def test_nothing_of_nicegui_is_imported():
         ("", "de;q=0, en", "en"),
         ("de", "en", "de"),
         ("../en", "de", "de"),
+        ("", "es-MX,es;q=0.9,en;q=0.8", "es"),
+        ("", "zh-CN,zh;q=0.9,en;q=0.8", "zh"),
+        ("zh", "es", "zh"),
     ],
 )
 def test_a_person_reads_the_language_of_their_choice(cookie, accepted, language):

@@ -1,5 +1,6 @@
 """Every text of the pages is in every language's catalogue, and every key that is used has words."""
 
+import json
 import re
 from pathlib import Path
 from typing import get_args
@@ -39,6 +40,27 @@ def test_every_key_that_a_page_names_has_words():
     used -= {key for key in used if key.endswith((".html", ".js", ".css", ".svg"))}
     assert len(used) > 150
     assert used - set(ENGLISH) == set()
+
+
+def test_the_pages_speak_four_languages():
+    named = {code: words.name for code, words in languages().items()}
+    assert named == {"de": "Deutsch", "en": "English", "es": "Español", "zh": "中文（简体）"}
+
+
+@pytest.mark.parametrize("language", sorted(languages()))
+def test_a_language_has_the_keys_of_english_in_their_order_once(language):
+    pairs = []
+    own = (FOLDER.parent / "words" / f"{language}.json").read_text(encoding="utf-8")
+    json.loads(own, object_pairs_hook=lambda found: pairs.append([key for key, _ in found]))
+    assert pairs[-1] == list(ENGLISH)
+
+
+@pytest.mark.parametrize("language", sorted(set(languages()) - {DEFAULT}))
+def test_what_is_a_sentence_in_english_is_translated(language):
+    texts = languages()[language].texts
+    words = {key: re.findall(r"[a-z]{4,}", str(text)) for key, text in ENGLISH.items()}
+    same = [key for key, text in ENGLISH.items() if texts[key] == text and len(words[key]) > 2]
+    assert same == []
 
 
 @pytest.mark.parametrize("language", sorted(languages()))

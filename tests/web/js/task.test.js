@@ -9,6 +9,8 @@ import { theThing, thingWords } from "#pages/layout/thing_words.js";
 import { useWords } from "#pages/layout/words.js";
 import { Settings } from "#pages/settings/settings.js";
 import german from "../../../src/latentarm/web/words/de.json" with { type: "json" };
+import spanish from "../../../src/latentarm/web/words/es.json" with { type: "json" };
+import chinese from "../../../src/latentarm/web/words/zh.json" with { type: "json" };
 import { event, FakeElement, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
 
 const MARSHMALLOWS = ["left marshmallow", "middle marshmallow", "right marshmallow"];
@@ -166,6 +168,14 @@ test("every language says what is done with what", () => {
   assert.equal(stepWords(STEPS[0]), "Über das linke Marshmallow fahren");
   assert.equal(stepWords(put), "Auf Ihren Teller legen");
   assert.match(outcomeWords({ ...RUN, outcome: "failure", why }), /^Der Arm hat die Körner verschüttet\./);
+  useWords("es", spanish);
+  assert.equal(stepWords(STEPS[0]), "Ir por encima hasta el malvavisco izquierdo");
+  assert.equal(stepWords(put), "Ponerlo en su plato");
+  assert.match(outcomeWords({ ...RUN, outcome: "failure", why }), /^El brazo derramó los granos\./);
+  useWords("zh", chinese);
+  assert.equal(stepWords(STEPS[0]), "移到左边的棉花糖上方");
+  assert.equal(stepWords(put), "把它放到您的盘子里");
+  assert.match(outcomeWords({ ...RUN, outcome: "failure", why }), /^机械臂把谷粒弄洒了。/);
 });
 
 test("a thing of a plug-in is called by its own name", () => {
