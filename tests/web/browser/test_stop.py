@@ -42,7 +42,7 @@ def test_stop_acts_on_press_and_not_on_release(moving, arm):
 
 def test_a_watching_page_stops_the_arm_and_cannot_drive_it(moving, arm, open_page):
     watcher = open_page()
-    watcher.get_by_text("is driving; you are watching").wait_for()
+    watcher.locator("#driver", has_text="is driving; you are watching").wait_for()
     watcher.keyboard.press("Escape")
     arm.comes_to_rest()
     watcher.locator("#stick").focus()
@@ -73,7 +73,7 @@ def test_driving_is_handed_over(page, arm, open_page, press_enable, hold_key):
     page.get_by_text("asks to drive").wait_for()
     page.get_by_role("button", name="Hand over to").click()
     other.get_by_text("You are driving").wait_for()
-    page.get_by_text("is driving; you are watching").wait_for()
+    page.locator("#driver", has_text="is driving; you are watching").wait_for()
     press_enable(other, arm)
     hold_key(other)
     other.keyboard.up("ArrowLeft")

@@ -15,8 +15,8 @@ from PIL import Image
 
 SOUNDS = """
 window.tones = 0;
-const made = AudioContext.prototype.createOscillator;
-AudioContext.prototype.createOscillator = function () { window.tones += 1; return made.call(this); };
+const started = AudioScheduledSourceNode.prototype.start;
+AudioScheduledSourceNode.prototype.start = function (...when) { window.tones += 1; return started.apply(this, when); };
 """
 PATIENCE_S = 60.0
 RAISED_PX = 24

@@ -74,7 +74,7 @@ const GOALS = [{ name: "tofu", position: [1, 0, 0] }, { name: "tea", position: [
 test("the tool's place is said from the table and from the nearest goal", () => {
   assert.equal(whereWords({ goals: GOALS, things: [] }, WHERE), "The tool is 20 cm up, 10 cm from tea.");
   assert.equal(whereWords({ goals: [], things: [] }, WHERE), "The tool is 20 cm up.");
-  assert.equal(whereWords({ goals: GOALS, things: [] }, WHERE, "tofu"), "The tool is 20 cm up, 55 cm from tofu.");
+  assert.equal(whereWords({ goals: GOALS, things: [] }, WHERE, "tofu"), "The tool is 20 cm up, 55 cm from the tofu.");
 });
 
 test("what the robot thinks is meant is named with its distance, to where the food lies now", () => {

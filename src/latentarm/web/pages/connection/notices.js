@@ -9,8 +9,8 @@ import { say, sayNotice } from "../layout/words.js";
 /** What a page does, which names it by its id. */
 const DONE_BY_A_PAGE = ["stop_pressed_by", "page_stopped", "driver_gone", "driver_released", "handed_over"];
 
-/** @typedef {{you: boolean, own: OwnPages, late: "page" | "connection"}} Reader
- *   whether they drive, which pages are theirs, and what was too slow where an input was late */
+/** @typedef {{you: boolean, own: OwnPages, late: "page" | "connection" | null}} Reader
+ *   whether they drive, which pages are theirs, and what was too slow where an input of theirs was late */
 
 /**
  * @param {Notice} notice
@@ -20,7 +20,7 @@ export function sayTo(notice, { you, own, late }) {
   const { code, parameters } = notice;
   if (DONE_BY_A_PAGE.includes(code) && own.has(parameters.page)) return say(/** @type {WordKey} */ (`yours.${code}`));
   if (you && code === "driver_changed") return say("yours.driver_changed");
-  if (you && code === "input_late") return say(`late.${late}`);
+  if (you && late !== null && code === "input_late") return say(`late.${late}`);
   return sayNotice(notice);
 }
 

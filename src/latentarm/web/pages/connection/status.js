@@ -23,7 +23,7 @@ const REFUSED_MS = 4000;
  * @property {string} turnedAway why the server refused the page
  * @property {boolean} canEnable whether it has a button that enables
  * @property {boolean} pressed whether a press did nothing a moment ago
- * @property {"page" | "connection"} late what was too slow, where an input came late
+ * @property {Reader["late"]} late what was too slow, where an input of this page came late
  */
 
 /** @typedef {Pick<Connection, "open" | "state" | "silenceMs" | "engaged" | "drove" | "own" | "welcome">} Heard */
@@ -107,8 +107,10 @@ export function attachStatus(parts, connection) {
   let wanted = "";
   let refusedUntil = -Infinity;
   let wasLate = false;
-  /** @type {"page" | "connection"} */
+  /** @type {Reader["late"]} */
   let late = "connection";
+  /** Whether this page has heard of the arm before. */
+  let heard = false;
   /** Whether this page itself was too slow a moment ago. */
   let slow = () => false;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -118,8 +120,10 @@ export function attachStatus(parts, connection) {
   const show = () => {
     const { state } = connection;
     const isLate = state?.reason?.code === "input_late";
-    if (isLate && !wasLate) late = slow() ? "page" : "connection";
+    // What was too slow while this page did not drive was somebody else's.
+    if (isLate && !wasLate) late = !(heard && state?.you) ? null : slow() ? "page" : "connection";
     wasLate = isLate;
+    heard = state !== null;
     // What this page did counts for nothing once somebody else drives.
     if (state !== null && !state.you) halted = null;
     const pressed = performance.now() < refusedUntil;

@@ -98,6 +98,8 @@ export function attachTask(parts, connection, ended) {
       setText(parts.said, say("task.step_done", { number: task.done, all: welcome.task.steps.length, step }));
     } else if (task.done === 0) setText(parts.said, "");
     if (before !== null && before.outcome === null && task.outcome !== null) ended(task.outcome);
+    // How far to go is told of the step that is done now, at once.
+    if (task.done !== before?.done) wordsAt = -Infinity;
     before = task;
     const why = blocked();
     setText(parts.why, why);

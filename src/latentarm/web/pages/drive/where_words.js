@@ -1,6 +1,6 @@
 /** Where the tool is: how high, and how far from the food that the robot thinks is meant, in words. */
 
-import { thingWords } from "../layout/thing_words.js";
+import { theThing, thingWords } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
 import { isLikeliest } from "../views/likeliest.js";
 import { distance, placeOf } from "./task_words.js";
@@ -15,7 +15,7 @@ import { distance, placeOf } from "./task_words.js";
 export function whereWords(welcome, state, thing = null) {
   const height = Math.round(100 * state.tool[2]);
   const goals = welcome.goals.map(({ name }, index) => ({
-    name: thingWords(name),
+    name,
     asked: name === thing,
     away: distance(state.tool, placeOf(name, welcome, state) ?? state.tool),
     likeliest: isLikeliest(state.belief, index),
@@ -24,5 +24,7 @@ export function whereWords(welcome, state, thing = null) {
   const [nearest] = [...goals].sort((a, b) => a.away - b.away);
   const said = wanted ?? goals.find(({ asked }) => asked) ?? nearest;
   if (!said) return say("place.height", { height });
-  return say(wanted ? "place.wanted" : "place.near", { height, away: Math.round(100 * said.away), name: said.name });
+  const away = Math.round(100 * said.away);
+  if (wanted) return say("place.wanted", { height, away, name: thingWords(said.name) });
+  return say("place.near", { height, away, thing: theThing(said.name) });
 }

@@ -157,8 +157,8 @@ export class Drawing {
       const place = this._scene.markers.placeOf(index);
       const told = tool !== null && (name === thing || isLikeliest(belief, index));
       const shares = [...(belief ? [sayPercent(belief[index])] : []), ...(told ? [away(tool, place)] : [])];
-      const look = { shown: tool !== null, share: shares.join(" · ") || undefined, thing: colourOf(index) };
-      this._labels.set(`goal-${index}`, place, `${symbolOf(index)} ${thingWords(name)}`, look);
+      const look = { shown: tool !== null, share: shares.join(" · ") || undefined, thing: colourOf(index), mark: symbolOf(index), told };
+      this._labels.set(`goal-${index}`, place, thingWords(name), look);
     });
   }
 
