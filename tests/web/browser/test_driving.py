@@ -13,6 +13,9 @@ from playwright.sync_api import Error
 
 NEAR_M = 0.03
 PATIENCE_S = 60.0
+NOTICED_S = 1.0
+"""A person sees that nothing moves within this."""
+
 KEYS = {"up": "ArrowUp", "down": "ArrowDown", "left": "ArrowLeft", "right": "ArrowRight"}
 PUSH = {"up": (0, 1), "down": (0, -1), "left": (-1, 0), "right": (1, 0)}
 GAMEPAD = """
@@ -150,6 +153,9 @@ def drive(hand, arm, goal):
             hand.let_go()
             hand.push(best)
             pushed = best
+        elif not arm.comes_to(lambda: arm.state["phase"] == "moving" or not arm.enabled, NOTICED_S):
+            # Another choice was lit by the time of the press: once more.
+            pushed = None
         time.sleep(0.1)
     hand.let_go()
 

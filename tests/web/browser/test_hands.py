@@ -150,7 +150,7 @@ class TestProfile:
             yield arm
 
     def test_a_chosen_profile_turns_the_stick_round(self, page, arm, press_enable, drive_back, way):
-        page.get_by_role("radio", name="Learned motions").check()
+        page.get_by_role("group", name="Help from the robot").get_by_role("radio", name="Off").check()
         arm.wait(lambda: arm.state["mode"] == "latent")
         press_enable(page, arm)
         plain = way(page, "ArrowLeft")

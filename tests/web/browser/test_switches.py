@@ -9,8 +9,9 @@ Object.defineProperty(window, "speechSynthesis", { value: {
 } });
 window.SpeechSynthesisUtterance = class { constructor(text) { this.text = text; } };
 """
-MORE = {"Back", "Help from the robot …", "Settings …", "Other page …", "Arm back to start", "Start recording"}
-PATIENCE_MS = 15_000
+MORE = {"Back", "Help from the robot …", "Settings …", "Other page …", "Start recording", "Stop"}
+PATIENCE_MS = 30_000
+"""Twice as long as the light takes to go once round the longest list."""
 
 
 def scan(page, **settings):

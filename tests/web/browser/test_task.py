@@ -16,7 +16,10 @@ from PIL import Image
 SOUNDS = """
 window.tones = 0;
 const started = AudioScheduledSourceNode.prototype.start;
-AudioScheduledSourceNode.prototype.start = function (...when) { window.tones += 1; return started.apply(this, when); };
+AudioScheduledSourceNode.prototype.start = function (...when) {
+  window.tones += 1;
+  return started.apply(this, when);
+};
 """
 PATIENCE_S = 60.0
 RAISED_PX = 24
