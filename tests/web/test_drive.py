@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from latentarm.control.journal import read_journal
+from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.channel import (
     ChooseMode,
@@ -156,6 +157,16 @@ def test_latched_motion_ends(desk):
     moving = desk.times()[desk.speeds() > 0.0]
     assert LATCH_MAX_S - 0.05 < moving[-1] - moving[0] < LATCH_MAX_S + 0.15
     assert desk.reports[-1].reason.code == "latch_ended"
+
+
+def test_a_drive_goes_on_in_the_mode_of_the_one_before(desk):
+    """A run that is begun again, and another person's directions, leave the mode as pages show it."""
+    steering = Steering("end_effector", axes=2)
+    on = (desk.arm, desk.channel, desk.clock, desk.writer, lambda: False, steering)
+    desk.drive = Drive(desk.setup, *on, observers=[desk._saw])
+    desk.run(0.2)
+    assert {(report.mode, report.axes) for report in desk.reports} == {("end_effector", 2)}
+    assert {record.mode for record in desk.records} == {3}
 
 
 def test_switching_modes_never_makes_the_arm_jump(desk):

@@ -171,16 +171,21 @@ class ControlLoop:
         """How punctual the loop has been."""
         return self._log.statistics()
 
-    def run(self, ticks: int | None = None) -> DeadlineStatistics:
+    def run(self, ticks: int | None = None, mode: int = 0) -> DeadlineStatistics:
         """Run for a number of ticks, or until `finish`; then bring the arm to rest.
 
         Args:
             ticks: how many, or None for no end.
+            mode: index of the controller's mode to begin in.
 
         Returns:
             How punctual the loop was.
+
+        Raises:
+            UserError: the controller has no such mode.
         """
         self._step.reset(self._arm.read().q)
+        self._step.choose_mode(mode)
         self._start_s = self._sent_s = self._clock.now_s()
         self._next = 0
         self._ending = False

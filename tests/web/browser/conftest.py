@@ -276,7 +276,10 @@ def driven_back(page: Page, arm: Arm) -> None:
 
 
 def enable(page: Page, arm: Arm) -> None:
+    """Enable the arm, unless it is enabled."""
     for _ in range(TRIES):
+        if arm.enabled:
+            return
         page.get_by_role("button", name="Enable", exact=True).click()
         if arm.comes_to(lambda: arm.enabled, 1.5):
             return

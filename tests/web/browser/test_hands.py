@@ -53,7 +53,7 @@ def settle(page, arm, press_enable, *labels):
     """Set what stands in the settings, and enable."""
     page.get_by_role("button", name="Settings").click()
     for label in labels:
-        page.get_by_role("dialog").get_by_label(label).check()
+        page.get_by_role("dialog").locator("input").and_(page.get_by_label(label)).check()
     page.get_by_role("button", name="Done").click()
     arm.wait(lambda: not arm.enabled)
     press_enable(page, arm)

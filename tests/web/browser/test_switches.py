@@ -90,7 +90,7 @@ def test_what_is_lit_is_spoken(open_page, seat, arm):
     page.evaluate("spoken.length = 0")
     for _ in range(3):
         page.keyboard.press("Backspace")
-    assert page.evaluate("spoken") == [[text, "en", 0.5] for text in ("Other mode", "More …", "Enable")]
+    assert page.evaluate("spoken") == [[text, "en", 0.5] for text in ("Other mode", "Next task", "More …")]
 
 
 def test_space_as_a_switch_does_not_stop_and_escape_does(page, arm, press_enable):

@@ -165,7 +165,8 @@ class Drive:
         Returns:
             See `change`.
         """
-        self._loop.run(ticks)
+        # The loop begins anew, and would begin in the first mode.
+        self._loop.run(ticks, self._setup.mode_index(self._steering.mode, self._steering.axes))
         return self.change
 
     def _observe(self, record: StepRecord) -> None:
