@@ -69,7 +69,7 @@ export class Labels {
 
   _place() {
     this._views.views.forEach((view, index) => {
-      const width = view.element.clientWidth;
+      const { clientWidth: width, clientHeight: height } = view.element;
       /** @type {{x: number, y: number, wide: number}[]} */
       const placed = [];
       const covered = (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ wide) =>
@@ -91,6 +91,10 @@ export class Labels {
           // Those that would cover each other are stacked.
           for (let under = covered(x, y, size); under; under = covered(x, y, size)) y = under.y - LINE_PX;
           placed.push({ x, y, wide: size });
+        } else {
+          // An arrow near the edge is seen whole.
+          x = Math.min(Math.max(x, wide / 2), width - wide / 2);
+          y = Math.min(Math.max(y, wide / 2), height - wide / 2);
         }
         element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
       }
