@@ -38,9 +38,9 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   attachTheme(byId("theme"), settings, repaint);
   const feedback = attachFeedback(connection, settings);
   attachWakeLock(connection);
-  attachInvitation();
   // Pages from which nobody drives have no such panel.
   if (document.getElementById("driver")) {
+    attachInvitation();
     attachDriverPanel({
       text: byId("driver"),
       ask: byId("ask", HTMLButtonElement),

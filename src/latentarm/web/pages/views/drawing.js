@@ -37,6 +37,8 @@ export class Drawing {
     /** @type {State["things"]} */
     this._things = null;
     this._first = true;
+    // Until it is known where the arm is.
+    scene.scene.visible = false;
     // For scripts that measure how long an input takes to be seen.
     this._views.afterFrame.push(() => {
       document.dispatchEvent(new CustomEvent("arm-drawn", { detail: { tick: this._tick, tool: scene.tool.toArray() } }));
@@ -66,6 +68,7 @@ export class Drawing {
     const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted, thing]);
     const moved = pose !== this._pose || state.things !== this._things;
     if (!moved && around === this._around) return;
+    this._scene.scene.visible = true;
     this._pose = pose;
     this._things = state.things;
     this._around = around;
@@ -93,6 +96,7 @@ export class Drawing {
    */
   showPose(bodies, seat) {
     this._pose = "";
+    this._scene.scene.visible = true;
     this._scene.markTool(false);
     this._scene.showTrail(false);
     this._scene.take({ bodies, tool: this._scene.tool.toArray() }, false);
