@@ -1,5 +1,6 @@
 """For the scripts that look at the teleoperation page: its server, and a Chromium in front of it."""
 
+import json
 import os
 import re
 import shutil
@@ -19,7 +20,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 START_S = 60.0
-AT_START = "The arm is at the start."
+AT_START = "way_back.at_start"
 
 
 @dataclass(frozen=True)
@@ -119,8 +120,9 @@ def sandboxed() -> tuple[str, ...]:
 def drive_back(page: Page) -> None:
     """Have the arm driven back to its start, and stop it there."""
     why = page.locator("#way-back-why")
+    at_start = json.loads(page.locator("#words").text_content() or "")[AT_START]
     for _ in range(10):
-        if why.inner_text() == AT_START:
+        if why.inner_text() == at_start:
             break
         enable(page)
         page.locator("#way-back").dispatch_event("click")

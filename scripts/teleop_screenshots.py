@@ -138,9 +138,8 @@ def recorded(visit: Visit) -> None:
         page.keyboard.press("Escape")
         page.wait_for_timeout(600)
         page.locator("#record").click()
-        page.wait_for_function(
-            "n => parseInt(document.querySelector('#record-text').textContent) > n", arg=before
-        )
+        while episodes(page) <= before:
+            page.wait_for_timeout(100)
     page.locator("#record-teach").click()
     page.locator("#episodes input").nth(EPISODES - 1).wait_for()
 
@@ -273,7 +272,7 @@ def take(browser: Browser, address: str, name: str, look: tuple[str, str, str], 
     page.locator(".label").first.wait_for(state="attached")
     page.wait_for_timeout(SETTLE_MS)
     visit = Visit(page, languages()[language])
-    visit.mode("assisted")
+    visit.mode("latent")
     drive_back(page)
     page.evaluate("scrollTo(0, 0)")
     page.wait_for_timeout(SETTLE_MS)
