@@ -326,6 +326,19 @@ def drag(page: Page, right: float, up: float) -> None:
     page.mouse.move(x + right * box["width"], y - up * box["height"], steps=3)
 
 
+def comes_true(page: Page, expression: str, argument: Any = None, within_s: float = 10.0) -> None:
+    """Wait until something holds in the page. Playwright's own way needs `eval`, which the page forbids."""
+    end_s = time.monotonic() + within_s
+    while not page.evaluate(expression, argument):
+        assert time.monotonic() < end_s, f"it never came to that: {expression}"
+        page.wait_for_timeout(30)
+
+
+@pytest.fixture
+def wait_in_page() -> Callable[..., None]:
+    return comes_true
+
+
 @pytest.fixture
 def drag_stick() -> Callable[[Page, float, float], None]:
     return drag

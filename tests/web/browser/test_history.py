@@ -63,7 +63,7 @@ def driven(page, served, watch, press_enable, press_until_moving):
 
 
 def test_a_drive_is_listed_replayed_printed_and_deleted(
-    page, served, watch, place, press_enable, press_until_moving, tmp_path
+    page, served, watch, place, press_enable, press_until_moving, wait_in_page, tmp_path
 ):
     tool = driven(page, served, watch, press_enable, press_until_moving)
     expect(page.locator("#drives")).to_contain_text("Keyboard")
@@ -73,11 +73,12 @@ def test_a_drive_is_listed_replayed_printed_and_deleted(
 
     page.evaluate("document.addEventListener('arm-drawn', (e) => { window.drawn = e.detail; })")
     page.get_by_role("button", name="Show: entree").first.click()
-    page.wait_for_function("window.drawn")
+    wait_in_page(page, "window.drawn")
     page.locator("#seek").fill(page.locator("#seek").get_attribute("max"))
-    page.wait_for_function(
+    wait_in_page(
+        page,
         "(tool) => window.drawn.tool.every((value, axis) => Math.abs(value - tool[axis]) < 0.005)",
-        arg=tool.tolist(),
+        tool.tolist(),
     )
     page.locator("#seek").fill("0")
     page.get_by_role("button", name="Play").click()

@@ -120,14 +120,14 @@ Object.defineProperty(navigator, "wakeLock", { value: { request: async (kind) =>
 """
 
 
-def test_the_screen_stays_on_while_the_arm_is_enabled(open_page, arm, seat, press_enable):
+def test_the_screen_stays_on_while_the_arm_is_enabled(open_page, arm, seat, press_enable, wait_in_page):
     page = seat(open_page(WAKE_LOCK), arm)
     assert page.evaluate("locks") == []
     press_enable(page, arm)
-    page.wait_for_function("locks.length > 0 && locks.at(-1).held")
+    wait_in_page(page, "locks.length > 0 && locks.at(-1).held")
     assert page.evaluate("locks.at(-1).kind") == "screen"
     page.keyboard.press("Escape")
-    page.wait_for_function("locks.every((lock) => !lock.held)")
+    wait_in_page(page, "locks.every((lock) => !lock.held)")
 
 
 def test_the_page_can_be_installed_and_has_no_service_worker(open_page):

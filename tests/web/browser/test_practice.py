@@ -49,13 +49,13 @@ def test_keys_alone_tick_every_step_off(practising, arm, press_enable):
     page.keyboard.press("Enter")
     while not ticks(page, 1):
         page.keyboard.press("Enter")
-    while not ticks(page, 3, 0.1):
+    # A busy computer stops the arm, and then letting go ends no motion.
+    while not ticks(page, 4, 0.3):
         assert time.monotonic() < end_s
         if not arm.enabled:
             press_enable(page, arm)
             page.locator("#stick").focus()
         hold(page, "ArrowDown", 600)
-    assert ticks(page, 4)
     if not arm.enabled:
         press_enable(page, arm)
     assert done(page) == 4
@@ -97,31 +97,34 @@ def towards_food(page, arm, press_enable, end_s):
             at += 1
 
 
+def choose(page, choice):
+    """Wait until it is lit, and press the switch."""
+    page.locator(f"#scan li[data-choice={choice}][aria-current=true]").wait_for(timeout=30_000)
+    page.keyboard.press("Enter")
+
+
 def test_one_switch_ticks_its_steps_off_in_its_own_words(practising, arm):
     page = practising
     page.locator("input[name=panel][value=switch]").evaluate("one => one.click()")
     assert "press your switch" in page.locator("#practice-now").inner_text()
-
-    def choose(choice):
-        page.locator(f"#scan li[data-choice={choice}][aria-current=true]").wait_for(timeout=30_000)
-        page.locator("#switch").dispatch_event("pointerdown", {"button": 0})
+    page.locator("#switch").focus()
 
     end_s = time.monotonic() + WITHIN_S
     while done(page) < 4:
         assert time.monotonic() < end_s
         if not arm.enabled:
-            choose("enable")
+            choose(page, "enable")
             arm.comes_to(lambda: arm.enabled, 1.5)
         elif done(page) < 3:
-            choose("down")
+            choose(page, "down")
             ticks(page, 3, 2.0)
             # The press that ends the motion.
             if page.locator("#scan li[data-moving=true]").count():
-                page.locator("#switch").dispatch_event("pointerdown", {"button": 0})
+                page.keyboard.press("Enter")
         ticks(page, 4, 0.3)
     while done(page) < 5:
         assert time.monotonic() < end_s
-        choose("stop" if arm.enabled else "enable")
+        choose(page, "stop" if arm.enabled else "enable")
         ticks(page, 5, 1.0)
     assert not arm.enabled
 
@@ -129,7 +132,8 @@ def test_one_switch_ticks_its_steps_off_in_its_own_words(practising, arm):
 def test_a_switch_can_begin_and_skip_the_practice(open_page):
     page = open_page()
     page.locator("input[name=panel][value=switch]").evaluate("one => one.click()")
+    page.locator("#switch").focus()
     for choice, shown in (("practice-begin", True), ("practice-skip", False)):
-        page.locator(f"#scan li[data-choice={choice}][aria-current=true]").wait_for(timeout=30_000)
-        page.locator("#switch").dispatch_event("pointerdown", {"button": 0})
+        choose(page, "more")
+        choose(page, choice)
         page.locator("#practice-now").wait_for(state="visible" if shown else "hidden")

@@ -50,7 +50,8 @@ def settings(page):
 def test_axes_sensitivity_and_name_are_kept(person, arm, held, press_enable, address):
     assert held("ArrowUp")["u"] == [0, 1]
     dialog = settings(person)
-    added = person.request.post("/records/people", data={"name": "Ada"}, headers={"origin": address})
+    people = f"{address}/records/people"
+    added = person.request.post(people, data={"name": "Ada"}, headers={"origin": address})
     assert added.ok
     dialog.get_by_role("button", name="Done").click()
     dialog = settings(person)
@@ -96,7 +97,7 @@ def test_a_step_ends_by_itself(person, arm, press_enable, press_until_moving):
 
 
 def test_a_latched_press_goes_on_until_the_next(person, arm, press_enable, press_until_moving):
-    settings(person).get_by_label("moves the arm until I press again").check()
+    settings(person).get_by_role("radio", name="moves the arm until I press again").check()
     person.get_by_role("button", name="Done").click()
     person.get_by_role("radio", name="Buttons").check()
     arm.wait(lambda: not arm.enabled)
@@ -117,7 +118,7 @@ def test_two_switches_go_on_and_choose(person, arm):
     lit.get_by_text("Enable").wait_for()
     person.wait_for_timeout(1500)
     assert lit.inner_text() == "Enable"
-    person.get_by_role("button", name="Next").click()
+    person.locator("#switch-next").click()
     lit.get_by_text("Other mode").wait_for()
     person.get_by_role("button", name="Switch", exact=True).click()
     arm.wait(lambda: arm.state["mode"] == "end_effector")

@@ -132,6 +132,14 @@ class TestStabbing:
         arm.wait(lambda: np.abs(np.array(arm.things["poses"][1][:2]) - lay[:2]).max() > 1e-3)
         said.get_by_text("Done!").wait_for(state="detached")
 
+        # The drive is in the history, with how it went.
+        page.goto(f"{page.url.rstrip('/')}/history")
+        figures = page.locator("#drives li").first
+        figures.get_by_text("2 of 2 steps").wait_for()
+        assert figures.locator("strong").get_attribute("data-outcome") == "success"
+        drive_record = page.request.get(page.url.replace("/history", "/records/drives")).json()["drives"][0]
+        assert (drive_record["choice"], drive_record["ended"]) == ("marshmallow", "next")
+
     def test_a_fork_on_the_plate_fails_and_it_is_said_why(self, page, arm, press_enable):
         page.get_by_label("What to do").select_option(label="plate")
         arm.wait(lambda: arm.state["task"]["choice"] == 1)
