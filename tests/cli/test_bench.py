@@ -18,7 +18,8 @@ def test_bench_gives_every_figure_and_equal_losses(monkeypatch: pytest.MonkeyPat
         "sequential_fit_s",
         "sequential_over_batched",
     } <= rows.keys()
-    assert rows["batched_fit_loss"].mean == rows["sequential_fit_loss"].mean
+    # In single precision, and some processors add in another order where matrices are stacked.
+    assert rows["batched_fit_loss"].mean == pytest.approx(rows["sequential_fit_loss"].mean, rel=1e-6)
     many = {row.measure: row for row in all_rows if row.condition == "50 goals"}
     assert {"online_step_median_us", "online_step_p99_us"} <= many.keys()
     assert rows["online_step_median_us"].n == many["online_step_median_us"].n == 70
