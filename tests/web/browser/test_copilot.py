@@ -15,7 +15,7 @@ def test_a_copilot_asks_is_accepted_slows_and_ends(page, arm, open_page, press_e
     expect(page.locator("#copilot")).to_contain_text("40 % of your speed")
     press_enable(page, arm)
     other.get_by_role("button", name="Hold still").click()
-    expect(page.get_by_role("status")).to_contain_text("holds the arm still")
+    expect(page.locator("#status")).to_contain_text("holds the arm still")
     page.locator("#stick").focus()
     page.keyboard.down("ArrowUp")
     arm.stays()
