@@ -152,7 +152,9 @@ def test_help_shows_in_the_state(site):
         page.send(type="mode", mode="assisted")
         drive(page)
         state = page.wait(lambda state: state["alpha"] > 0.0)
-        assert state["alpha"] == pytest.approx(0.15)
+        # Medium at first, which grows to 0.1 with how sure the robot is.
+        assert state["help"] == "medium"
+        assert state["alpha"] <= 0.1
         assert state["bound_m"] > 0.0
         assert sum(state["belief"]) == pytest.approx(1.0, abs=1e-3)
         page.send(type="mode", mode="latent")
