@@ -117,7 +117,8 @@ class Trace(Message):
 
     Attributes:
         version: of this document.
-        period_s: moments are at least this far apart; where they are further, nothing changed until then.
+        period_s: moments are at least this far apart, but for the last; where they are further, nothing
+            changed until then.
         t: N times, s since the drive began.
         q: N rows of joint positions, rad.
         tool: N positions, m.
