@@ -136,7 +136,7 @@ def _reached(state: SceneState, task: Task, waypoint: Pose) -> bool:
 
 
 def _alone(tool: Pose, time_s: float) -> SceneState:
-    """How things stand where there are none."""
+    """The state of a scene without things."""
     return SceneState(
         time_s=time_s,
         tool=tool,

@@ -197,7 +197,7 @@ class DriveLog:
             self._open.inputs[source] += pressed
 
     def end(self, why: Ending) -> Logged | None:
-        """End the drive under way; None where there is none."""
+        """End the drive under way; None if no drive has begun."""
         drive, self._open = self._open, None
         self._u = ()
         if why == "run_changed":

@@ -179,7 +179,7 @@ class Drives:
                 self._take(path)
 
     def packed(self, drive: str) -> bytes | None:
-        """A drive's trace as it is kept, unchecked; None where there is none."""
+        """A drive's trace as it is kept, unchecked; None if it has no trace."""
         path = self._path(self._known(drive)).with_suffix(TRACE)
         return None if is_missing(path) else read_bytes(path, PACKED_LIMIT)
 

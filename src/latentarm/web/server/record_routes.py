@@ -155,7 +155,7 @@ class RecordRoutes:
         """The person whom a request names.
 
         Raises:
-            NoticeError: there is none.
+            NoticeError: nobody has this id.
         """
         person = self._records.people.find(request.path_params["person"])
         if person is None:

@@ -35,7 +35,7 @@ export class Things {
     this._to = null;
   }
 
-  /** Where a thing is shown now, m; null where there is none of that name. @param {string} name */
+  /** Where a thing is shown now, m; null if nothing has that name. @param {string} name */
   placeOf(name) {
     return this._things[this._names.indexOf(name)]?.position ?? null;
   }
