@@ -349,6 +349,6 @@ def press_until_moving() -> Callable[[Page, Arm, Callable[[], Any], Callable[[],
     return move
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def press_enable() -> Callable[[Page, Arm], None]:
     return enable

@@ -24,7 +24,9 @@ CUT_OFF = """() => {
     const box = text.parentElement;
     if (!text.data.trim() || !box.checkVisibility({ visibilityProperty: true })) continue;
     if (box.closest(".visually-hidden, .skip, .labels, svg, script, option")) continue;
-    if (getComputedStyle(box).display === "inline") continue;
+    const { display, clipPath } = getComputedStyle(box);
+    // What is clipped away is for screen readers.
+    if (display === "inline" || clipPath === "inset(50%)") continue;
     const range = document.createRange();
     range.selectNodeContents(text);
     const letters = range.getBoundingClientRect();

@@ -86,7 +86,7 @@ def test_whatever_the_person_does_ends_it(on_its_way, arm, ending):
     else:
         page.keyboard.press(ending)
     arm.wait(lambda: not arm.state["returning"] and arm.state["phase"] != "moving", 1.5)
-    arm.stays()
+    arm.is_let_go()
     if ending == "ArrowLeft":
         page.keyboard.up(ending)
 

@@ -24,12 +24,10 @@ class Page:
     Attributes:
         path: where it is served.
         name: of its folder in ``pages/``, of the template, script and style sheet in it, and of its words.
-        scanned: whether switches scan it. They lead only to such pages: they could not leave another one.
     """
 
     path: str
     name: str
-    scanned: bool = False
 
     @property
     def template(self) -> str:
@@ -48,8 +46,8 @@ class Page:
 
 
 PAGES: Final = (
-    Page("/", "drive", scanned=True),
-    Page("/personalise", "personalise", scanned=True),
+    Page("/", "drive"),
+    Page("/personalise", "personalise"),
     Page("/teach", "teach"),
     Page("/people", "people"),
     Page("/history", "history"),

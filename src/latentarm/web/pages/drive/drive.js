@@ -46,7 +46,6 @@ const WORDS_MS = 250;
 /** @type {Drawing | null} */
 let drawing = null;
 const { settings, connection, status, lease, stop, feedback } = attachPage({
-  scans: true,
   drop: () => {
     practice.stopped();
     input.drop();

@@ -1,5 +1,6 @@
 /** The History page: drives to filter, to look at again, to compare, to print, to rename and to delete. */
 
+import { attachWholePage } from "../inputs/whole_page.js";
 import { byId, create, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice, sayNumber } from "../layout/words.js";
@@ -19,8 +20,9 @@ const GUEST = "";
 
 /** @type {ReturnType<typeof attachReplay> | null} */
 let replay = null;
-const { settings } = attachPage({ repaint: () => replay?.repaint(), runChanged: () => {} });
+const { settings, stop } = attachPage({ repaint: () => replay?.repaint(), runChanged: () => {} });
 replay = attachReplay(settings);
+attachWholePage(settings, stop);
 
 const filters = byId("filters", HTMLFormElement);
 const fields = /** @type {Record<"person" | "task" | "input" | "since" | "until", HTMLSelectElement | HTMLInputElement>} */ (

@@ -68,9 +68,14 @@ export function attachKeyboard(input, settings, actions) {
 function isTaken(target, code, driving) {
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog")) return true;
-  if (target.matches("textarea, select, input:not([type=radio], [type=checkbox], [type=button])")) return true;
+  if (isTyping(target)) return true;
   // Arrows choose among radio buttons; while the arm is enabled they drive it.
   return !driving && code.startsWith("Arrow") && target.matches("input[type=radio]");
+}
+
+/** Whether keys change what is in the focused control. @param {EventTarget | null} target */
+export function isTyping(target) {
+  return target instanceof HTMLElement && target.matches("textarea, select, input:not([type=radio], [type=checkbox], [type=button])");
 }
 
 /** Whether Enter means something to the focused control. @param {EventTarget | null} target */

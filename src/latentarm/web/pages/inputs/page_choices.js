@@ -30,9 +30,9 @@ export function linkChoices(part) {
   return links.map((link) => ({ id: `link-${link.pathname}`, label: link.textContent.trim(), act: () => link.click() }));
 }
 
-/** The other pages that switches can leave again, by the names in the row at the top. @returns {Choice[]} */
+/** The other pages, by the names in the row at the top. @returns {Choice[]} */
 export function pageChoices() {
-  const links = /** @type {HTMLAnchorElement[]} */ ([...byId("pages").querySelectorAll("a[data-scanned]:not([aria-current])")]);
+  const links = /** @type {HTMLAnchorElement[]} */ ([...byId("pages").querySelectorAll("a:not([aria-current])")]);
   return links.map((link) => ({ id: `page-${link.pathname}`, label: link.textContent.trim(), act: () => link.click() }));
 }
 

@@ -39,8 +39,12 @@ export function groupOf(id, label, inner, always = []) {
  * @param {PersonInput} input
  * @param {Settings} settings
  * @param {() => Choice[]} offered what there is to choose from now
+ * @param {(target: EventTarget | null) => boolean} [keeps] whether a focused control keeps its keys; by default while
+ *   nothing could move
  */
-export function attachScanning(parts, input, settings, offered) {
+export function attachScanning(
+  parts, input, settings, offered, keeps = (target) => isInteractive(target) && (!input.live || inDialog(target)),
+) {
   const scanner = new Scanner(input, settings);
   const speak = attachSpeech(settings);
 
@@ -106,9 +110,7 @@ export function attachScanning(parts, input, settings, offered) {
   window.addEventListener("keydown", (event) => {
     const number = switchOf(event.code);
     if (number < 0 || !scanner.on || number >= Number(settings.values.switches)) return;
-    // A focused control keeps its keys only while nothing could move.
-    const elsewhere = isInteractive(event.target) && event.target !== parts.press && event.target !== parts.next;
-    if (elsewhere && (!input.live || inDialog(event.target))) return;
+    if (event.target !== parts.press && event.target !== parts.next && keeps(event.target)) return;
     // Before the keyboard's own meaning of the key, and before the click that Enter would make of it.
     event.preventDefault();
     event.stopImmediatePropagation();

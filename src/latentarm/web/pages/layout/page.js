@@ -16,16 +16,16 @@ import { byId, setText } from "./dom.js";
 import { readWords, say } from "./words.js";
 
 /**
- * @param {{drop?: () => void, repaint?: () => void, runChanged?: () => void, scans?: boolean}} [page] what this page lets
- *   go of at a Stop, draws anew when the theme changes, and does when another run has been loaded; whether switches scan it
+ * @param {{drop?: () => void, repaint?: () => void, runChanged?: () => void}} [page] what this page lets
+ *   go of at a Stop, draws anew when the theme changes, and does when another run has been loaded
  */
-export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = () => location.reload(), scans = false } = {}) {
+export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = () => location.reload() } = {}) {
   readWords();
   const settings = new Settings();
   const connection = new Connection(settings.person);
   const status = attachStatus({ line: byId("status"), text: byId("status-text") }, connection);
   const lease = new DriverLease(connection);
-  const spaceStops = () => !scans || !isSwitch(settings.values, "Space");
+  const spaceStops = () => !isSwitch(settings.values, "Space");
   const stop = attachStop(connection, () => {
     lease.forget();
     drop();

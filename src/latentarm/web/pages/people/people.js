@@ -1,5 +1,6 @@
 /** The People page: who drives, adding, renaming, taking along, bringing and deleting. */
 
+import { attachWholePage } from "../inputs/whole_page.js";
 import { byId, create, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
@@ -7,7 +8,8 @@ import { ask, sayTime } from "../records/ask.js";
 
 /** @typedef {{id: string, name: string, drives: number, last: string | null}} Person */
 
-const { settings } = attachPage();
+const { settings, stop } = attachPage();
+attachWholePage(settings, stop);
 const add = byId("add", HTMLFormElement);
 const nameField = /** @type {HTMLInputElement} */ (add.elements.namedItem("person"));
 const renaming = byId("rename", HTMLDialogElement);

@@ -15,7 +15,7 @@ const STEPS = 10;
 export function settingChoices(form, group) {
   return [...form.querySelectorAll("fieldset")].flatMap((section, number) => {
     const id = `settings-${number}`;
-    const inner = fieldsOf(section).map((field, at) => choiceOf(field, `${id}-${at}`, group));
+    const inner = fieldsOf(section).map((field, at) => fieldChoice(field, `${id}-${at}`, group));
     return inner.length ? [group(id, wordsOf(section.querySelector("legend")), inner)] : [];
   });
 }
@@ -32,7 +32,7 @@ function fieldsOf(section) {
  * @param {(id: string, label: string, inner: Choice[]) => Choice} group
  * @returns {Choice}
  */
-function choiceOf(field, id, group) {
+export function fieldChoice(field, id, group) {
   const label = wordsOf(field.closest("label"));
   if (field instanceof HTMLSelectElement) {
     const options = [...field.options].map((option, at) => ({
@@ -82,9 +82,9 @@ function marked(name, on) {
   return say(on ? "scanning.now" : "scanning.plain", { name });
 }
 
-/** What is written there, without the values next to sliders. @param {Element | null} element */
-function wordsOf(element) {
+/** What is written there, without the values next to sliders. @param {Element | null} element @param {string} [without] what else is left out */
+export function wordsOf(element, without = "template") {
   const copy = /** @type {Element | undefined} */ (element?.cloneNode(true));
-  for (const part of copy?.querySelectorAll("input, select, [data-shows]") ?? []) part.remove();
+  for (const part of copy?.querySelectorAll(`input, select, [data-shows], ${without}`) ?? []) part.remove();
   return (copy?.textContent ?? "").replace(/\s+/g, " ").trim();
 }

@@ -1,5 +1,6 @@
 /** The Teach page: recorded episodes are chosen, a run is trained on them, and driven. */
 
+import { attachWholePage } from "../inputs/whole_page.js";
 import { byId, create, fillBar, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice, sayNumber } from "../layout/words.js";
@@ -16,7 +17,8 @@ const FEWEST = 3;
 /** The run that this page goes to drive once it is loaded, and until when. */
 let going = { run: "", until: -Infinity };
 
-const { connection, lease } = attachPage({ runChanged: () => {} });
+const { connection, settings, lease, stop } = attachPage({ runChanged: () => {} });
+attachWholePage(settings, stop);
 
 /** Whether somebody else drives, who alone may train and choose. */
 let watching = false;
