@@ -210,3 +210,18 @@ def test_an_export_of_a_stranger_writes_nowhere_else(records, tmp_path, names):
     assert [path.name for path in tmp_path.iterdir()] in ([], [FOLDER])
     found = {path.name for path in tmp_path.rglob("*") if path.is_file()}
     assert found <= {"person.json"}
+
+
+@pytest.mark.parametrize(
+    ("name", "title"), [("An", "Soup with An"), ("李雷", "李雷的汤"), ("Zoë", "zoë's soup")]
+)
+def test_titles_that_name_a_person_go_with_them_and_no_others(records, tmp_path, name, title):
+    person = records.people.add(name)
+    for file, text in (("one.sqlite", title), ("two.sqlite", "Banana soup")):
+        (tmp_path / file).touch()
+        records.recordings.entitle(file, text)
+    records.erase(person.id)
+    assert {one.name: one.title for one in records.recordings.all()} == {
+        "one.sqlite": "",
+        "two.sqlite": "Banana soup",
+    }

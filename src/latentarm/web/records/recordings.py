@@ -1,5 +1,6 @@
 """Recordings of this and of earlier server starts: journals in the folder that the server records to."""
 
+import re
 import sqlite3
 import threading
 import time
@@ -183,7 +184,7 @@ class Recordings:
                     else:
                         _erase(path, person)
             titles = self._titles()
-            left = {key: text for key, text in titles.items() if name.casefold() not in text.casefold()}
+            left = {key: text for key, text in titles.items() if not _names(text, name)}
             if left != titles:
                 write_record(_Titles(titles=left), self._titles_path)
 
@@ -236,6 +237,14 @@ class Recordings:
 
     def _titles(self) -> dict[str, str]:
         return {} if is_missing(self._titles_path) else read_record(_Titles, self._titles_path).titles
+
+
+def _names(text: str, name: str) -> bool:
+    """Whether a text holds a person's name: as a word of its own in scripts that divide words."""
+    text, name = text.casefold(), name.casefold()
+    if not name.isascii():
+        return name in text
+    return re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text) is not None
 
 
 def _state(path: Path) -> tuple[int, tuple[int, int]]:
