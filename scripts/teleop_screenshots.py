@@ -1,8 +1,9 @@
 """Pictures of every page and state: for desks and phones, light, dark and forced colours, in each language.
 
-The run is driven by a script for them: a simulated person. A contact sheet shows them all. For example:
+The run is driven by a script for them: a simulated person. A contact sheet shows all pictures of the folder,
+a row for each state and a column for each look. For example:
 
-    python scripts/teleop_screenshots.py RUN --out pictures --only drive teach --sizes phone --languages en de
+    python scripts/teleop_screenshots.py RUN --out pictures --only drive --looks laptop-light-en phone-dark-de
 """
 
 import argparse
@@ -11,11 +12,10 @@ import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 from playwright.sync_api import Browser, Locator, Page
 
 from latentarm.web.words.catalogue import COOKIE, Words, languages
@@ -34,8 +34,22 @@ SCHEMES: dict[str, dict[str, Any]] = {
     "dark": {"color_scheme": "dark"},
     "forced": {"color_scheme": "dark", "forced_colors": "active"},
 }
-TILE = (300, 240)
-COLUMNS = 8
+CROSS = (
+    *(f"{size}-light-en" for size in SIZES),
+    *(f"laptop-{scheme}-en" for scheme in SCHEMES if scheme != "light"),
+    *(
+        f"{size}-light-{language}"
+        for size in ("laptop", "phone")
+        for language in languages()
+        if language != "en"
+    ),
+)
+"""Looks: each size in English, each scheme on a laptop, each language on a laptop and a phone."""
+
+TILE = (200, 160)
+GAP = 6
+MARGIN = 150
+PERSON = "Ada"
 SETTLE_MS = 800
 EPISODES = 3
 MOST_STARTS = 5
@@ -213,6 +227,62 @@ def tried(visit: Visit) -> None:
     visit.page.locator("#trial").wait_for()
 
 
+def stopped(visit: Visit) -> None:
+    """After Stop, with the stick to be let go."""
+    driving(visit)
+    visit.page.keyboard.press("Escape")
+
+
+def watching(visit: Visit) -> None:
+    """A page that watches while another one drives."""
+    visit.button("practice.skip").click()
+    visit.page.locator("#release").click()
+    other = visit.page.context.new_page()
+    other.goto(visit.page.url)
+    other.locator("#ask").click()
+    visit.page.locator("#status").scroll_into_view_if_needed()
+
+
+def people(visit: Visit) -> None:
+    """The people of the server."""
+    visit.page.goto(f"{visit.page.url}people")
+    visit.page.locator("#people li").nth(1).wait_for()
+
+
+def people_scanned(visit: Visit) -> None:
+    """The people, one of whom a switch would choose."""
+    visit.choose("panel", "switch")
+    people(visit)
+    visit.page.locator(".lit").wait_for()
+
+
+def person_erased(visit: Visit) -> None:
+    """What would go with a person."""
+    people(visit)
+    visit.page.locator("#people li").nth(1).locator("button").last.click()
+    visit.page.locator("#erase").wait_for()
+
+
+def history(visit: Visit) -> None:
+    """The drives."""
+    visit.page.goto(f"{visit.page.url}history")
+    visit.page.locator("#drives li").first.wait_for()
+
+
+def replayed(visit: Visit) -> None:
+    """A drive that is shown again."""
+    history(visit)
+    visit.page.locator("#drives li").first.locator("button").first.click()
+    visit.page.locator("#replay .label").first.wait_for(state="attached")
+    visit.page.locator("#replay").scroll_into_view_if_needed()
+
+
+def reported(visit: Visit) -> None:
+    """The report, as it is printed."""
+    history(visit)
+    visit.page.emulate_media(media="print")
+
+
 def card(visit: Visit) -> None:
     """The card, as it is printed."""
     visit.page.emulate_media(media="print")
@@ -240,6 +310,8 @@ def push_aside(page: Page) -> None:
 SHOTS: dict[str, Callable[[Visit], None]] = {
     "drive-new": fresh,
     "drive": driving,
+    "drive-stopped": stopped,
+    "drive-watching": watching,
     "drive-practice": practising,
     "drive-buttons": buttons,
     "drive-switch": switch,
@@ -252,12 +324,44 @@ SHOTS: dict[str, Callable[[Visit], None]] = {
     "personalise-trial": tried,
     "teach": recorded,
     "teach-trained": trained,
+    "people": people,
+    "people-switch": people_scanned,
+    "people-delete": person_erased,
+    "history": history,
+    "history-replay": replayed,
+    "history-report": reported,
 }
 
 
-def take(browser: Browser, address: str, name: str, look: tuple[str, str, str], out: Path) -> Path:
+def begin(page: Page, address: str, language: str) -> Visit:
+    """The Drive page, drawn, in this language and in learned motions."""
+    page.context.add_cookies([{"name": COOKIE, "value": language, "url": address}])
+    page.goto(address)
+    page.locator(".label").first.wait_for(state="attached")
+    page.wait_for_timeout(SETTLE_MS)
+    visit = Visit(page, languages()[language])
+    visit.mode("latent")
+    return visit
+
+
+def drive_once(browser: Browser, address: str) -> None:
+    """A person with a record drives for a few seconds: the history is not empty."""
+    context = browser.new_context(reduced_motion="reduce")
+    page = context.new_page()
+    page.goto(f"{address}/people")
+    page.locator("#add input").fill(PERSON)
+    page.locator("#add button").click()
+    page.locator("#people li").nth(1).wait_for()
+    begin(page, address, "en")
+    push_for(page, 2000)
+    page.keyboard.press("Escape")
+    drive_back(page)
+    context.close()
+
+
+def take(browser: Browser, address: str, name: str, look: str, out: Path) -> None:
     """Take a picture of a state, with a size, a scheme and a language."""
-    size, scheme, language = look
+    size, scheme, language = look.split("-")
     width, height = SIZES[size]
     # Twice as fine: the software renderer spares pixels.
     context = browser.new_context(
@@ -266,37 +370,41 @@ def take(browser: Browser, address: str, name: str, look: tuple[str, str, str], 
         reduced_motion="reduce",
         **SCHEMES[scheme],
     )
-    context.add_cookies([{"name": COOKIE, "value": language, "url": address}])
     page = context.new_page()
-    page.goto(address)
-    page.locator(".label").first.wait_for(state="attached")
-    page.wait_for_timeout(SETTLE_MS)
-    visit = Visit(page, languages()[language])
-    visit.mode("latent")
+    visit = begin(page, address, language)
     drive_back(page)
     page.evaluate("scrollTo(0, 0)")
     page.wait_for_timeout(SETTLE_MS)
     SHOTS[name](visit)
     page.wait_for_timeout(600)
-    path = out / f"teleop-{name}-{size}-{scheme}-{language}.png"
-    page.screenshot(path=path)
+    page.screenshot(path=out / f"{name}-{look}.png")
     tidy(page)
     context.close()
     # So that the next page finds nobody who drives.
     time.sleep(0.3)
-    return path
 
 
-def contact_sheet(pictures: list[Path], path: Path) -> None:
-    """All pictures on one, small."""
-    rows = -(-len(pictures) // COLUMNS)
-    sheet = Image.new("RGB", (COLUMNS * TILE[0], rows * TILE[1]), "white")
-    for index, picture in enumerate(pictures):
-        with Image.open(picture) as whole:
-            small = whole.convert("RGB")
-        small.thumbnail((TILE[0] - 10, TILE[1] - 10))
-        sheet.paste(small, (index % COLUMNS * TILE[0] + 5, index // COLUMNS * TILE[1] + 5))
-    sheet.save(path)
+def contact_sheet(out: Path) -> None:
+    """All pictures of the folder on one, small: a row for each state, a column for each look."""
+    columns = [look for look in CROSS if any((out / f"{name}-{look}.png").exists() for name in SHOTS)]
+    rows = [name for name in SHOTS if any((out / f"{name}-{look}.png").exists() for look in columns)]
+    wide, high = TILE[0] + GAP, TILE[1] + GAP
+    sheet = Image.new("RGB", (MARGIN + len(columns) * wide, 30 + len(rows) * high), "white")
+    draw = ImageDraw.Draw(sheet)
+    font = ImageFont.load_default(size=15)
+    for column, look in enumerate(columns):
+        draw.text((MARGIN + column * wide, 6), look, "black", font)
+        for row, name in enumerate(rows):
+            picture = out / f"{name}-{look}.png"
+            if not picture.exists():
+                continue
+            with Image.open(picture) as whole:
+                small = whole.convert("RGB")
+            small.thumbnail(TILE, Image.Resampling.LANCZOS)
+            sheet.paste(small, (MARGIN + column * wide, 30 + row * high))
+    for row, name in enumerate(rows):
+        draw.text((6, 30 + row * high), name.replace("-", "\n"), "black", font)
+    sheet.save(out / "contact-sheet.webp", quality=85)
 
 
 def main() -> None:
@@ -305,20 +413,19 @@ def main() -> None:
     parser.add_argument("run", type=Path)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--only", nargs="+", choices=SHOTS, default=list(SHOTS))
-    parser.add_argument("--sizes", nargs="+", choices=SIZES, default=list(SIZES))
-    parser.add_argument("--schemes", nargs="+", choices=SCHEMES, default=list(SCHEMES))
-    parser.add_argument("--languages", nargs="+", choices=languages(), default=list(languages()))
+    parser.add_argument("--looks", nargs="+", default=list(CROSS), metavar="SIZE-SCHEME-LANGUAGE")
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
-    looks = list(product(given.sizes, given.schemes, given.languages))
     with tempfile.TemporaryDirectory() as folder:
         # What is learned for the pictures is not kept.
         run = Path(shutil.copytree(given.run, Path(folder) / given.run.name))
         with served(run) as site, chromium() as browser:
-            pictures = [
-                take(browser, site.address, name, look, given.out) for look in looks for name in given.only
-            ]
-    contact_sheet(pictures, given.out / "contact-sheet.png")
+            drive_once(browser, site.address)
+            for look in given.looks:
+                for name in given.only:
+                    take(browser, site.address, name, look, given.out)
+                    print(f"{name}-{look}", flush=True)
+    contact_sheet(given.out)
 
 
 if __name__ == "__main__":
