@@ -51,6 +51,22 @@ def test_a_gripper_that_moves_while_the_arm_rests_is_kept():
     np.testing.assert_array_equal(found.extras["observation.gripper_width"].ravel(), [0.08] * 10 + [0.0] * 11)
 
 
+def test_a_thing_that_moves_while_the_arm_rests_is_where_it_was_put():
+    recorded = drives(1.0, 2.0, 1.0)
+    (episode,) = recorded.episodes
+    poses = np.tile([0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (len(episode.state), 1))
+    poses[:, 1] = np.interp(episode.timestamp, [1.5, 2.5], [0.0, 0.3])
+    extras = {"observation.environment_state": poses, "belief": poses}
+    with_cup = replace(recorded, objects=("cup",), episodes=(replace(episode, extras=extras),))
+    found = without_pauses(with_cup, 10.0)
+    validate(found, "here")
+    (episode,) = found.episodes
+    assert set(episode.extras) == {"observation.environment_state"}
+    np.testing.assert_array_equal(
+        episode.extras["observation.environment_state"][:, 1], [0.0] * 10 + [0.3] * 11
+    )
+
+
 def test_episodes_without_motion_are_left_out():
     still, moving = drives(0.0, 2.0), drives(1.0)
     both = Demonstrations(still.episodes + moving.episodes, 100.0, ("a", "b"))

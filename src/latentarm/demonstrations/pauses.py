@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from latentarm.demonstrations.gripper import OBSERVED
+from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
 from latentarm.kinematics.stillness import STILL_RAD_S
 from latentarm.types import Demonstrations, Episode, FloatArray
@@ -25,8 +26,8 @@ def without_pauses(demonstrations: Demonstrations, rate_hz: float) -> Demonstrat
 
     Args:
         demonstrations: recorded drives. Actions and further features are left out: they are those of the
-            moment, and these moments are gone. What was observed of a gripper is kept, as it was when the
-            arm went on.
+            moment, and these moments are gone. What was observed of a gripper and of things is kept,
+            as it was when the arm went on.
         rate_hz: samples a second of motion.
 
     Returns:
@@ -54,9 +55,9 @@ def _moving(episode: Episode, rate_hz: float) -> Episode | None:
     # Beyond the end interpolation stays at the last state, which is not the first one of its moment.
     states[-1] = episode.state[-1]
     state = np.stack([np.interp(timestamp, moments, joint) for joint in states.T], axis=1)
-    # Where the clock stands still, a gripper may move: the arm goes on with what it has become.
+    # Where the clock stands still, a gripper or a thing may move: the arm goes on with what has become of it.
     last = np.searchsorted(moved_s, timestamp + _ROUNDING / rate_hz, side="right") - 1
-    extras = {name: episode.extras[name][last] for name in OBSERVED if name in episode.extras}
+    extras = {name: episode.extras[name][last] for name in (*OBSERVED, ENVIRONMENT) if name in episode.extras}
     return Episode(state=state, timestamp=timestamp, task=episode.task, extras=extras)
 
 
