@@ -273,19 +273,50 @@ class Reading:
     gripper: GripperReading | None = None
 
 
+StopCode = Literal[
+    "arm_emergency_stop",
+    "arm_fault",
+    "arm_off",
+    "clock_jumped",
+    "clock_stood_still",
+    "controller_failed",
+    "controller_invalid",
+    "gripper_invalid",
+    "input_invalid",
+    "input_late",
+    "joint_astray",
+    "joint_frozen",
+    "joint_jumped",
+    "joints_invalid",
+    "let_go_first",
+    "loop_late",
+    "no_smooth_path",
+    "not_enabled",
+    "reading_invalid",
+    "reading_old",
+    "readings_unsteady",
+    "slide_astray",
+    "slide_jumped",
+]
+"""Kinds of stops."""
+
+
 @dataclass(frozen=True)
 class Stop:
     """A safety filter's refusal.
 
     Attributes:
-        reason: one short sentence for the person.
+        reason: one short sentence for the person, in English.
         untrusted: the readings of the joints cannot be true; a recording ends before them.
-        code: of the commonest reasons, for interfaces in other languages; None for the others.
+        code: what kind of stop it is, for interfaces in other languages; None where somebody else than this
+            package says why.
+        parameters: what such a sentence names; a name of a number ends in its unit.
     """
 
     reason: str
     untrusted: bool = False
-    code: Literal["not_enabled", "input_late", "loop_late"] | None = field(default=None, compare=False)
+    code: StopCode | None = field(default=None, compare=False)
+    parameters: Mapping[str, str | int] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)

@@ -45,11 +45,12 @@ def first_doubt(made, readings, velocity, dt_s, every=1):
     before = np.zeros(readings.shape[1])
     for tick, (reading, command) in enumerate(zip(readings, velocity, strict=True)):
         time_s = tick * dt_s
-        said = made.jump(reading, time_s) or made.follow(
+        stop = made.jump(reading, time_s) or made.follow(
             reading, before, time_s, new=tick % every == 0, driven=True
         )
-        if said is not None:
-            return time_s, said
+        if stop is not None:
+            assert stop.untrusted
+            return time_s, stop.reason
         before = command
     return None
 
@@ -186,7 +187,7 @@ def test_an_arm_that_is_not_driven_may_be_moved_by_hand(arm):
 def test_metres_where_a_joint_slides(gantry):
     made, _ = make(gantry, joint_speed=0.5)
     assert made.follow(gantry.home, np.zeros(4), 0.0, new=True, driven=True) is None
-    assert " m in 10 ms" in made.jump(gantry.home + np.array([0.4, 0.0, 0.0, 0.0]), 0.01)
+    assert " m in 10 ms" in made.jump(gantry.home + np.array([0.4, 0.0, 0.0, 0.0]), 0.01).reason
 
 
 def test_a_window_that_is_shorter_than_the_lag_is_refused(arm):

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from latentarm.errors import UserError
 from latentarm.untrusted.names import MOST_CHARACTERS, clean_name
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
-from latentarm.web.protocol.channel import Report, TaskState
 from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.report import Report, TaskState
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.records.drive_log import LATE, MOST_VALUES, About, DriveLog
 from latentarm.web.records.drive_record import checked_trace, packed
@@ -164,7 +164,7 @@ def test_a_damaged_record_is_named_and_the_rest_is_there(records, about, tmp_pat
     again = Records(tmp_path, dict, lambda: None)
     assert [person.name for person in again.people.all()] == ["Ada"]
     assert again.drives.find(record.id) == record
-    assert str(path) in again.people.problems[0]
+    assert str(path) in again.people.problems[0].text
 
 
 @given(at=st.integers(0, 10**6), byte=st.integers(0, 255))

@@ -70,7 +70,7 @@ def test_a_full_journal_ends_the_episode_whole_and_says_so(tmp_path):
     for tick in range(400):
         writer.add(sample(tick, state=0.5 + 1e-4 * tick))
     episode = recorded(writer)
-    assert "reached its limit" in writer.status.problem.text
+    assert writer.status.problem.code == "journal_full"
     assert not writer.on
     assert episode.complete
     assert 0 < len(episode.records) < 400
@@ -92,7 +92,7 @@ def test_a_deleted_journal_is_noticed_and_the_next_episode_goes_into_another(tmp
     files[0].unlink()
     # Its thread ends when it has noticed.
     writer._thread.join(timeout=20.0)
-    assert "was deleted, moved or replaced" in writer.status.problem.text
+    assert writer.status.problem.code == "journal_lost"
     assert not writer.on
     writer.begin(HEADER)
     writer.add(sample(10))

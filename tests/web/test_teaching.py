@@ -173,9 +173,9 @@ def test_a_run_has_one_name_however_it_is_reached(tmp_path, monkeypatch):
         (tmp_path / place / "config.json").write_text("{}")
     monkeypatch.chdir(tmp_path)
     run_list = RunList(Path("out"), Path("elsewhere/one"))
-    assert list(run_list.runs()) == ["one", "one (as started)"]
+    assert list(run_list.runs()) == ["one", "one (2)"]
     assert run_list.name_of(tmp_path / "out" / "runs" / "one") == "one"
-    assert run_list.name_of(tmp_path / "elsewhere" / "one") == "one (as started)"
+    assert run_list.name_of(tmp_path / "elsewhere" / "one") == "one (2)"
     assert run_list.name_of(None) is None
     assert list(RunList(Path("elsewhere"), Path("elsewhere/two")).runs()) == ["two"]
 

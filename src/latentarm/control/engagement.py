@@ -45,6 +45,6 @@ class Engagement:
         if self._stopped is None:
             return None
         if not self._neutral:
-            return Stop("Let go of the stick first, then enable the arm.")
+            return Stop("Let go of the stick first, then enable the arm.", code="let_go_first")
         self._stopped = None
         return None

@@ -27,7 +27,18 @@ _SHORTEST = 2
 
 @final
 class ImplausibleWarning(UserWarning):
-    """Some samples of an episode are impossible and were not exported."""
+    """Some samples of an episode are impossible and were not exported.
+
+    Args:
+        message: one sentence.
+        task: what was done in the episode.
+        kept_s: how long is what was exported of it, s; 0 where it was left out.
+    """
+
+    def __init__(self, message: str, task: str, kept_s: float) -> None:
+        super().__init__(message)
+        self.task = task
+        self.kept_s = kept_s
 
 
 def demonstrations_of(
@@ -117,13 +128,14 @@ def _until_implausible(recorded: JournalEpisode) -> JournalEpisode:
     if found is None:
         return recorded
     index, reason = found
-    left_out = "it and what comes after it are" if index >= _SHORTEST else "the episode is"
-    warnings.warn(
+    whole = index < _SHORTEST
+    left_out = "the episode is" if whole else "it and what comes after it are"
+    said = (
         f"Sample {index + 1} of {len(records)} in the episode {header.task!r} cannot be true ({reason}):"
-        f" {left_out} left out.",
-        ImplausibleWarning,
-        stacklevel=3,
+        f" {left_out} left out."
     )
+    kept_s = 0.0 if whole else records[index - 1].time_s - records[0].time_s
+    warnings.warn(ImplausibleWarning(said, header.task, kept_s), stacklevel=3)
     return replace(recorded, records=records[:index])
 
 

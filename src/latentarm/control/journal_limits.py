@@ -17,10 +17,14 @@ class JournalFullError(UserError):
     """The journal may not grow further.
 
     Attributes:
+        disk: whether it is the disk that has no room left.
         ended_episode: whether an episode was under way, which has been ended and is complete.
     """
 
-    ended_episode = False
+    def __init__(self, message: str, *, disk: bool) -> None:
+        super().__init__(message)
+        self.disk = disk
+        self.ended_episode = False
 
 
 @final
@@ -90,14 +94,16 @@ class JournalWatch:
         if size >= self._limits.most_bytes:
             raise JournalFullError(
                 f"The journal {self._path} has reached its limit of {_said(self._limits.most_bytes)}: the"
-                " recording was ended. What was recorded is kept; begin another journal or raise the limit."
+                " recording was ended. What was recorded is kept; begin another journal or raise the limit.",
+                disk=False,
             )
         free = self._free_bytes()
         if free < self._limits.least_free_bytes:
             raise JournalFullError(
                 f"Only {_said(free)} are free on the disk of {self._path}, but"
                 f" {_said(self._limits.least_free_bytes)} must stay free: the recording was ended. What was"
-                " recorded is kept; free some space before recording more."
+                " recorded is kept; free some space before recording more.",
+                disk=True,
             )
 
     def _free_bytes(self) -> int:

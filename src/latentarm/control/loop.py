@@ -9,15 +9,23 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import Arm, ArmStatus, check_arm
+from latentarm.arms.contract import Arm, ArmPhase, ArmStatus, check_arm
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
 from latentarm.errors import UserError
-from latentarm.types import StepRecord, Stop
+from latentarm.types import StepRecord, Stop, StopCode
 
 ENABLING_S: Final = 5.0
 """An arm that has not become ready for so long after it was asked to is left disabled, s."""
+
+_CODES: Final[dict[ArmPhase, StopCode]] = {
+    "off": "arm_off",
+    "disabled": "not_enabled",
+    "fault": "arm_fault",
+    "emergency_stop": "arm_emergency_stop",
+}
+"""Why an arm takes no commands."""
 
 
 @final
@@ -218,7 +226,7 @@ class ControlLoop:
     def _heed(self, status: ArmStatus) -> None:
         """Disengage where the arm takes no commands: it has stopped by itself, or somebody stopped it."""
         if not status.takes_commands and self._step.stopped is None:
-            self._step.halted(Stop(status.reason))
+            self._step.halted(stop_of(status))
 
     def _try_to_enable(self, now_s: float) -> bool:
         """Enable the arm and then the step; whether that is over, one way or the other."""
@@ -237,7 +245,7 @@ class ControlLoop:
         waiting = status.phase == "disabled" or (status.phase == "fault" and status.recoverable)
         if waiting and now_s - self._enabling_since_s <= ENABLING_S:
             return False
-        self._step.refuse(status.reason)
+        self._step.refuse(stop_of(status))
         return True
 
     def _await_tick(self) -> tuple[float, float]:
@@ -291,3 +299,9 @@ class ControlLoop:
         # The next tick whose due time lies ahead.
         elapsed_s = self._clock.now_s() - self._start_s
         self._next = max(self._next, math.ceil(elapsed_s / self._period_s - 1e-9))
+
+
+def stop_of(status: ArmStatus) -> Stop:
+    """Why an arm that takes no commands may not move."""
+    said = {"text": status.reason} if status.phase == "fault" else {}
+    return Stop(status.reason, code=_CODES.get(status.phase), parameters=said)

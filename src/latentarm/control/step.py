@@ -214,7 +214,10 @@ class Step:
             None where the arm may move now, else why it may not.
         """
         if self._time_s < self._steady_s:
-            return Stop("The joint readings jumped a moment ago: check the arm, then enable it.")
+            return Stop(
+                "The joint readings jumped a moment ago: check the arm, then enable it.",
+                code="readings_unsteady",
+            )
         return self._engagement.enable()
 
     def sent(self, time_s: float) -> None:
@@ -246,13 +249,13 @@ class Step:
         """
         self._engagement.stop(Stop(reason))
 
-    def refuse(self, reason: str) -> None:
+    def refuse(self, stop: Stop) -> None:
         """Keep the arm disengaged for this reason, whatever the reason was until now.
 
         Args:
-            reason: one short sentence for the person.
+            stop: why.
         """
-        self._engagement.replace(Stop(reason))
+        self._engagement.replace(stop)
 
     def halted(self, stop: Stop) -> None:
         """Record that a command ran out and the arm stopped by itself; stay stopped.
@@ -281,7 +284,7 @@ class Step:
         """
         if (lost := self._timekeeping.refusal(time_s)) is not None:
             self._plausibility.reset()
-            self.halted(Stop(lost))
+            self.halted(lost)
         self._time_s = time_s
         self._faltering = False
         self._stack.tick(time_s)
@@ -317,9 +320,9 @@ class Step:
         if jumped is not None:
             # Reported even if the arm is already disengaged: nobody may enable it without knowing.
             self._steady_s = time_s + STEADY_S
-            self._engagement.replace(Stop(jumped, untrusted=True))
+            self._engagement.replace(jumped)
         elif astray is not None:
-            self._engagement.stop(Stop(astray, untrusted=True))
+            self._engagement.stop(astray)
         return jumped is not None or astray is not None
 
     def _falters(self, age_s: float) -> bool:
@@ -348,10 +351,16 @@ class Step:
                 z, a_h = (u, self._no_motion) if u is self._no_input else choices.chosen(u)
                 wanted = pace * blend(a_h, a_r, alpha) if a_h.shape == q.shape else a_h
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
-            stop = Stop(f"The controller failed ({_said(error)}).")
+            said = _said(error)
+            stop = Stop(
+                f"The controller failed ({said}).", code="controller_failed", parameters={"text": said}
+            )
             return self._record(time_s, q, self._refused(stop), u)
         if z.shape != u.shape or a_h.shape != q.shape:
-            stop = Stop("The controller gave a latent action or an action of the wrong size.")
+            stop = Stop(
+                "The controller gave a latent action or an action of the wrong size.",
+                code="controller_invalid",
+            )
             return self._record(time_s, q, self._refused(stop), u)
         passed = self._passed(wanted, q, input_age_s)
         command = self._command(passed)
@@ -390,17 +399,17 @@ class Step:
             u = np.asarray(given.u)
             bool(given.switch_mode)
             if not 0.0 <= float(given.pace) <= 1.0:
-                return Stop("The input's pace is outside [0, 1].")
+                return _invalid("The input's pace is outside [0, 1].")
             if not self._gripper.known(given.gripper):
-                return Stop("The input asks the gripper for something that it cannot do.")
+                return _invalid("The input asks the gripper for something that it cannot do.")
         except Exception as error:  # noqa: BLE001 - a ragged list, None, whatever an interface gives
-            return Stop(f"The input cannot be read ({_said(error)}).")
+            return _invalid(f"The input cannot be read ({_said(error)}).")
         if u.shape != self._no_input.shape or u.dtype.kind not in "iuf":
-            return Stop(f"The input must be {len(self._no_input)} numbers.")
+            return _invalid(f"The input must be {len(self._no_input)} numbers.")
         values = [float(value) for value in u.tolist()]
         # Written so that a value that is not a number fails too.
         if not all(abs(value) <= _ABSURD for value in values):
-            return Stop("The input is outside [-1, 1].")
+            return _invalid("The input is outside [-1, 1].")
         if math.hypot(*values) <= self._config.dead_zone:
             return self._no_input
         return _sealed(np.array([min(max(value, -1.0), 1.0) for value in values]))
@@ -410,12 +419,17 @@ class Step:
         try:
             refused = self._newest_reading.refusal(reading, time_s) or self._gripper.saw(reading.gripper)
         except Exception as error:  # noqa: BLE001 - whatever a driver gives
-            refused = f"The arm's reading cannot be used ({_said(error)})."
+            reason = f"The arm's reading cannot be used ({_said(error)})."
+            refused = Stop(reason, untrusted=True, code="reading_invalid")
         if refused is not None:
-            return Stop(refused, untrusted=True)
+            return refused
         q = self._joint_positions(reading.q)
         if q is None:
-            return Stop("The arm's joint positions are not numbers near its limits.", untrusted=True)
+            return Stop(
+                "The arm's joint positions are not numbers near its limits.",
+                untrusted=True,
+                code="joints_invalid",
+            )
         return q
 
     def _joint_positions(self, state: FloatArray) -> FloatArray | None:
@@ -467,6 +481,11 @@ def _sealed(array: FloatArray) -> FloatArray:
     """The array itself, closed to writing."""
     array.flags.writeable = False
     return array
+
+
+def _invalid(reason: str) -> Stop:
+    """An input that cannot be used, for this reason."""
+    return Stop(reason, code="input_invalid")
 
 
 def _said(error: Exception) -> str:

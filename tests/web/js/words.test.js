@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { beforeEach, test } from "node:test";
 
-import { say, sayNumber, sayPercent, useWords } from "#pages/layout/words.js";
+import { say, sayNotice, sayNumber, sayPercent, useWords } from "#pages/layout/words.js";
 import { newBrowser } from "./browser.js";
 
 const PAGES = new URL("../../../src/latentarm/web/pages/", import.meta.url);
@@ -17,6 +17,17 @@ test("parameters go where the sentence has them", () => {
 test("a parameter's own braces are not parameters", () => {
   useWords("en", { greeting: "{name}: {other}" });
   assert.equal(say("greeting", { name: "{other}", other: "B" }), "{other}: B");
+});
+
+test("a notice names guests and the notice that caused it in the page's language", () => {
+  useWords("de", {
+    "driver.guest": "Gast {number}", "notice.stop_pressed_by": "{name} hat Stopp gedrückt.",
+    "notice.recording_ended": "Ende. {because}", "notice.joint_jumped": "{joint} sprang um {moved_deg}°.",
+  });
+  assert.equal(sayNotice({ code: "stop_pressed_by", parameters: { name: 3 } }), "Gast 3 hat Stopp gedrückt.");
+  assert.equal(sayNotice({ code: "stop_pressed_by", parameters: { name: "Ada" } }), "Ada hat Stopp gedrückt.");
+  const cause = { because: "joint_jumped", joint: "joint3", moved_deg: 17 };
+  assert.equal(sayNotice({ code: "recording_ended", parameters: cause }), "Ende. joint3 sprang um 17°.");
 });
 
 test("plural forms are the language's", () => {

@@ -155,9 +155,14 @@ class Finite(SafetyFilter):
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray | Stop:
         """See the base class."""
         if velocity.shape != situation.state.shape:
-            return Stop(f"The controller gave {velocity.shape} numbers for {len(situation.state)} joints.")
+            return Stop(
+                f"The controller gave {velocity.shape} numbers for {len(situation.state)} joints.",
+                code="controller_invalid",
+            )
         if not all(map(math.isfinite, velocity.tolist())):
-            return Stop("The controller gave a velocity that is not a finite number.")
+            return Stop(
+                "The controller gave a velocity that is not a finite number.", code="controller_invalid"
+            )
         return velocity
 
 
@@ -185,7 +190,7 @@ class Freshness(SafetyFilter):
             return None
         if age_s > timeout_s:
             return Stop(f"No input came for more than {1000 * timeout_s:.0f} ms.", code="input_late")
-        return Stop("The input's age is not known.")
+        return Stop("The input's age is not known.", code="input_invalid")
 
 
 @final

@@ -5,7 +5,7 @@ from typing import Final, final, get_args
 
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.robots.gripper import Gripper
-from latentarm.types import GripperAsk, GripperCommand, GripperReading
+from latentarm.types import GripperAsk, GripperCommand, GripperReading, Stop
 
 _ASKS: Final = (None, *get_args(GripperAsk))
 
@@ -63,7 +63,7 @@ class GripperFilter:
         """A new period begins: what was read before counts only for where to stand still."""
         self._fresh = False
 
-    def saw(self, reading: GripperReading | None) -> str | None:
+    def saw(self, reading: GripperReading | None) -> Stop | None:
         """Take a reading.
 
         Args:
@@ -75,11 +75,11 @@ class GripperFilter:
         if self._gripper is None:
             return None
         if reading is None:
-            return "The arm gives no reading of its gripper."
+            return _invalid("The arm gives no reading of its gripper.")
         width, holding = float(reading.width_m), bool(reading.holding)
         # Written so that a value that is not a number fails too.
         if not -_ASTRAY <= width <= self._gripper.width_m + _ASTRAY:
-            return "The gripper's opening is outside its range."
+            return _invalid("The gripper's opening is outside its range.")
         self._reading = GripperReading(width, holding)
         self._fresh = True
         return None
@@ -140,3 +140,7 @@ class GripperFilter:
             return self._target_m < 0.5 * self._width
         reading = self._reading
         return reading is not None and (reading.holding or reading.width_m < 0.5 * self._width)
+
+
+def _invalid(reason: str) -> Stop:
+    return Stop(reason, untrusted=True, code="gripper_invalid")

@@ -3,7 +3,7 @@
 import math
 from typing import final
 
-from latentarm.types import Reading
+from latentarm.types import Reading, Stop
 
 _ROUNDING_S = 1e-9
 """Times that differ by less are the same, s."""
@@ -34,8 +34,8 @@ class NewestReading:
         """Start again: any reading may come next."""
         self._sequence = None
 
-    def refusal(self, reading: Reading, time_s: float) -> str | None:
-        """Why the reading cannot be used, in one sentence, or None.
+    def refusal(self, reading: Reading, time_s: float) -> Stop | None:
+        """Why the reading cannot be used, or None.
 
         Args:
             reading: the newest.
@@ -47,13 +47,25 @@ class NewestReading:
         before = self._sequence
         sequence, age_s = int(reading.sequence), float(time_s - reading.time_s)
         if before is not None and sequence < before:
-            return "The arm's readings came in the wrong order: check its driver."
+            return _invalid("The arm's readings came in the wrong order: check its driver.")
         self.new = sequence != before
         self._sequence = sequence
         if not math.isfinite(age_s):
-            return "The arm's newest reading has no time: check its driver."
+            return _invalid("The arm's newest reading has no time: check its driver.")
         if age_s < -self._ahead_s:
-            return "The arm's newest reading has a time in the future: check its driver and its clock."
+            return _invalid(
+                "The arm's newest reading has a time in the future: check its driver and its clock."
+            )
         if age_s > self._timeout_s:
-            return f"The arm's newest reading is {1000 * age_s:.0f} ms old: check the connection to the arm."
+            age_ms = round(1000 * age_s)
+            return Stop(
+                f"The arm's newest reading is {age_ms} ms old: check the connection to the arm.",
+                untrusted=True,
+                code="reading_old",
+                parameters={"age_ms": age_ms},
+            )
         return None
+
+
+def _invalid(reason: str) -> Stop:
+    return Stop(reason, untrusted=True, code="reading_invalid")

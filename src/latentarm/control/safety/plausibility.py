@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.control.safety.bounds import LATE_PERIODS, Bounds
 from latentarm.control.safety.small import largest
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray
+from latentarm.types import FloatArray, Stop
 
 _BUCKETS = 9
 """The commands of the last `Bounds.lag_s` are kept as lowest and highest positions in this many time bins,
@@ -47,6 +47,7 @@ class Plausibility:
     def __init__(self, bounds: Bounds, robot: Robot) -> None:
         config = bounds.config
         self._names = robot.joint_names
+        self._slides = robot.chain.slide
         self._units = ["m" if slides else "rad" for slides in robot.chain.slide]
         self._fastest = robot.limits.velocity
         self._hold_s = bounds.hold_s
@@ -74,7 +75,7 @@ class Plausibility:
         """Forget all history, for an arm at rest."""
         self._reading = None
 
-    def jump(self, reading: FloatArray, time_s: float) -> str | None:
+    def jump(self, reading: FloatArray, time_s: float) -> Stop | None:
         """Whether a reading is too far from the previous one; call this first, on every tick.
 
         Args:
@@ -82,7 +83,7 @@ class Plausibility:
             time_s: the loop's clock, s; not before that of the reading before.
 
         Returns:
-            One sentence that names the joint, or None.
+            Why it cannot be true, or None.
         """
         if self._reading is None:
             return None
@@ -94,14 +95,18 @@ class Plausibility:
         joint = excess.index(max(excess))
         if not excess[joint] > 0.0:
             return None
-        return (
+        elapsed_ms = round(1000 * elapsed_s)
+        return Stop(
             f"The reading of joint {self._names[joint]!r} jumped by {moved[joint]:.2g} {self._units[joint]}"
-            f" in {1000 * elapsed_s:.0f} ms: check the arm and its encoder."
+            f" in {elapsed_ms} ms: check the arm and its encoder.",
+            untrusted=True,
+            code="slide_jumped" if self._slides[joint] else "joint_jumped",
+            parameters={**self._of(joint, "moved", float(moved[joint])), "elapsed_ms": elapsed_ms},
         )
 
     def follow(
         self, reading: FloatArray, velocity: FloatArray, time_s: float, *, new: bool, driven: bool
-    ) -> str | None:
+    ) -> Stop | None:
         """Add a reading and check whether it agrees with the commands.
 
         Args:
@@ -113,7 +118,7 @@ class Plausibility:
                 be moved by hand: then every reading is the anchor for what comes.
 
         Returns:
-            One sentence that names the joint, or None.
+            Why it cannot be true, or None.
         """
         if self._reading is None:
             self._begin(reading, time_s)
@@ -203,15 +208,26 @@ class Plausibility:
             anchors.append((time_s, anchor))
         return anchors[0][1]
 
-    def _froze(self, joint: int) -> str:
-        return (
+    def _froze(self, joint: int) -> Stop:
+        return Stop(
             f"The reading of joint {self._names[joint]!r} does not change although the joint was commanded to"
-            " move: check its encoder, and whether something holds the joint."
+            " move: check its encoder, and whether something holds the joint.",
+            untrusted=True,
+            code="joint_frozen",
+            parameters={"joint": self._names[joint]},
         )
 
-    def _strayed(self, error: FloatArray) -> str:
+    def _strayed(self, error: FloatArray) -> Stop:
         joint = int(error.argmax())
-        return (
+        return Stop(
             f"Joint {self._names[joint]!r} does not follow its commands (it is {error[joint]:.2g}"
-            f" {self._units[joint]} off): check whether something holds or pushes the arm."
+            f" {self._units[joint]} off): check whether something holds or pushes the arm.",
+            untrusted=True,
+            code="slide_astray" if self._slides[joint] else "joint_astray",
+            parameters=self._of(joint, "off", float(error[joint])),
         )
+
+    def _of(self, joint: int, what: str, amount: float) -> dict[str, str | int]:
+        """A joint's name and an amount, rad or m, as what people read: whole degrees or millimetres."""
+        unit, shown = ("mm", 1000 * amount) if self._slides[joint] else ("deg", math.degrees(amount))
+        return {"joint": self._names[joint], f"{what}_{unit}": round(shown)}

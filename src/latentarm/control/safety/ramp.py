@@ -67,6 +67,6 @@ class Ramp(SafetyFilter):
             # This happens during a stop, whose acceleration exceeds that of ordinary motion.
             result = Result.Error
         if result not in (Result.Working, Result.Finished):
-            return Stop("No smooth path to the requested velocity was found.")
+            return Stop("No smooth path to the requested velocity was found.", code="no_smooth_path")
         _, velocities, accelerations = self._trajectory.at_time(self._dt_s)
         return np.array(velocities), np.array(accelerations)

@@ -2,6 +2,8 @@
 
 from typing import final
 
+from latentarm.types import Stop
+
 
 @final
 class Timekeeping:
@@ -28,7 +30,7 @@ class Timekeeping:
         """Set when the command was sent, s; by default that is the tick's own time."""
         self._sent_s = time_s
 
-    def refusal(self, time_s: float) -> str | None:
+    def refusal(self, time_s: float) -> Stop | None:
         """Why no command may follow at this time, or None.
 
         Args:
@@ -40,7 +42,13 @@ class Timekeeping:
             return None
         # Written so that a time that is not a number fails too.
         if not time_s > before_s:
-            return "The computer's clock stood still or went back: the arm was stopped."
+            return Stop(
+                "The computer's clock stood still or went back: the arm was stopped.",
+                code="clock_stood_still",
+            )
         if not time_s - sent_s <= self._hold_s:
-            return "The computer's clock jumped, or the computer slept: the arm has stopped by itself."
+            return Stop(
+                "The computer's clock jumped, or the computer slept: the arm has stopped by itself.",
+                code="clock_jumped",
+            )
         return None

@@ -43,7 +43,7 @@ from latentarm.web.protocol.channel import (
     Return,
     parse_stop,
 )
-from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.notice import Notice, notice_of_stop
 
 ENABLE_WAITS_S: Final = 0.3
 """How long an order to enable waits for a fresh neutral input, s."""
@@ -393,10 +393,10 @@ class Drive:
         return "neutral_needed" if self._inputs.fresh and self._inputs.deflected else "disengaged"
 
     def _reason(self, stop: Stop | None) -> Notice | None:
-        """Why the arm may not move; most of what the safety filters say has a sentence only."""
-        if stop is None or stop.reason in self._reasons:
-            return None if stop is None else self._reasons[stop.reason]
-        return Notice(code=stop.code or "arm_stopped", parameters={"text": stop.reason})
+        """Why the arm may not move."""
+        if stop is None:
+            return None
+        return self._reasons.get(stop.reason) or notice_of_stop(stop)
 
     def _report(self, record: StepRecord) -> Report:
         phase, spec = self._phase(), self._setup.spec

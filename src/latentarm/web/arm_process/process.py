@@ -23,6 +23,7 @@ from latentarm.arms.catalogue import make_arm, make_scene_arm
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.errors import UserError
+from latentarm.untrusted.terminal import one_line
 from latentarm.web.arm_process.drive import Drive, Steering
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
 from latentarm.web.arm_process.help import USUAL_HELP
@@ -40,7 +41,7 @@ from latentarm.web.protocol.channel import (
     new_channel,
     parse_report,
 )
-from latentarm.web.protocol.notice import Notice, notice_of, sentence
+from latentarm.web.protocol.notice import Notice, notice_of
 
 T = TypeVar("T")
 
@@ -160,7 +161,7 @@ def _loaded(load: Callable[[], T], before: T) -> tuple[T, Notice | None]:
     except UserError as error:
         return before, notice_of(error)
     except Exception as error:  # noqa: BLE001 - whatever a file does, the process that owns the arm goes on
-        return before, sentence(f"It cannot be loaded ({error!r}): the arm is as before.")
+        return before, Notice(code="not_loaded", parameters={"text": one_line(repr(error))})
 
 
 @final

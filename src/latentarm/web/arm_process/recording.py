@@ -12,8 +12,9 @@ from latentarm.control.journal_limits import JournalFullError, JournalLimits, Jo
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.errors import UserError
 from latentarm.types import StepRecord, Stop
+from latentarm.untrusted.terminal import one_line
 from latentarm.web.protocol.channel import Recording
-from latentarm.web.protocol.notice import Notice, notice_of
+from latentarm.web.protocol.notice import Notice, notice_of_stop
 
 _MOST_WAITING: Final = 6000
 """Samples that may wait for the disk: a minute of them."""
@@ -103,7 +104,9 @@ class EpisodeWriter:
             if stop is None:
                 self._problem = Notice(code="joints_unreadable")
             else:
-                self._problem = Notice(code="recording_ended", parameters={"text": stop.reason})
+                why = notice_of_stop(stop)
+                because = {**why.parameters, "because": why.code}
+                self._problem = Notice(code="recording_ended", parameters=because)
         else:
             self._samples += 1
             self._put(record)
@@ -147,7 +150,7 @@ class EpisodeWriter:
                 recorder.close()
         except UserError as error:
             self._lost = isinstance(error, JournalLostError)
-            self._break_off(notice_of(error))
+            self._break_off(_notice_of(error))
             while True:
                 try:
                     self._waiting.get_nowait()
@@ -177,7 +180,7 @@ class EpisodeWriter:
         if error.ended_episode:
             self._episodes += 1
         if self._on:
-            self._break_off(notice_of(error))
+            self._break_off(_notice_of(error))
 
     def _new_path(self) -> Path:
         """A path for a new journal, named after the time."""
@@ -188,3 +191,12 @@ class EpisodeWriter:
             number += 1
             path = self._folder / f"{named}-{number}.sqlite"
         return path
+
+
+def _notice_of(error: UserError) -> Notice:
+    """Why a journal takes no more."""
+    if isinstance(error, JournalLostError):
+        return Notice(code="journal_lost")
+    if isinstance(error, JournalFullError):
+        return Notice(code="disk_full" if error.disk else "journal_full")
+    return Notice(code="journal_unwritable", parameters={"text": one_line(str(error))})

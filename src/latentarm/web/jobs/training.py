@@ -175,10 +175,11 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
     """
     from latentarm.demonstrations.pauses import without_pauses
 
-    with warnings.catch_warnings(record=True) as cut:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ImplausibleWarning)
         journal = read_journal(plan.journal, plan.episodes)
         recorded = demonstrations_of(journal, source="The recording")
+    cut = [_cut(one.message) for one in caught if isinstance(one.message, ImplausibleWarning)]
     numbers = sorted(set(plan.episodes))
     moved_s = {
         number: moving_seconds(episode, RATE_HZ) for number, episode in zip(numbers, journal, strict=True)
@@ -199,7 +200,14 @@ def train_as_planned(wire: Wire, plan: TrainingPlan) -> None:
         shutil.rmtree(plan.run, ignore_errors=True)
         shutil.rmtree(plan.dataset, ignore_errors=True)
         raise
-    wire.say(_Finished(warned=(*(sentence(str(one.message)) for one in cut), *warned), lesson=lesson))
+    wire.say(_Finished(warned=(*cut, *warned), lesson=lesson))
+
+
+def _cut(warning: ImplausibleWarning) -> Notice:
+    """What of a recording is not learned from."""
+    if warning.kept_s == 0.0:
+        return Notice(code="recording_left_out", parameters={"task": warning.task})
+    return Notice(code="recording_cut", parameters={"task": warning.task, "kept_s": f"{warning.kept_s:.1f}"})
 
 
 def _train(wire: Wire, plan: TrainingPlan, demonstrations: Demonstrations) -> list[Notice]:

@@ -4,7 +4,7 @@ from typing import Annotated, Literal, final
 
 from pydantic import Field
 
-from latentarm.web.protocol.notice import Message
+from latentarm.web.protocol.notice import Message, PersonName
 
 
 @final
@@ -56,7 +56,7 @@ class Person(Message):
     """
 
     id: str
-    name: str
+    name: PersonName
 
 
 @final
@@ -70,5 +70,5 @@ class CopilotState(Message):
     """
 
     id: str
-    name: str
+    name: PersonName
     pace: float

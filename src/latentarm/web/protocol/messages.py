@@ -24,7 +24,7 @@ from latentarm.web.protocol.channel import (
 )
 from latentarm.web.protocol.copilot_messages import CopilotMessage, CopilotState, Person
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
-from latentarm.web.protocol.notice import Message, Notice
+from latentarm.web.protocol.notice import Message, Notice, PersonName
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
 
 VERSION: Final = 1
@@ -384,10 +384,10 @@ class State(Message):
     alpha: float
     bound_m: float | None
     driver: str | None
-    driver_name: str | None
+    driver_name: PersonName | None
     watchers: int
     asking: str | None
-    asking_name: str | None
+    asking_name: PersonName | None
     copilot: CopilotState | None
     copilot_asking: Person | None
     recording: RecordingState | None

@@ -5,22 +5,28 @@ from typing import Literal, final
 from pydantic import BaseModel, ConfigDict
 
 from latentarm.errors import UserError
+from latentarm.types import Stop, StopCode
 from latentarm.untrusted.terminal import one_line
 from latentarm.web.words.catalogue import DEFAULT, languages
 
+PersonName = str | int
+"""What a person is called; a guest without a name is their number."""
+
 NoticeCode = Literal[
+    StopCode,
     "arm_process_ended",
     "arm_process_silent",
     "arm_stopped",
-    "at_start",
     "asking",
     "asking_already",
+    "at_start",
     "checking_run",
     "copilot_began",
     "copilot_changed",
     "copilot_ended",
     "copilot_gone",
     "copilot_late",
+    "disk_full",
     "disk_too_slow",
     "driver_changed",
     "driver_expired",
@@ -32,18 +38,18 @@ NoticeCode = Literal[
     "full",
     "handed_over",
     "import_invalid",
-    "input_late",
+    "journal_full",
+    "journal_lost",
+    "journal_unwritable",
     "joints_unreadable",
     "latch_ended",
-    "let_go_first",
     "loading_run",
-    "loop_late",
     "message_invalid",
     "model_unknown",
     "name_invalid",
     "no_hello",
     "no_run",
-    "not_enabled",
+    "not_loaded",
     "nothing_recorded",
     "page_refused",
     "page_stopped",
@@ -54,12 +60,16 @@ NoticeCode = Literal[
     "profile_exists",
     "question_began",
     "record_unknown",
+    "record_unreadable",
+    "recording_cut",
     "recording_ended",
+    "recording_in_use",
+    "recording_left_out",
+    "recording_unreadable",
+    "request_invalid",
     "return_not_now",
     "return_pushed",
     "return_stuck",
-    "recording_in_use",
-    "request_invalid",
     "run_exists",
     "run_too_slow",
     "stop_first",
@@ -84,9 +94,10 @@ class Notice(Message):
     """A notice to a person.
 
     Attributes:
-        code: which text it is. ``arm_stopped`` and ``error`` carry an English sentence in their parameter
-            ``text``; pages show it and never look into it.
-        parameters: what the text names.
+        code: which text it is.
+        parameters: what the text names. ``name`` is a `PersonName` where it is a person's. ``because`` is the
+            code of another notice, whose parameters are here too. ``text`` is what only an English sentence
+            says, such as the message of an error; pages show it and never look into it.
     """
 
     code: NoticeCode
@@ -95,7 +106,12 @@ class Notice(Message):
     @property
     def text(self) -> str:
         """The text in English, for logs, journals and the terminal."""
-        return languages()[DEFAULT].say(f"notice.{self.code}", self.parameters)
+        words, spoken = languages()[DEFAULT], {**self.parameters}
+        if isinstance(name := spoken.get("name"), int):
+            spoken["name"] = words.say("driver.guest", {"number": name})
+        if "because" in spoken:
+            spoken["because"] = words.say(f"notice.{spoken['because']}", spoken)
+        return words.say(f"notice.{self.code}", spoken)
 
 
 @final
@@ -115,6 +131,13 @@ class NoticeError(UserError):
 def notice_of(error: UserError) -> Notice:
     """The notice for an error."""
     return error.notice if isinstance(error, NoticeError) else sentence(str(error))
+
+
+def notice_of_stop(stop: Stop) -> Notice:
+    """The notice for a stop; one without a code is a sentence."""
+    if stop.code is None:
+        return Notice(code="arm_stopped", parameters={"text": one_line(stop.reason)})
+    return Notice(code=stop.code, parameters=dict(stop.parameters))
 
 
 def sentence(text: str) -> Notice:

@@ -12,6 +12,8 @@ from latentarm.errors import UserError
 from latentarm.files import write_text
 from latentarm.untrusted.documents import parse_object
 from latentarm.untrusted.opening import read_bytes
+from latentarm.untrusted.terminal import one_line
+from latentarm.web.protocol.notice import Notice
 
 DOCUMENT_LIMIT: Final = 1 << 17
 """The longest record, bytes."""
@@ -57,6 +59,11 @@ def parse_record(kind: type[Record], content: bytes, where: str) -> Record:
         return kind.model_validate_json(content)
     except ValidationError as error:
         raise UserError(f"{where} is not a record of this version, or was changed by hand.") from error
+
+
+def unreadable(error: UserError) -> Notice:
+    """The notice for a record that cannot be read."""
+    return Notice(code="record_unreadable", parameters={"text": one_line(str(error))})
 
 
 def write_record(record: BaseModel, path: Path) -> None:

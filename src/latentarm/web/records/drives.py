@@ -11,8 +11,8 @@ from typing import Final, final
 from latentarm.errors import UserError
 from latentarm.files import written_whole
 from latentarm.untrusted.opening import is_missing, read_bytes
-from latentarm.web.protocol.notice import NoticeError
-from latentarm.web.records.documents import read_record, write_record
+from latentarm.web.protocol.notice import Notice, NoticeError
+from latentarm.web.records.documents import read_record, unreadable, write_record
 from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, Trace, checked_trace, packed
 
 UNDO_S: Final = 600.0
@@ -69,7 +69,7 @@ class Drives:
         now_s: the time, s; monotonic.
 
     Attributes:
-        problems: of records that cannot be read, a sentence each.
+        problems: of records that cannot be read, one each.
     """
 
     def __init__(self, folder: Path, people: Path, now_s: Callable[[], float] = time.monotonic) -> None:
@@ -80,7 +80,7 @@ class Drives:
         self._lock = threading.Lock()
         self._drives: dict[str, DriveRecord] = {}
         self._deleted: dict[str, tuple[float, DriveRecord]] = {}
-        self.problems: list[str] = []
+        self.problems: list[Notice] = []
         for path in self._trash.glob("*"):
             with suppress(OSError):
                 path.unlink()
@@ -88,7 +88,7 @@ class Drives:
             try:
                 self._take(path)
             except UserError as error:
-                self.problems.append(str(error))
+                self.problems.append(unreadable(error))
 
     def wanted(self, wanted: Wanted) -> list[DriveRecord]:
         """Drives, the newest first."""

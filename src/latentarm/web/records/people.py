@@ -10,8 +10,8 @@ from pydantic import Field
 
 from latentarm.errors import UserError
 from latentarm.untrusted.names import MOST_CHARACTERS, clean_name, same_name
-from latentarm.web.protocol.notice import Message, NoticeError
-from latentarm.web.records.documents import ID, new_id, now, read_record, write_record
+from latentarm.web.protocol.notice import Message, Notice, NoticeError
+from latentarm.web.records.documents import ID, new_id, now, read_record, unreadable, write_record
 
 VERSION: Final = 1
 MOST_PEOPLE: Final = 500
@@ -68,14 +68,14 @@ class People:
         folder: has a folder for each person; need not be there yet.
 
     Attributes:
-        problems: of records that cannot be read, a sentence each.
+        problems: of records that cannot be read, one each.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._lock = threading.Lock()
         self._people: dict[str, PersonRecord] = {}
-        self.problems: list[str] = []
+        self.problems: list[Notice] = []
         for unfinished in folder.glob(f"{_STAGING}*"):
             shutil.rmtree(unfinished, ignore_errors=True)
         for path in sorted(folder.glob(f"*/{PERSON_NAME}")):
@@ -85,7 +85,7 @@ class People:
                     raise UserError(f"{path} is the record of another person than its folder says.")
                 self._people[person.id] = person
             except UserError as error:
-                self.problems.append(str(error))
+                self.problems.append(unreadable(error))
 
     def all(self) -> list[PersonRecord]:
         """Everybody, by name."""

@@ -15,7 +15,8 @@ from latentarm.control.journal import list_journal
 from latentarm.control.recordings import JOURNAL_SUFFIX
 from latentarm.errors import UserError
 from latentarm.untrusted.opening import is_missing
-from latentarm.web.protocol.notice import Message, NoticeError
+from latentarm.untrusted.terminal import one_line
+from latentarm.web.protocol.notice import Message, Notice, NoticeError
 from latentarm.web.records.documents import read_record, write_record
 from latentarm.web.records.drives import UNDO_S
 
@@ -57,7 +58,7 @@ class RecordingFile(Message):
     bytes: int
     episodes: tuple[RecordedEpisode, ...]
     in_use: bool
-    problem: str | None
+    problem: Notice | None
 
 
 @final
@@ -90,7 +91,7 @@ class Recordings:
         self._now_s = now_s
         self._lock = threading.Lock()
         self._deleted: dict[str, float] = {}
-        self._listed: dict[str, tuple[tuple[int, int], tuple[RecordedEpisode, ...], str | None]] = {}
+        self._listed: dict[str, tuple[tuple[int, int], tuple[RecordedEpisode, ...]]] = {}
         for path in out.glob(f"{_HIDDEN}*"):
             with suppress(OSError):
                 path.unlink()
@@ -205,13 +206,13 @@ class Recordings:
 
     def _look(self, path: Path, title: str) -> RecordingFile:
         episodes: tuple[RecordedEpisode, ...] = ()
-        problem: str | None = None
+        problem: Notice | None = None
         size = 0
         try:
             size, state = _state(path)
             known = self._listed.get(path.name)
             if known is not None and known[0] == state:
-                _, episodes, problem = known
+                episodes = known[1]
             else:
                 episodes = tuple(
                     RecordedEpisode(
@@ -223,9 +224,9 @@ class Recordings:
                     )
                     for entry in list_journal(path)
                 )
-                self._listed[path.name] = (state, episodes, None)
+                self._listed[path.name] = (state, episodes)
         except (UserError, OSError) as error:
-            problem = str(error)
+            problem = Notice(code="recording_unreadable", parameters={"text": one_line(str(error))})
         return RecordingFile(
             name=path.name,
             title=title,

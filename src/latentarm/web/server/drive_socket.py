@@ -258,7 +258,7 @@ class DriveSocket:
             case Profile(name=name):
                 self._control.order(ChooseProfile(name=name))
             case RecordEpisode(on=on, task=task):
-                self._control.order(Record(on=on, task=task, person=page.person or page.name))
+                self._control.order(Record(on=on, task=task, person=_recorded_as(page)))
             case ReturnArm(on=on):
                 self._control.order(Return(on=on))
             case ResetArm():
@@ -331,6 +331,11 @@ class DriveSocket:
 def _of(page: Page, code: NoticeCode) -> Notice:
     """What this page has done; its id lets it tell its own person so."""
     return Notice(code=code, parameters={"name": page.name, "page": page.id})
+
+
+def _recorded_as(page: Page) -> str:
+    """What an episode says of who drove it: their id, else their name; "" for a guest without one."""
+    return page.person or (page.name if isinstance(page.name, str) else "")
 
 
 async def _receive(socket: WebSocket) -> ClientMessage:

@@ -130,7 +130,7 @@ class RunList:
         if self._first is not None:
             name = self._first.resolve().name
             if name in found and not _same(found[name], self._first):
-                name += " (as started)"
+                name += " (2)"
             found[name] = self._first
         return dict(sorted(found.items()))
 

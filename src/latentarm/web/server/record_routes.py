@@ -138,7 +138,7 @@ class RecordRoutes:
                     }
                     for person in self._records.people.all()
                 ],
-                "problems": self._records.people.problems,
+                "problems": [problem.model_dump() for problem in self._records.people.problems],
             }
         )
 
@@ -210,7 +210,7 @@ class RecordRoutes:
                 "drives": [drive.model_dump() for drive in drives],
                 "people": {person.id: person.name for person in self._records.people.all()},
                 "problem": None if problem is None else problem.model_dump(),
-                "problems": self._records.drives.problems,
+                "problems": [problem.model_dump() for problem in self._records.drives.problems],
             }
         )
 

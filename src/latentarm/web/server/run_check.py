@@ -15,9 +15,10 @@ from pydantic import TypeAdapter
 
 from latentarm.errors import UserError
 from latentarm.untrusted.memory import bounded_memory
+from latentarm.untrusted.terminal import one_line
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.jobs.job import Job, Wire
-from latentarm.web.protocol.notice import Message, Notice
+from latentarm.web.protocol.notice import Message, Notice, NoticeError
 from latentarm.web.server.loaded_run import LoadedRun
 
 WITHIN_S: Final = 30.0
@@ -73,4 +74,4 @@ def try_to_load(wire: Wire, spec: Spec, name: str) -> None:
     except UserError:
         raise
     except Exception as error:
-        raise UserError(f"The run {name} cannot be loaded ({error!r}): choose another one.") from error
+        raise NoticeError("not_loaded", text=one_line(repr(error))) from error

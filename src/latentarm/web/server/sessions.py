@@ -4,6 +4,7 @@ import secrets
 from dataclasses import dataclass
 from typing import Final, final
 
+from latentarm.web.protocol.notice import PersonName
 from latentarm.web.server.copilot import Copilot
 
 MOST: Final = 16
@@ -17,12 +18,12 @@ class Page:
 
     Attributes:
         id: for this connection alone.
-        name: what its person is called.
+        name: what its person is called; a guest without a name is their number.
         person: id of their record; None for a guest.
     """
 
     id: str
-    name: str
+    name: PersonName
     person: str | None = None
 
 
@@ -79,7 +80,7 @@ class Sessions:
             return None
         page = Page(
             secrets.token_hex(8),
-            (name or "").strip() or f"Guest {self._turn + len(self._pages) + 1}",
+            (name or "").strip() or self._turn + len(self._pages) + 1,
             person,
         )
         self._pages[page.id] = page

@@ -13,11 +13,12 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
+from latentarm.untrusted.terminal import one_line
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.protocol.channel import Ghosts, GripperState, Report, Things
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.messages import RecordingState, State
-from latentarm.web.protocol.notice import Notice, notice_of, sentence
+from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.scene import pose_of
 from latentarm.web.server.loaded_run import (
     Beginning,
@@ -217,10 +218,8 @@ class States:
         except UserError as error:
             self._failed = beginning_of(report), notice_of(error)
         except Exception as error:  # noqa: BLE001 - otherwise pages would wait for ever
-            self._failed = (
-                beginning_of(report),
-                sentence(f"The run cannot be shown ({error!r}): choose another one."),
-            )
+            notice = Notice(code="not_loaded", parameters={"text": one_line(repr(error))})
+            self._failed = beginning_of(report), notice
         finally:
             self._changing = None
 

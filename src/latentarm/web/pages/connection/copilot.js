@@ -1,7 +1,7 @@
 /** A co-pilot: a watcher who may slow or stop the arm, once the driver has said yes. */
 
 import { byId, setText } from "../layout/dom.js";
-import { say, sayPercent } from "../layout/words.js";
+import { say, sayName, sayPercent } from "../layout/words.js";
 
 /** @import {Connection} from "./connection.js" */
 /** @import {State} from "./messages.js" */
@@ -16,13 +16,13 @@ const PERIOD_MS = 100;
  */
 export function copilotWords({ you, driver, copilot, copilot_asking }, me) {
   if (copilot !== null) {
-    const parameters = { name: copilot.name, pace: sayPercent(copilot.pace) };
+    const parameters = { name: sayName(copilot.name), pace: sayPercent(copilot.pace) };
     if (copilot.id === me) return say("copilot.is_me");
     return say(you ? "copilot.is_yours" : "copilot.is", parameters);
   }
   if (copilot_asking !== null) {
     if (copilot_asking.id === me) return say("copilot.asked");
-    return say(you ? "copilot.asks_you" : "copilot.asks", { name: copilot_asking.name });
+    return say(you ? "copilot.asks_you" : "copilot.asks", { name: sayName(copilot_asking.name) });
   }
   return say(you || driver === null ? "copilot.none" : "copilot.could");
 }

@@ -1,7 +1,7 @@
 /** Who drives, who watches, and how one becomes the other. */
 
 import { setText } from "../layout/dom.js";
-import { say } from "../layout/words.js";
+import { say, sayName } from "../layout/words.js";
 
 /** @import {Connection} from "./connection.js" */
 /** @import {State} from "./messages.js" */
@@ -62,13 +62,14 @@ export function whoAsks({ asking }, id) {
  */
 export function whoDrives(state, asks) {
   const { you, driver, driver_name, asking, asking_name, watchers } = state;
-  if (you && asking !== null) return say("driver.you_asked", { name: asking_name || say("driver.somebody") });
+  const asker = asking_name === null ? say("driver.somebody") : sayName(asking_name);
+  if (you && asking !== null) return say("driver.you_asked", { name: asker });
   if (you) return watchers ? say("driver.you_watched", { count: watchers }) : say("driver.you");
   if (driver === null) return say("driver.nobody");
-  const name = driver_name || say("driver.somebody_else");
+  const name = driver_name === null ? say("driver.somebody_else") : sayName(driver_name);
   const text = say("driver.other", { name });
   if (asks === "you") return `${text} ${say("driver.asked", { name })}`;
-  return asks === "another" ? `${text} ${say("driver.asked_already", { asking: asking_name || say("driver.somebody") })}` : text;
+  return asks === "another" ? `${text} ${say("driver.asked_already", { asking: asker })}` : text;
 }
 
 /**
@@ -98,7 +99,7 @@ export function attachDriverPanel(parts, connection) {
     parts.ask.disabled = asks !== null;
     parts.release.hidden = !you;
     parts.handOver.hidden = !you || asking === null;
-    setText(parts.handOver, asking_name ? say("driver.hand_over_to", { name: asking_name }) : say("driver.hand_over"));
+    setText(parts.handOver, asking_name === null ? say("driver.hand_over") : say("driver.hand_over_to", { name: sayName(asking_name) }));
     setText(parts.text, whoDrives(state, asks));
   });
 }

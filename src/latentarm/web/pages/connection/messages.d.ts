@@ -47,7 +47,7 @@ export interface CopilotPace {
 
 export interface CopilotState {
   id: string;
-  name: string;
+  name: string | number;
   pace: number;
 }
 
@@ -140,13 +140,13 @@ export interface NamedThing {
 }
 
 export interface Notice {
-  code: "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "at_start" | "asking" | "asking_already" | "checking_run" | "copilot_began" | "copilot_changed" | "copilot_ended" | "copilot_gone" | "copilot_late" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "import_invalid" | "input_late" | "joints_unreadable" | "latch_ended" | "let_go_first" | "loading_run" | "loop_late" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_enabled" | "nothing_recorded" | "page_refused" | "page_stopped" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "profile_exists" | "question_began" | "record_unknown" | "recording_ended" | "return_not_now" | "return_pushed" | "return_stuck" | "recording_in_use" | "request_invalid" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "work_broke_off";
+  code: "arm_emergency_stop" | "arm_fault" | "arm_off" | "clock_jumped" | "clock_stood_still" | "controller_failed" | "controller_invalid" | "gripper_invalid" | "input_invalid" | "input_late" | "joint_astray" | "joint_frozen" | "joint_jumped" | "joints_invalid" | "let_go_first" | "loop_late" | "no_smooth_path" | "not_enabled" | "reading_invalid" | "reading_old" | "readings_unsteady" | "slide_astray" | "slide_jumped" | "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "at_start" | "checking_run" | "copilot_began" | "copilot_changed" | "copilot_ended" | "copilot_gone" | "copilot_late" | "disk_full" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "import_invalid" | "journal_full" | "journal_lost" | "journal_unwritable" | "joints_unreadable" | "latch_ended" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_loaded" | "nothing_recorded" | "page_refused" | "page_stopped" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "profile_exists" | "question_began" | "record_unknown" | "record_unreadable" | "recording_cut" | "recording_ended" | "recording_in_use" | "recording_left_out" | "recording_unreadable" | "request_invalid" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "work_broke_off";
   parameters: Record<string, string | number>;
 }
 
 export interface Person {
   id: string;
-  name: string;
+  name: string | number;
 }
 
 export interface Personalise {
@@ -262,10 +262,10 @@ export interface State {
   alpha: number;
   bound_m: number | null;
   driver: string | null;
-  driver_name: string | null;
+  driver_name: string | number | null;
   watchers: number;
   asking: string | null;
-  asking_name: string | null;
+  asking_name: string | number | null;
   copilot: CopilotState | null;
   copilot_asking: Person | null;
   recording: RecordingState | null;

@@ -1,7 +1,7 @@
 /** The state of things in one sentence, for eyes and for screen readers. */
 
 import { setText } from "../layout/dom.js";
-import { say } from "../layout/words.js";
+import { say, sayName } from "../layout/words.js";
 import { whoAsks } from "./driver_lease.js";
 import { concerns, sayTo } from "./notices.js";
 
@@ -63,7 +63,7 @@ function driverWords({ phase, note, reason, held_back, returning, let_go_first, 
   if (returning) return cause === null ? say("status.returning") : say("status.returning_held_back", { cause });
   switch (phase) {
     case "ready":
-      if (copilot?.pace === 0) return say("status.copilot_holds", { name: copilot.name });
+      if (copilot?.pace === 0) return say("status.copilot_holds", { name: sayName(copilot.name) });
       return say(let_go_first ? "status.let_go" : "status.ready");
     case "moving": return cause === null ? say("status.moving") : say("status.held_back", { cause });
     case "stopping": return say("status.stopping", parameters);
@@ -81,7 +81,7 @@ function driverWords({ phase, note, reason, held_back, returning, let_go_first, 
  */
 function watcherWords({ phase, note, reason, held_back, returning, driver, driver_name }, canEnable, asked, reader) {
   if (concerns(note, false)) return sayTo(note, reader);
-  const name = driver_name || say("driver.somebody_else");
+  const name = driver_name === null ? say("driver.somebody_else") : sayName(driver_name);
   const parameters = { name, reason: reason === null ? "" : sayTo(reason, reader) };
   if (returning) return say("status.returning_watching");
   switch (phase) {

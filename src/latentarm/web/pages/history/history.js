@@ -10,9 +10,10 @@ import { figureWords, inputWords, outcomeWords, taskWords } from "./drive_words.
 import { attachReplay } from "./replay_panel.js";
 import { report } from "./report.js";
 
+/** @import {Notice} from "../connection/messages.js" */
 /** @import {Drive} from "./weeks.js" */
 
-/** @typedef {{name: string, title: string, bytes: number, episodes: {seconds: number, person: string}[], in_use: boolean, problem: string | null}} Recording */
+/** @typedef {{name: string, title: string, bytes: number, episodes: {seconds: number, person: string}[], in_use: boolean, problem: Notice | null}} Recording */
 
 /** Drives that are listed at first, and more with each press. */
 const PAGE = 25;
@@ -75,7 +76,7 @@ async function refresh() {
   byId("report").replaceChildren(...report(drives, whose()));
   setText(byId("drives-title"), say("history.drives", { count: drives.length }));
   if (found.problem) tell(sayNotice(found.problem));
-  else if (found.problems.length) tell(found.problems.join(" "));
+  else if (found.problems.length) tell(found.problems.map(sayNotice).join(" "));
   showDrives();
 }
 
@@ -150,7 +151,7 @@ async function showRecordings() {
     name.append(create("bdi", { textContent: one.title || one.name }), create("small", { textContent: [one.title ? one.name : "", by].filter(Boolean).join(" · ") }));
     const seconds = one.episodes.reduce((total, episode) => total + episode.seconds, 0);
     const figures = create("span", { className: "drive-figures" });
-    figures.textContent = one.problem ?? say("history.recorded", {
+    figures.textContent = one.problem ? sayNotice(one.problem) : say("history.recorded", {
       count: one.episodes.length, seconds: sayNumber(seconds, 0), megabytes: sayNumber(one.bytes / 1e6, 1),
     });
     const path = `/records/recordings/${encodeURIComponent(one.name)}`;

@@ -48,13 +48,21 @@ export function knows(key) {
   return Object.hasOwn(catalogue, key);
 }
 
+/** What a person is called; a guest without a name is a number. @param {string | number} name */
+export function sayName(name) {
+  return typeof name === "number" ? say("driver.guest", { number: name }) : name;
+}
+
 /**
- * What the server tells people: a code with its parameters.
+ * What the server tells people: a code with its parameters, of which `because` is the code of another notice.
  *
  * @param {Notice} notice
  */
 export function sayNotice({ code, parameters }) {
-  return say(`notice.${code}`, parameters);
+  const spoken = { ...parameters };
+  if ("name" in spoken) spoken.name = sayName(spoken.name);
+  if ("because" in spoken) spoken.because = say(/** @type {WordKey} */ (`notice.${spoken.because}`), spoken);
+  return say(`notice.${code}`, spoken);
 }
 
 /** A number as the language writes it. @param {number} value @param {number} [digits] after the decimal point */

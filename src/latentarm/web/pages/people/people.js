@@ -3,7 +3,7 @@
 import { attachWholePage } from "../inputs/whole_page.js";
 import { byId, create, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
-import { say } from "../layout/words.js";
+import { say, sayNotice } from "../layout/words.js";
 import { ask, sayTime } from "../records/ask.js";
 
 /** @typedef {{id: string, name: string, drives: number, last: string | null}} Person */
@@ -43,7 +43,7 @@ async function refresh() {
   byId("people").replaceChildren(rowOf(null), ...people.map(rowOf));
   if (row !== undefined) /** @type {HTMLElement | null} */ (byId("people").querySelector(`[data-person="${row}"] button`))?.focus();
   if (problems.length) {
-    setText(byId("problem"), problems.join(" "));
+    setText(byId("problem"), problems.map(sayNotice).join(" "));
     byId("problem").hidden = false;
   }
 }
