@@ -11,7 +11,8 @@ from typing import Any, Final, final, get_args
 from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 
 from latentarm.web.protocol.learning_messages import LearningState
-from latentarm.web.protocol.messages import ClientMessage, Refused, State, Welcome
+from latentarm.web.protocol.page_messages import ClientMessage
+from latentarm.web.protocol.server_messages import Refused, State, Welcome
 
 TARGET: Final = Path(__file__).parents[1] / "src/latentarm/web/pages/connection/messages.d.ts"
 

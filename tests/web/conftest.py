@@ -21,20 +21,15 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.tasks.table_top import TableTop
 from latentarm.testing.faults import FaultyArm
 from latentarm.types import GripperAsk
-from latentarm.web.arm_process.drive import Drive, Steering
+from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.arm_process.recording import EpisodeWriter
-from latentarm.web.protocol.channel import (
-    AskedGripper,
-    Given,
-    Order,
-    Paced,
-    Report,
-    new_channel,
-    parse_report,
-)
+from latentarm.web.arm_process.steering import Steering
+from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.orders import AskedGripper, Given, Order, Paced
+from latentarm.web.protocol.report import Report, parse_report
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.connections import ConnectionLimits

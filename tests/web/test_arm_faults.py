@@ -10,8 +10,9 @@ from latentarm.controllers.joined import JoinedController
 from latentarm.controllers.latent import LatentController
 from latentarm.models.pca.training import PCA
 from latentarm.tasks.table_top import TableTop
-from latentarm.web.arm_process.drive import Drive, Steering
-from latentarm.web.protocol.channel import Enable
+from latentarm.web.arm_process.drive import Drive
+from latentarm.web.arm_process.steering import Steering
+from latentarm.web.protocol.orders import Enable
 
 from .conftest import said
 

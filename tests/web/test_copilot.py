@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from latentarm.web.arm_process.page_inputs import COPILOT_TIMEOUT_S
-from latentarm.web.protocol.channel import Enable, Paced
+from latentarm.web.protocol.orders import Enable, Paced
 from latentarm.web.server.sessions import Sessions
 
 

@@ -4,17 +4,11 @@ import numpy as np
 import pytest
 
 from latentarm.control.journal import read_journal
-from latentarm.web.arm_process.drive import Drive, Steering
+from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
-from latentarm.web.protocol.channel import (
-    ChooseMode,
-    ChooseProfile,
-    ChooseRun,
-    Enable,
-    Record,
-    Reset,
-)
+from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.orders import ChooseMode, ChooseProfile, ChooseRun, Enable, Record, Reset
 
 ADA = Notice(code="stop_pressed_by", parameters={"name": "Ada"})
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from latentarm.web.protocol.messages import FRAME_LIMIT
+from latentarm.web.protocol.page_messages import FRAME_LIMIT
 from latentarm.web.server.frames import BURST
 
 HELLO = '{"type": "hello", "version": 1}'

@@ -94,7 +94,7 @@ def test_a_blocked_event_loop(recorded):
 SERVER = """
 import sys, time
 from pathlib import Path
-from latentarm.web.protocol.channel import ChooseMode, Enable, Given, Record
+from latentarm.web.protocol.orders import ChooseMode, Enable, Given, Record
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.arm_process.process import ControlProcess
 

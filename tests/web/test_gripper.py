@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.input_port import NONCE_LIFE_S
 from latentarm.web.arm_process.page_inputs import PageInputs
-from latentarm.web.protocol.channel import AskedGripper, Enable, Given
+from latentarm.web.protocol.orders import AskedGripper, Enable, Given
 from latentarm.web.protocol.shared_memory import LatestSlot
 
 TICK_S = 0.01

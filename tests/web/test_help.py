@@ -5,7 +5,7 @@ import pytest
 
 from latentarm.web.arm_process.drive_setup import RELEASE_FRACTION, DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.help import LEVELS, USUAL_HELP
-from latentarm.web.protocol.channel import ChooseHelp, ChooseMode, Enable
+from latentarm.web.protocol.orders import ChooseHelp, ChooseMode, Enable
 
 CERTAIN = np.array([0.98, 0.01, 0.01])
 UNSURE = np.array([0.4, 0.3, 0.3])

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from latentarm.web.protocol.messages import parse_message
+from latentarm.web.protocol.page_messages import parse_message
 
 INPUT = {
     "type": "input",

@@ -12,8 +12,8 @@ import pytest
 from latentarm.alignment.profile import TRIAL, profile_names, trial_folder
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
-from latentarm.web.protocol.channel import ChooseProfile
-from latentarm.web.protocol.messages import parse_message
+from latentarm.web.protocol.orders import ChooseProfile
+from latentarm.web.protocol.page_messages import parse_message
 from latentarm.web.protocol.personalise_messages import (
     BeginPersonalise,
     CancelPersonalise,

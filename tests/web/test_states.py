@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from latentarm.web.protocol.channel import Report
+from latentarm.web.protocol.report import Report
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
 

@@ -18,8 +18,8 @@ from latentarm.tasks.task import REACHED_DISTANCE
 from latentarm.types import Pose
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.task_run import TaskRun, Todo, goal_to_reach
-from latentarm.web.protocol.channel import BeginTask, Enable
-from latentarm.web.protocol.messages import BeginRun, parse_message
+from latentarm.web.protocol.orders import BeginTask, Enable
+from latentarm.web.protocol.page_messages import BeginRun, parse_message
 from latentarm.web.server.loaded_run import LoadedRun
 from latentarm.web.words.catalogue import DEFAULT, languages
 

@@ -14,7 +14,7 @@ from latentarm.runs.folder import read_run
 from latentarm.types import Command, StepRecord
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.jobs.training import FEWEST, TrainingJob, TrainingPlan, train_as_planned
-from latentarm.web.protocol.messages import parse_message
+from latentarm.web.protocol.page_messages import parse_message
 from latentarm.web.server.loaded_run import RunList
 
 from .conftest import said, wait_for

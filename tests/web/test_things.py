@@ -21,11 +21,14 @@ from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Grains, Part, Thing
 from latentarm.tasks.place import ScenePlace
 from latentarm.types import Pose
-from latentarm.web.arm_process.drive import Drive, Steering
+from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.whereabouts import Whereabouts
-from latentarm.web.protocol.channel import Record, Things, new_channel
+from latentarm.web.protocol.channel import new_channel
+from latentarm.web.protocol.orders import Record
+from latentarm.web.protocol.report import Things
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.protocol.things import described, whereabouts
 from latentarm.web.server.states import PageMemory

@@ -9,8 +9,8 @@ from latentarm.control.journal import read_journal
 from latentarm.kinematics.obstacles import HalfSpace, Sphere
 from latentarm.tasks.place import ScenePlace
 from latentarm.web.arm_process.way_back import ARRIVED_RAD, STUCK_S
-from latentarm.web.protocol.channel import ChooseMode, Enable, Record, Return
 from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.orders import ChooseMode, Enable, Record, Return
 
 AWAY_S = 1.6
 """When the arm has been driven away and let go."""

@@ -8,8 +8,9 @@ from typing import get_args
 import pytest
 
 from latentarm.web.jobs.training import model_names
-from latentarm.web.protocol.channel import HeldBack, ModeName
 from latentarm.web.protocol.notice import Notice, NoticeCode
+from latentarm.web.protocol.orders import ModeName
+from latentarm.web.protocol.report import HeldBack
 from latentarm.web.server.assets import FOLDER
 from latentarm.web.words.catalogue import DEFAULT, languages
 

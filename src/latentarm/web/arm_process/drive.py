@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final, final
 
 import numpy as np
@@ -10,40 +10,36 @@ import numpy as np
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
-from latentarm.control.recorder import EpisodeHeader
-from latentarm.demonstrations.provenance import provenance_now
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
-from latentarm.web.arm_process.ghosts import GhostPaths
-from latentarm.web.arm_process.help import USUAL_HELP
+from latentarm.web.arm_process.episode_header import episode_header
 from latentarm.web.arm_process.late_stops import LateStops
 from latentarm.web.arm_process.neutral_first import NeutralFirst
+from latentarm.web.arm_process.observed import Observed
+from latentarm.web.arm_process.outlook import Outlook
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
 from latentarm.web.arm_process.way_back import AT_START_RAD, ENDED, WayBack
 from latentarm.web.arm_process.whereabouts import Whereabouts
-from latentarm.web.protocol.channel import (
+from latentarm.web.protocol.channel import Channel, parse_stop
+from latentarm.web.protocol.notice import Notice, notice_of_stop
+from latentarm.web.protocol.orders import (
     BeginTask,
-    Channel,
     ChooseHelp,
     ChooseMode,
     ChooseProfile,
     ChooseRun,
     Enable,
-    GripperState,
-    HeldBack,
     HelpLevel,
     ModeName,
     Order,
-    Phase,
     Record,
-    Report,
     Reset,
     Return,
-    parse_stop,
 )
-from latentarm.web.protocol.notice import Notice, notice_of_stop
+from latentarm.web.protocol.report import HeldBack, Phase, Report
 
 ENABLE_WAITS_S: Final = 0.3
 """How long an order to enable waits for a fresh neutral input, s."""
@@ -63,32 +59,8 @@ _HELD_BACK: Final[dict[str, HeldBack]] = {
 """Filters whose effect is shown to people; the others are always active."""
 
 _ORDERS_PER_TICK: Final = 4
-_LOOK_EVERY: Final = 10
-_STATISTICS_EVERY: Final = 100
 _SPARE_S: Final = 0.004
 """Deferrable work is done in a tick only if this much of the tick is left."""
-
-
-@final
-@dataclass
-class Steering:
-    """State that is kept from one drive to the next.
-
-    Attributes:
-        mode: how the arm is steered.
-        axes: which pair of the end-effector's axes.
-        help: how much the robot helps with latent actions.
-        tick: counts the ticks of all drives.
-        ending_episode: whether the episode ends as soon as the arm is at rest.
-        run: of the task, as far as it has come; None where it is to begin.
-    """
-
-    mode: ModeName
-    axes: int = 0
-    help: HelpLevel = USUAL_HELP
-    tick: int = 0
-    ending_episode: bool = False
-    run: TaskRun | None = None
 
 
 @final
@@ -132,7 +104,6 @@ class Drive:
         self._writer = writer
         self._orphaned = orphaned
         self._steering = steering
-        self._ghosts = GhostPaths(setup.task, setup.controller, setup.help)
         self._step = setup.step(arm)
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
@@ -145,12 +116,11 @@ class Drive:
         self._reasons: dict[str, Notice] = {}
         self._enable_until_s = -math.inf
         self._enable_driver = -1
-        self._seen = setup.start
-        self._gripper: GripperState | None = None
+        self._observed = Observed(setup.start, setup.task.robot.gripper)
+        self._outlook = Outlook(setup, self._step, self._loop, steering)
         self._whereabouts = Whereabouts(setup.scene, arm)
         self._run = steering.run or TaskRun(setup.todo, arm, setup.task.robot.chain)
         steering.run = self._run
-        self._late_share = self._late_p99_ms = 0.0
         self._note = note
         self._note_until_s = -math.inf if note is None else clock.now_s() + NOTE_S
         self.change: Change | None = None
@@ -172,10 +142,8 @@ class Drive:
     def _observe(self, record: StepRecord) -> None:
         """Called by the loop after every command."""
         self._steering.tick += 1
-        if not math.isnan(record.state[0]):
-            self._seen = record.state
-        self._note_gripper(record)
-        self._run.see(record.time_s, self._seen, enabled=self._step.stopped is None)
+        self._observed.see(record)
+        self._run.see(record.time_s, self._observed.q, enabled=self._step.stopped is None)
         # Only a recording is worth the look: some 0.1 ms.
         self._writer.add(replace(record, things=self._whereabouts.rows()) if self._writer.on else record)
         if self._steering.ending_episode and self._step.at_rest:
@@ -186,17 +154,7 @@ class Drive:
         self._enable_if_asked(record.time_s)
         self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
-            self._look(record)
-
-    def _note_gripper(self, record: StepRecord) -> None:
-        """Keep what the gripper measured last, and whether it was last told to close."""
-        gripper, measured, command = self._setup.task.robot.gripper, record.gripper, record.command.gripper
-        if gripper is None or measured is None:
-            return
-        closing = None if self._gripper is None else self._gripper.closing
-        if command is not None:
-            closing = command.width_m < gripper.width_m / 2.0
-        self._gripper = GripperState(width_m=measured.width_m, holding=measured.holding, closing=closing)
+            self._outlook.look(record, self._observed.q)
 
     def _obey(self, record: StepRecord) -> None:
         if self._channel.stop.version != self._stop_version:
@@ -266,25 +224,12 @@ class Drive:
         self._loop.finish()
 
     def _choose(self, mode: ModeName, axes: int, level: HelpLevel) -> None:
-        steering = self._steering
-        before = steering.mode, steering.axes, self._help_now
-        steering.mode = mode
-        steering.axes = min(max(axes, 0), len(self._setup.axes) - 1)
-        steering.help = level
-        if mode == "latent" and "assisted" in self._setup.modes:
-            steering.help = "off"
-        elif mode == "assisted" and level == "off":
-            steering.help = USUAL_HELP
-        if before != (steering.mode, steering.axes, self._help_now):
+        if self._steering.choose(self._setup, mode, axes, level):
             # A stick that is held would go on, with another meaning.
             self._neutral.demand()
         self._way_back.end()
-        self._setup.help.level = self._help_now
-        self._step.choose_mode(self._setup.mode_index(mode, steering.axes))
-
-    @property
-    def _help_now(self) -> HelpLevel:
-        return self._steering.help if self._steering.mode == "assisted" else "off"
+        self._setup.help.level = self._steering.help_now
+        self._step.choose_mode(self._setup.mode_index(mode, self._steering.axes))
 
     def _choose_help(self, level: HelpLevel) -> None:
         """A level for now where latent actions are driven, and else for when they will be."""
@@ -319,7 +264,7 @@ class Drive:
         self._step.forget()
         if self._step.stopped is not None:
             self._end_way_back()
-        elif (outcome := self._way_back.outcome(self._seen, record.time_s)) is not None:
+        elif (outcome := self._way_back.outcome(self._observed.q, record.time_s)) is not None:
             self._end_way_back()
             self._say(ENDED[outcome])
 
@@ -327,29 +272,8 @@ class Drive:
         self._steering.ending_episode = False
         if not self._writer.on:
             self._inputs.devices.clear()
-        robot, spec = self._setup.task.robot, self._setup.spec
-        self._writer.begin(
-            EpisodeHeader(
-                robot=robot.name,
-                joint_names=robot.joint_names,
-                joint_limits=robot.limits,
-                rate_hz=1.0 / PERIOD_S,
-                task=task,
-                goals=self._setup.task.goals,
-                modes=self._setup.controller.modes,
-                provenance=provenance_now(
-                    person=person,
-                    run="" if spec.run is None else spec.run.name,
-                    run_fingerprint=self._setup.run_fingerprint,
-                    profile=spec.profile or "",
-                    controller=self._steering.mode,
-                ),
-                end_effector=robot.end_effector,
-                limits=robot.stated_limits,
-                things=self._whereabouts.names,
-                objects=self._setup.objects if self._whereabouts.names else (),
-            )
-        )
+        things = self._whereabouts.names
+        self._writer.begin(episode_header(self._setup, things, self._steering.mode, task, person))
 
     def _end_episode(self) -> None:
         self._writer.end(", ".join(sorted(self._inputs.devices)))
@@ -370,20 +294,6 @@ class Drive:
                 self._reasons.clear()
                 self._loop.enable()
 
-    def _look(self, record: StepRecord) -> None:
-        """Deferrable work: ghosts, one direction a tick, and the loop's statistics."""
-        phase = self._steering.tick % _LOOK_EVERY
-        if phase < 4:
-            # Without a reading nobody knows the gripper, which the decoder may look at.
-            if not math.isnan(record.state[0]):
-                steering = self._steering
-                mode = self._setup.mode_index(steering.mode, steering.axes)
-                self._ghosts.look(phase, self._step.context(self._seen), mode)
-        elif self._steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
-            statistics = self._loop.statistics()
-            self._late_share = 1.0 - statistics.met_share
-            self._late_p99_ms = 1000.0 * statistics.p99_s
-
     def _phase(self) -> Phase:
         at_rest = self._step.at_rest
         if self._step.stopped is None:
@@ -400,7 +310,8 @@ class Drive:
 
     def _report(self, record: StepRecord) -> Report:
         phase, spec = self._phase(), self._setup.spec
-        tool = self._setup.task.robot.chain.forward(self._seen).position.tolist()
+        q = self._observed.q
+        tool = self._setup.task.robot.chain.forward(q).position.tolist()
         held_back: list[HeldBack] = [
             _HELD_BACK[name] for name in record.command.limited_by if name in _HELD_BACK
         ]
@@ -414,7 +325,7 @@ class Drive:
             reason=self._reason(self._step.stopped),
             held_back=held_back[0] if held_back and phase == "moving" else None,
             returning=self._way_back.on,
-            at_start=self._way_back.away(self._seen) <= AT_START_RAD,
+            at_start=self._way_back.away(q) <= AT_START_RAD,
             let_go_first=self._neutral.waiting,
             late_stops=self._late.count,
             mode=self._steering.mode,
@@ -424,17 +335,17 @@ class Drive:
             seed=spec.seed,
             profile=spec.profile,
             loading=self.change is not None,
-            q=tuple(self._seen.tolist()),
+            q=tuple(q.tolist()),
             speed=float(np.abs(self._arm.read().dq).max()),
             tool=(tool[0], tool[1], tool[2]),
-            gripper=self._gripper,
+            gripper=self._observed.gripper,
             task=self._run.state,
             things=self._whereabouts.look(self._steering.tick),
-            ghosts=self._ghosts.newest,
+            ghosts=self._outlook.ghosts,
             belief=tuple(record.belief.tolist()),
             alpha=record.alpha,
             bound_rad=None if math.isnan(record.bound_rad) else record.bound_rad,
             recording=self._writer.status,
-            late_share=self._late_share,
-            late_p99_ms=self._late_p99_ms,
+            late_share=self._outlook.late_share,
+            late_p99_ms=self._outlook.late_p99_ms,
         )

@@ -29,7 +29,7 @@ from latentarm.types import FloatArray
 from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
 from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
-from latentarm.web.protocol.channel import HelpLevel, ModeName
+from latentarm.web.protocol.orders import HelpLevel, ModeName
 
 SEEDS: Final = 2**31
 """How many seeds there are."""

@@ -12,7 +12,7 @@ from latentarm.kinematics.obstacles import HalfSpace
 from latentarm.tasks.place import Place
 from latentarm.types import Context, FloatArray
 from latentarm.web.arm_process.help import Help
-from latentarm.web.protocol.channel import Ghosts, Point
+from latentarm.web.protocol.report import Ghosts, Point
 
 AHEAD_S: Final = 1.0
 POINTS: Final = 6

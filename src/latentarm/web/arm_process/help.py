@@ -4,7 +4,7 @@ from typing import Final, final
 
 from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
 from latentarm.types import FloatArray
-from latentarm.web.protocol.channel import HelpLevel
+from latentarm.web.protocol.orders import HelpLevel
 
 USUAL_HELP: Final[HelpLevel] = "medium"
 """The level at the start."""

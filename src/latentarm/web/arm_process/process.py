@@ -24,24 +24,15 @@ from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.errors import UserError
 from latentarm.untrusted.terminal import one_line
-from latentarm.web.arm_process.drive import Drive, Steering
+from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
 from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.recording import EpisodeWriter
-from latentarm.web.protocol.channel import (
-    ORDER_LIMIT,
-    BeginTask,
-    Channel,
-    ChooseProfile,
-    ChooseRun,
-    Given,
-    Order,
-    Report,
-    Reset,
-    new_channel,
-    parse_report,
-)
+from latentarm.web.arm_process.steering import Steering
+from latentarm.web.protocol.channel import ORDER_LIMIT, Channel, new_channel
 from latentarm.web.protocol.notice import Notice, notice_of
+from latentarm.web.protocol.orders import BeginTask, ChooseProfile, ChooseRun, Given, Order, Reset
+from latentarm.web.protocol.report import Report, parse_report
 
 T = TypeVar("T")
 

@@ -13,8 +13,8 @@ from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.errors import UserError
 from latentarm.types import StepRecord, Stop
 from latentarm.untrusted.terminal import one_line
-from latentarm.web.protocol.channel import Recording
 from latentarm.web.protocol.notice import Notice, notice_of_stop
+from latentarm.web.protocol.report import Recording
 
 _MOST_WAITING: Final = 6000
 """Samples that may wait for the disk: a minute of them."""

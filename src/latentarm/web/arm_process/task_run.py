@@ -11,7 +11,7 @@ from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.steps import Failure, Progress, StepKind, TaskStep, Waypoint
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray, Pose
-from latentarm.web.protocol.channel import TaskState, Why
+from latentarm.web.protocol.report import TaskState, Why
 
 _FEW: Final = 2
 """Waypoints that a person can be told one by one; of a longer way only the end counts."""

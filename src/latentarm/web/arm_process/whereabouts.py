@@ -6,7 +6,7 @@ from latentarm.arms.contract import Arm, SceneArm
 from latentarm.kinematics.pose_rows import thing_rows
 from latentarm.scene.scene import Scene
 from latentarm.types import NO_THINGS, FloatArray
-from latentarm.web.protocol.channel import Things
+from latentarm.web.protocol.report import Things
 from latentarm.web.protocol.things import whereabouts
 
 _EVERY: Final = 4

@@ -4,8 +4,8 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field
 
-from latentarm.web.protocol.channel import Point
 from latentarm.web.protocol.notice import Message, Notice
+from latentarm.web.protocol.report import Point
 
 MOST_QUESTIONS: Final = 30
 

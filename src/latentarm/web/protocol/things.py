@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Grains, Part
 from latentarm.types import FloatArray, Pose
-from latentarm.web.protocol.channel import PoseRow, Things
+from latentarm.web.protocol.report import PoseRow, Things
 
 _DIGITS: Final = 4
 """Places are sent to a tenth of a millimetre, so that what rests need not be sent again."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from latentarm.kinematics.chain import Chain
 from latentarm.web.arm_process.task_run import Todo
-from latentarm.web.protocol.channel import Report, Things
+from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import Drawable, pose_of
 from latentarm.web.records.documents import new_id, now
 from latentarm.web.records.drive_record import DriveRecord, Ending, Mark, Trace, TracedThings

@@ -6,8 +6,9 @@ from typing import Annotated, Final, Literal, final
 from pydantic import Field, ValidationError, model_validator
 
 from latentarm.errors import UserError
-from latentarm.web.protocol.channel import ModeName, Point, PoseRow
 from latentarm.web.protocol.notice import Message
+from latentarm.web.protocol.orders import ModeName
+from latentarm.web.protocol.report import Point, PoseRow
 from latentarm.web.records.documents import ID
 from latentarm.web.records.people import PersonId
 
@@ -95,7 +96,7 @@ class TracedThings(Message):
     Attributes:
         t: s since the drive began.
         poses: of the things.
-        grains: as in `latentarm.web.protocol.channel.Things`; None where they are as before.
+        grains: as in `latentarm.web.protocol.report.Things`; None where they are as before.
     """
 
     t: float

@@ -19,9 +19,9 @@ from latentarm.robots.notices import notices
 from latentarm.web.arm_process.drive_setup import DriveSetup, load_setup
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.training import model_names
-from latentarm.web.protocol.channel import ChooseProfile
-from latentarm.web.protocol.messages import FRAME_LIMIT
 from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.orders import ChooseProfile
+from latentarm.web.protocol.page_messages import FRAME_LIMIT
 from latentarm.web.records.exchange import IMPORT_LIMIT
 from latentarm.web.records.people import PersonRecord
 from latentarm.web.records.records import Records

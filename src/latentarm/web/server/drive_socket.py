@@ -7,7 +7,10 @@ from typing import Final, Literal, final
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from latentarm.web.arm_process.process import ControlProcess
-from latentarm.web.protocol.channel import (
+from latentarm.web.protocol.copilot_messages import AcceptCopilot, AskToCopilot, CopilotPace, EndCopilot
+from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
+from latentarm.web.protocol.notice import Notice, NoticeCode
+from latentarm.web.protocol.orders import (
     AskedGripper,
     BeginTask,
     ChooseHelp,
@@ -19,9 +22,7 @@ from latentarm.web.protocol.channel import (
     Reset,
     Return,
 )
-from latentarm.web.protocol.copilot_messages import AcceptCopilot, AskToCopilot, CopilotPace, EndCopilot
-from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
-from latentarm.web.protocol.messages import (
+from latentarm.web.protocol.page_messages import (
     FRAME_LIMIT,
     AskToDrive,
     BeginRun,
@@ -35,15 +36,14 @@ from latentarm.web.protocol.messages import (
     PressStop,
     Profile,
     RecordEpisode,
-    Refused,
     Release,
     ResetArm,
     ReturnArm,
     TrailClear,
     parse_message,
 )
-from latentarm.web.protocol.notice import Notice, NoticeCode
 from latentarm.web.protocol.personalise_messages import AnswerQuestion, KeepAlignment, PersonaliseMessage
+from latentarm.web.protocol.server_messages import Refused
 from latentarm.web.records.drive_record import Ending
 from latentarm.web.records.people import People
 from latentarm.web.server.frames import TOO_MANY

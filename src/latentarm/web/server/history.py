@@ -6,8 +6,8 @@ from functools import partial
 from typing import Final, final
 
 from latentarm.errors import UserError
-from latentarm.web.protocol.channel import Report
 from latentarm.web.protocol.notice import Notice, notice_of
+from latentarm.web.protocol.report import Report
 from latentarm.web.records.drive_log import About, DriveLog, Logged
 from latentarm.web.records.drive_record import Ending
 from latentarm.web.records.records import Records

@@ -9,9 +9,9 @@ from latentarm.errors import UserError
 from latentarm.runs.folder import read_run
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.training import TrainingJob, TrainingPlan
-from latentarm.web.protocol.channel import ChooseRun
 from latentarm.web.protocol.learning_messages import LearningState, Recorded, Train, Training
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
+from latentarm.web.protocol.orders import ChooseRun
 from latentarm.web.server.loaded_run import RunList
 from latentarm.web.server.personalising import Driven, Personalising
 from latentarm.web.server.run_check import WITHIN_S, Trial

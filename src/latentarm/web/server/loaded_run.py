@@ -9,9 +9,9 @@ import numpy as np
 from latentarm.alignment.profile import profile_names
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
-from latentarm.web.protocol.channel import Report
-from latentarm.web.protocol.messages import Limits, NamedGoal, NamedThing, StepToDo, TaskToDo, Welcome
+from latentarm.web.protocol.report import Report
 from latentarm.web.protocol.scene import drawable
+from latentarm.web.protocol.server_messages import Limits, NamedGoal, NamedThing, StepToDo, TaskToDo, Welcome
 
 Beginning = tuple[str | None, int, int]
 """The run that is driven, its seed, and what is to be done: they decide how everything stands at first."""

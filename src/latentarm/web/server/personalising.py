@@ -20,8 +20,8 @@ from latentarm.errors import UserError
 from latentarm.untrusted.names import clean_name
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
-from latentarm.web.protocol.channel import ChooseProfile, Report
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
+from latentarm.web.protocol.orders import ChooseProfile
 from latentarm.web.protocol.personalise_messages import (
     AnswerQuestion,
     BeginPersonalise,
@@ -34,6 +34,7 @@ from latentarm.web.protocol.personalise_messages import (
     SkipQuestion,
     TryAlignment,
 )
+from latentarm.web.protocol.report import Report
 
 STICK_AXES: Final = 2
 """A page's stick cannot answer for more."""

@@ -15,11 +15,11 @@ from latentarm.errors import UserError
 from latentarm.types import FloatArray
 from latentarm.untrusted.terminal import one_line
 from latentarm.web.arm_process.process import ControlProcess
-from latentarm.web.protocol.channel import Ghosts, GripperState, Report, Things
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
-from latentarm.web.protocol.messages import RecordingState, State
 from latentarm.web.protocol.notice import Notice, notice_of
+from latentarm.web.protocol.report import Ghosts, GripperState, Report, Things
 from latentarm.web.protocol.scene import pose_of
+from latentarm.web.protocol.server_messages import RecordingState, State
 from latentarm.web.server.loaded_run import (
     Beginning,
     LoadedRun,

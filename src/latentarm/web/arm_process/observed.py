@@ -1,0 +1,39 @@
+"""What was last read of the arm: its joints and its gripper."""
+
+import math
+from typing import final
+
+from latentarm.robots.gripper import Gripper
+from latentarm.types import FloatArray, StepRecord
+from latentarm.web.protocol.report import GripperState
+
+
+@final
+class Observed:
+    """Keeps the newest readings that could be used.
+
+    Args:
+        start: (n,), where the joints are at first, rad.
+        gripper: of the robot, or None where it has none.
+
+    Attributes:
+        q: (n,), joint positions, rad.
+        gripper: what the gripper measured, and whether it was last told to close; None before it was read.
+    """
+
+    def __init__(self, start: FloatArray, gripper: Gripper | None) -> None:
+        self._gripper = gripper
+        self.q = start
+        self.gripper: GripperState | None = None
+
+    def see(self, record: StepRecord) -> None:
+        """Take a step's readings."""
+        if not math.isnan(record.state[0]):
+            self.q = record.state
+        measured, command = record.gripper, record.command.gripper
+        if self._gripper is None or measured is None:
+            return
+        closing = None if self.gripper is None else self.gripper.closing
+        if command is not None:
+            closing = command.width_m < self._gripper.width_m / 2.0
+        self.gripper = GripperState(width_m=measured.width_m, holding=measured.holding, closing=closing)

@@ -1,0 +1,177 @@
+"""What the page's server tells the control process: the driver's inputs, and orders."""
+
+from typing import Annotated, Final, Literal, final
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from latentarm.types import GripperAsk
+from latentarm.web.protocol.notice import Message
+
+ModeName = Literal["latent", "assisted", "end_effector"]
+"""``assisted`` is ``latent`` with the robot's help, at a level other than ``off``."""
+
+HelpLevel = Literal["off", "low", "medium", "high"]
+
+
+@final
+class AskedGripper(Message):
+    """What the driver last asked of the gripper, with the stamps of the input that it came with.
+
+    It goes with every later input too, because only the newest input is kept. The stamps make it count once,
+    and not at all where its own input came too late.
+
+    Attributes:
+        ask: what is asked.
+        seq: of that input.
+        nonce: that it echoed.
+    """
+
+    ask: GripperAsk
+    seq: int
+    nonce: str
+
+
+@final
+class Paced(Message):
+    """What a driver's co-pilot leaves of the driver's speed.
+
+    Attributes:
+        copilot: counts the co-pilots.
+        pace: share of the driver's speed, in [0, 1].
+        nonce: the newest that the co-pilot's page had seen: it says how old this is.
+    """
+
+    copilot: int
+    pace: Annotated[float, Field(ge=0.0, le=1.0)]
+    nonce: str
+
+
+@final
+class Given(Message):
+    """The driver's input.
+
+    Attributes:
+        driver: counts the drivers, so that late inputs of the previous one are ignored.
+        seq: grows with every input of a driver.
+        nonce: the newest that their page has seen.
+        u: entries in [-1, 1].
+        latched: continues without being held, for a limited time.
+        source: with what kind of device.
+        gripper: the newest thing that this driver has asked of the gripper; None before the first.
+        paced: the newest that the driver's co-pilot has said; None without a co-pilot.
+    """
+
+    driver: int
+    seq: int
+    nonce: str
+    u: tuple[float, ...]
+    latched: bool
+    source: str = ""
+    gripper: AskedGripper | None = None
+    paced: Paced | None = None
+
+
+@final
+class Enable(Message):
+    """Let the arm move, if the driver's input is neutral.
+
+    Attributes:
+        driver: who asked.
+        stops: version of the stop slot as the driver knew it: a later Stop wins.
+    """
+
+    order: Literal["enable"] = "enable"
+    driver: int
+    stops: int
+
+
+@final
+class ChooseMode(Message):
+    """Steer in another way; ``axes`` is which pair of the end-effector's, None for the one before."""
+
+    order: Literal["mode"] = "mode"
+    mode: ModeName
+    axes: int | None
+
+
+@final
+class ChooseHelp(Message):
+    """How much the robot helps with learned motions; ``off`` is the mode ``latent``."""
+
+    order: Literal["help"] = "help"
+    level: HelpLevel
+
+
+@final
+class ChooseProfile(Message):
+    """Take another person's alignment, or None for z = u; only while the arm stands disengaged."""
+
+    order: Literal["profile"] = "profile"
+    name: str | None
+
+
+@final
+class ChooseRun(Message):
+    """Drive another run from its start, without anybody's alignment; only while the arm stands disengaged."""
+
+    order: Literal["run"] = "run"
+    run: str
+
+
+@final
+class Return(Message):
+    """Move the arm back to its start, while it is enabled and the stick is let go; or end that."""
+
+    order: Literal["return"] = "return"
+    on: bool
+
+
+@final
+class Record(Message):
+    """Begin an episode of what is driven, or end it once the arm is at rest."""
+
+    order: Literal["record"] = "record"
+    on: bool
+    task: str
+    person: str = ""
+
+
+@final
+class Reset(Message):
+    """Put the simulated arm back to its start; only while it stands disengaged."""
+
+    order: Literal["reset"] = "reset"
+
+
+@final
+class BeginTask(Message):
+    """Begin a run of the task from its start; only while the arm stands disengaged.
+
+    Attributes:
+        choice: index of what is to be done; None for the same again.
+        anew: whether things are placed anew; else they stand where they stood in the beginning.
+    """
+
+    order: Literal["begin"] = "begin"
+    choice: int | None
+    anew: bool
+
+
+Order = Enable | ChooseMode | ChooseHelp | ChooseProfile | ChooseRun | Return | Record | Reset | BeginTask
+_ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="order")])
+
+
+def parse_order(message: bytes) -> Order | None:
+    """Parse an order from its pipe; None if it is invalid."""
+    try:
+        return _ORDERS.validate_json(message)
+    except ValidationError:
+        return None
+
+
+def parse_given(message: bytes) -> Given | None:
+    """Parse an input from its slot; None if it is invalid."""
+    try:
+        return Given.model_validate_json(message)
+    except ValidationError:
+        return None

@@ -1,0 +1,212 @@
+"""What pages say to the server on the socket ``/drive``: JSON in text frames.
+
+The first message is `Hello`. Anything outside this schema ends the connection and stops the arm. The answers
+are in `latentarm.web.protocol.server_messages`.
+"""
+
+from typing import Annotated, Final, Literal, final
+
+from pydantic import Field, TypeAdapter
+
+from latentarm.types import GripperAsk
+from latentarm.web.protocol.copilot_messages import CopilotMessage
+from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
+from latentarm.web.protocol.notice import Message
+from latentarm.web.protocol.orders import HelpLevel, ModeName
+from latentarm.web.protocol.personalise_messages import PersonaliseMessage
+
+FRAME_LIMIT: Final = 4096
+"""The longest frame from a page, bytes."""
+
+Name = Annotated[str, Field(max_length=40)]
+Id = Annotated[str, Field(max_length=32)]
+Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
+
+
+@final
+class Hello(Message):
+    """A page introduces itself. The first page drives; the others watch until they ask.
+
+    Attributes:
+        version: of these messages.
+        name: what its person wants to be called; counts only where they have no record.
+        person: id of their record.
+    """
+
+    type: Literal["hello"]
+    version: Literal[1]
+    name: Name | None = None
+    person: Id | None = None
+
+
+@final
+class DriverInput(Message):
+    """The person's input, 50 times a second while the arm is enabled, including neutral.
+
+    Attributes:
+        seq: grows.
+        nonce: of the newest `State` that the page has seen.
+        u: entries in [-1, 1], right and up positive; axes that are not named are zero.
+        source: with what.
+        latched: continues without being held, for at most `Limits.latch_max_s`.
+        gripper: what is asked of the gripper with this input; only in the one input that asks.
+    """
+
+    type: Literal["input"]
+    seq: Annotated[int, Field(ge=0, le=2**53)]
+    nonce: Annotated[str, Field(max_length=64)]
+    u: Annotated[tuple[Deflection, ...], Field(min_length=1, max_length=8)]
+    source: Literal["pointer", "keyboard", "dpad", "gamepad", "switch"]
+    latched: bool
+    gripper: GripperAsk | None = None
+
+
+@final
+class PressEnable(Message):
+    """Let the arm move. A fresh neutral input must come within 0.3 s, before or after."""
+
+    type: Literal["enable"]
+
+
+@final
+class PressStop(Message):
+    """Stop the arm, from any page.
+
+    Attributes:
+        why: a person pressed Stop, or the page could not be sure of its person any more (left, hidden, a
+            control lost, a dialog opened).
+    """
+
+    type: Literal["stop"]
+    why: Literal["pressed", "page"] = "pressed"
+
+
+@final
+class Mode(Message):
+    """Steer in another way; at any time."""
+
+    type: Literal["mode"]
+    mode: ModeName
+    axes: Annotated[int, Field(ge=0, le=8)] | None = None
+
+
+@final
+class HelpFromRobot(Message):
+    """How much the robot helps with learned motions; at any time."""
+
+    type: Literal["help"]
+    level: HelpLevel
+
+
+@final
+class Profile(Message):
+    """Use a person's alignment, or null for none; while the arm is not enabled."""
+
+    type: Literal["profile"]
+    name: Annotated[str, Field(max_length=64)] | None
+
+
+@final
+class AskToDrive(Message):
+    """Drive if nobody does, else ask the driver to hand over."""
+
+    type: Literal["ask_to_drive"]
+
+
+@final
+class HandOver(Message):
+    """Hand over to the page that has asked to drive."""
+
+    type: Literal["hand_over"]
+    to: Id
+
+
+@final
+class Release(Message):
+    """Let others drive."""
+
+    type: Literal["release"]
+
+
+@final
+class TrailClear(Message):
+    """Empty the trail of the tool on every page."""
+
+    type: Literal["trail_clear"]
+
+
+@final
+class RecordEpisode(Message):
+    """Begin an episode, or end it once the arm is at rest; a change of the driver ends it too."""
+
+    type: Literal["record"]
+    on: bool
+    task: Annotated[str, Field(max_length=80)] = ""
+
+
+@final
+class ReturnArm(Message):
+    """Move the arm back to its start, while it is enabled and the stick is let go; or end that.
+
+    It goes on as long as neutral inputs come; any push ends it, and Stop, as always.
+    """
+
+    type: Literal["return"]
+    on: bool
+
+
+@final
+class ResetArm(Message):
+    """Put the simulated arm back to its start; while it is not enabled."""
+
+    type: Literal["reset"]
+
+
+@final
+class BeginRun(Message):
+    """Begin the task from its start, while the arm is not enabled.
+
+    Attributes:
+        choice: index of what is to be done; null for the same again.
+        anew: whether things are placed anew.
+    """
+
+    type: Literal["begin_run"]
+    choice: Annotated[int, Field(ge=0, le=10_000)] | None = None
+    anew: bool
+
+
+ClientMessage = (
+    Hello
+    | DriverInput
+    | PressEnable
+    | PressStop
+    | Mode
+    | HelpFromRobot
+    | Profile
+    | AskToDrive
+    | HandOver
+    | Release
+    | TrailClear
+    | RecordEpisode
+    | ReturnArm
+    | ResetArm
+    | BeginRun
+    | Train
+    | CancelTraining
+    | PickRun
+    | PersonaliseMessage
+    | CopilotMessage
+)
+_CLIENT: Final[TypeAdapter[ClientMessage]] = TypeAdapter(
+    Annotated[ClientMessage, Field(discriminator="type")]
+)
+
+
+def parse_message(frame: str) -> ClientMessage:
+    """Parse a page's message.
+
+    Raises:
+        ValueError: the text is not a valid message (as pydantic's ``ValidationError``).
+    """
+    return _CLIENT.validate_json(frame)

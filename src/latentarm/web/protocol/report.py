@@ -1,0 +1,187 @@
+"""What the control process tells the page's server: a report in every tick."""
+
+from typing import Literal, final
+
+from pydantic import ValidationError
+
+from latentarm.tasks.mishap import MishapKind
+from latentarm.web.protocol.notice import Message, Notice
+from latentarm.web.protocol.orders import HelpLevel, ModeName
+
+HeldBack = Literal["clearance", "freshness", "workspace", "joint_position"]
+Phase = Literal["disengaged", "neutral_needed", "ready", "moving", "stopping"]
+Point = tuple[float, float, float]
+PoseRow = tuple[float, float, float, float, float, float, float]
+"""x, y, z (m) and a quaternion w, x, y, z."""
+
+
+@final
+class Ghosts(Message):
+    """Where each full deflection would take the tool over the next second: points, m."""
+
+    up: tuple[Point, ...]
+    down: tuple[Point, ...]
+    left: tuple[Point, ...]
+    right: tuple[Point, ...]
+
+
+@final
+class Recording(Message):
+    """A recording under way or done.
+
+    Attributes:
+        on: whether an episode is under way.
+        samples: of this episode so far.
+        episodes: whole ones in the journal.
+        problem: why the last episode was broken off, or None.
+        journal: its path.
+    """
+
+    on: bool
+    samples: int
+    episodes: int
+    problem: Notice | None
+    journal: str
+
+
+@final
+class GripperState(Message):
+    """The gripper.
+
+    Attributes:
+        width_m: opening between the fingers, m.
+        holding: whether something is held between them.
+        closing: whether it was last told to close; None if it was told nothing yet.
+    """
+
+    width_m: float
+    holding: bool
+    closing: bool | None
+
+
+@final
+class Things(Message):
+    """Where things and grains are, in the order of ``/scene.json``.
+
+    Attributes:
+        poses: of the things.
+        grains: for each kind, x, y, z of one grain after the other, m.
+    """
+
+    poses: tuple[PoseRow, ...]
+    grains: tuple[tuple[float, ...], ...]
+
+
+@final
+class Why(Message):
+    """Why a run of a task has failed.
+
+    Attributes:
+        code: what went wrong.
+        thing: name of the thing, or of the grains, that it happened to.
+    """
+
+    code: MishapKind
+    thing: str
+
+
+@final
+class TaskState(Message):
+    """How far a run of the task has come.
+
+    Attributes:
+        choice: index of what is to be done.
+        done: how many of its steps have been done.
+        outcome: null while it goes on.
+        why: why it has failed.
+        time_s: since the arm was first enabled in this run, until its outcome, s.
+    """
+
+    choice: int
+    done: int
+    outcome: Literal["success", "failure"] | None
+    why: Why | None
+    time_s: float
+
+
+@final
+class Report(Message):
+    """Report of the control process in every tick.
+
+    Attributes:
+        nonce: for the driver to echo.
+        tick: grows.
+        time_s: the control process's clock.
+        driver: whose inputs it takes.
+        phase: ``disengaged``, ``neutral_needed`` (the stick must be let go), ``ready`` (enabled and standing
+            still), ``moving``, ``stopping``.
+        note: shown for a while instead of what the arm does; None for nothing.
+        reason: why the arm may not move; None if it may.
+        held_back: why it moves slower than asked; None if it does not.
+        returning: whether it is on its way back to its start.
+        at_start: whether it is there.
+        let_go_first: whether the stick does something else by now: it must be let go before it moves the arm.
+        late_stops: how often the arm has stopped because no input came in time, since this driver began to
+            drive this.
+        mode: how the arm is steered.
+        axes: which pair of the end-effector's axes.
+        help: how much the robot helps with learned motions; None where it cannot.
+        run: path of the run that is driven, as it was named; None without one.
+        seed: says where things were placed and where the arm started.
+        profile: whose alignment.
+        loading: whether something else is being loaded; there are no further reports until it is.
+        q: (n,), joint positions as they were last read, rad.
+        speed: the fastest joint's, rad/s.
+        tool: the tool's position, m.
+        gripper: as it was last read; None without one.
+        task: how far it has come.
+        things: where they are, sent in every few reports; None in the others and in an empty scene.
+        ghosts: what each direction would do now.
+        belief: over the goals; empty where there are none.
+        alpha: how much the robot helps.
+        bound_rad: the radius of equation 14, where there is help.
+        recording: where something is recorded.
+        late_share: share of the loop's deadlines that were missed.
+        late_p99_ms: 99th percentile of the time from a tick's due time until its command was sent.
+    """
+
+    nonce: str
+    tick: int
+    time_s: float
+    driver: int
+    phase: Phase
+    note: Notice | None
+    reason: Notice | None
+    held_back: HeldBack | None
+    returning: bool
+    at_start: bool
+    let_go_first: bool
+    late_stops: int
+    mode: ModeName
+    axes: int
+    help: HelpLevel | None
+    run: str | None
+    seed: int
+    profile: str | None
+    loading: bool
+    q: tuple[float, ...]
+    speed: float
+    tool: Point
+    gripper: GripperState | None
+    task: TaskState
+    things: Things | None
+    ghosts: Ghosts | None
+    belief: tuple[float, ...]
+    alpha: float
+    bound_rad: float | None
+    recording: Recording | None
+    late_share: float
+    late_p99_ms: float
+
+
+def parse_report(message: bytes) -> Report | None:
+    """Parse a report from its slot; None if it is invalid."""
+    try:
+        return Report.model_validate_json(message)
+    except ValidationError:
+        return None

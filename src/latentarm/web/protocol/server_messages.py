@@ -1,0 +1,201 @@
+"""What the server says to pages on the socket ``/drive``: JSON in text frames.
+
+It answers `Hello` with `Welcome`, again whenever what is driven has changed, then `State` up to 50 times a
+second to the driver and 30 to watchers, and `Refused` before it closes the connection.
+"""
+
+from typing import Literal, final
+
+from latentarm.tasks.steps import StepKind
+from latentarm.web.protocol.copilot_messages import CopilotState, Person
+from latentarm.web.protocol.notice import Message, Notice, PersonName
+from latentarm.web.protocol.orders import HelpLevel, ModeName
+from latentarm.web.protocol.report import Ghosts, GripperState, HeldBack, Phase, Point, TaskState, Things
+
+
+@final
+class NamedGoal(Message):
+    """A goal: its name and where the tool is at it, m."""
+
+    name: str
+    position: Point
+
+
+@final
+class NamedThing(Message):
+    """A thing about the arm: its name and where it is in the beginning, m."""
+
+    name: str
+    position: Point
+
+
+@final
+class Limits(Message):
+    """Limits that a page must know."""
+
+    latch_max_s: float
+
+
+@final
+class StepToDo(Message):
+    """A step of the task.
+
+    Attributes:
+        kind: what is done; texts have the key ``task.step.<kind>``.
+        thing: name of the thing that it is done to, or where it is done.
+    """
+
+    kind: StepKind
+    thing: str
+
+
+@final
+class TaskToDo(Message):
+    """What is to be done.
+
+    Attributes:
+        name: of the task.
+        seed: says where things were placed: with another one they are placed otherwise.
+        choices: what a person may choose to do: names of things or goals.
+        choice: index of what is done in this run.
+        steps: in order; empty where nothing counts as done.
+    """
+
+    name: str
+    seed: int
+    choices: tuple[str, ...]
+    choice: int
+    steps: tuple[StepToDo, ...]
+
+
+@final
+class Welcome(Message):
+    """What is driven.
+
+    Attributes:
+        id: of this page.
+        dof: joints of the arm.
+        latent_dim: axes of the latent actions; 0 without a run.
+        robot: its name.
+        run: the run's name, or null.
+        profiles: people whose alignment can be chosen.
+        modes: how the arm can be steered.
+        goals: in the order of the belief.
+        things: what stands about the arm, in the order of `State.things`.
+        end_effector_modes: names of the pairs of axes.
+        limits: see `Limits`.
+        gripper_width_m: how wide its gripper opens, m, or null where it has none that can be driven.
+        task: see `TaskToDo`.
+    """
+
+    type: Literal["welcome"] = "welcome"
+    version: Literal[1] = 1
+    id: str
+    dof: int
+    latent_dim: int
+    robot: str
+    run: str | None
+    profiles: tuple[str, ...]
+    modes: tuple[ModeName, ...]
+    goals: tuple[NamedGoal, ...]
+    things: tuple[NamedThing, ...]
+    end_effector_modes: tuple[str, ...]
+    limits: Limits
+    gripper_width_m: float | None
+    task: TaskToDo
+
+
+@final
+class RecordingState(Message):
+    """See `latentarm.web.protocol.report.Recording`."""
+
+    on: bool
+    samples: int
+    episodes: int
+    problem: Notice | None
+
+
+@final
+class State(Message):
+    """What the arm does now.
+
+    Attributes:
+        nonce: to be echoed by the next input.
+        tick: grows.
+        phase: see `latentarm.web.protocol.report.Report`.
+        note: shown instead of the arm's state, or null.
+        reason: why the arm may not move, or null if it may.
+        held_back: why it moves slower than asked, or null.
+        returning: whether it moves back to its start.
+        at_start: whether it is there.
+        let_go_first: whether the stick does something else by now: it must be let go before it moves the arm.
+        late_stops: how often the arm has stopped in this drive because no input came in time.
+        mode: how the arm is steered.
+        axes: which pair of the end-effector's.
+        help: how much the robot helps with learned motions, or null where it cannot.
+        profile: whose alignment.
+        bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
+        tool: m.
+        gripper: null where it has none, or before it was read.
+        task: how far it has come.
+        things: where they are; null if the scene has no things, or nothing has moved since the last.
+        ghosts: where each direction would take the tool; null if nothing has moved by 1 mm since the last.
+        belief: over the goals, or null where there are none.
+        alpha: how much the robot helps, in [0, 1].
+        bound_m: how far from the likeliest goal help lets the tool be, m, to first order; or null.
+        driver: id of the page that drives, or null.
+        driver_name: what its person is called.
+        watchers: how many other pages.
+        asking: id of the page that asks to drive, or null.
+        asking_name: what its person is called.
+        copilot: who may slow the driver down, or null.
+        copilot_asking: who asks to be that, or null.
+        recording: null where nothing was ever recorded.
+        trail: counts how often the trail was emptied.
+        late_share: share of the control loop's deadlines that were missed.
+        you: whether this page drives.
+    """
+
+    type: Literal["state"] = "state"
+    nonce: str
+    tick: int
+    phase: Phase
+    note: Notice | None
+    reason: Notice | None
+    held_back: HeldBack | None
+    returning: bool
+    at_start: bool
+    let_go_first: bool
+    late_stops: int
+    mode: ModeName
+    axes: int
+    help: HelpLevel | None
+    profile: str | None
+    bodies: tuple[tuple[float, ...], ...]
+    tool: Point
+    gripper: GripperState | None
+    task: TaskState
+    things: Things | None
+    ghosts: Ghosts | None
+    belief: tuple[float, ...] | None
+    alpha: float
+    bound_m: float | None
+    driver: str | None
+    driver_name: PersonName | None
+    watchers: int
+    asking: str | None
+    asking_name: PersonName | None
+    copilot: CopilotState | None
+    copilot_asking: Person | None
+    recording: RecordingState | None
+    trail: int
+    late_share: float
+    you: bool
+
+
+@final
+class Refused(Message):
+    """Why the server closes the connection."""
+
+    type: Literal["refused"] = "refused"
+    notice: Notice
