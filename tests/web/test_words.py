@@ -7,6 +7,7 @@ from typing import get_args
 
 import pytest
 
+from latentarm.robots.catalogue import ROBOTS
 from latentarm.web.jobs.training import model_names
 from latentarm.web.protocol.notice import Notice, NoticeCode
 from latentarm.web.protocol.orders import ModeName
@@ -31,6 +32,7 @@ def test_every_code_has_words():
     assert {key for key in ENGLISH if key.startswith("notice.")} == keys
     assert {f"held_back.{cause}" for cause in get_args(HeldBack)} <= set(ENGLISH)
     assert {f"model.{name}.help" for name in model_names()} <= set(ENGLISH)
+    assert {f"robot.{name}" for name in ROBOTS} == {key for key in ENGLISH if key.startswith("robot.")}
     assert len(get_args(ModeName)) == 3
 
 

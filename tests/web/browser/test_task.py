@@ -119,7 +119,7 @@ class TestStabbing:
         assert page.evaluate("tones") == 3
         assert page.locator("#task").get_attribute("data-outcome") == "success"
 
-        following = page.get_by_role("button", name="Next", exact=True)
+        following = page.get_by_role("button", name="Next task")
         assert following.get_attribute("aria-disabled") == "true"
         following.click(force=True)
         assert arm.state["task"]["choice"] == 0

@@ -6,6 +6,8 @@ import { sayPercent } from "../layout/words.js";
 import { isLikeliest } from "../views/likeliest.js";
 import { colourOf, symbolOf } from "../views/symbols.js";
 
+/** @import {State} from "../connection/messages.js" */
+
 /**
  * @param {{list: HTMLElement, none: HTMLElement, alpha: HTMLElement, alphaText: HTMLElement, level: HTMLElement}} parts
  */
@@ -32,9 +34,11 @@ export function attachBelief(parts) {
       parts.list.replaceChildren(...rows.map((row) => row.item));
     },
 
-    /** @param {number[] | null} belief @param {number} alpha */
-    show(belief, alpha) {
-      parts.list.hidden = parts.level.hidden = belief === null;
+    /** @param {State} state */
+    show({ belief, alpha, help, mode }) {
+      parts.list.hidden = belief === null;
+      // With straight lines, and without anything learned, the robot cannot help.
+      parts.level.hidden = belief === null || help === null || mode === "end_effector";
       parts.none.hidden = belief !== null;
       rows.forEach(({ item, bar, value }, index) => {
         fill(bar, value, belief?.[index] ?? 0);

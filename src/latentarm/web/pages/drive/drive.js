@@ -141,7 +141,7 @@ function show() {
   const paths = personalPaths(state.ghosts, state.tool, shaped);
   const wanted = wantedThing(welcome, state);
   drawing?.show(state, paths, pressed, settings.values, wanted);
-  belief.show(state.belief, state.alpha);
+  belief.show(state);
   if (performance.now() - wordsAt < WORDS_MS) return;
   wordsAt = performance.now();
   predictions.show(paths, pressed, (motion) => motionWords(motion, settings.values.seat));

@@ -117,7 +117,7 @@ export function attachTask(parts, connection, ended) {
     choices() {
       const { state, welcome } = connection;
       if (!state || !welcome?.task.steps.length || blocked()) return [];
-      const go = { id: "next", label: say("task.next_scan"), act: next };
+      const go = { id: "next", label: say("task.next"), act: next };
       return state.task.outcome === null ? [go] : [go, { id: "again", label: say("task.again"), act: again }];
     },
   };

@@ -13,6 +13,7 @@ import { Settings } from "../settings/settings.js";
 import { attachSettingsDialog } from "../settings/settings_dialog.js";
 import { attachTheme } from "../settings/theme.js";
 import { byId, setText } from "./dom.js";
+import { robotWords } from "./thing_words.js";
 import { readWords, say } from "./words.js";
 
 /**
@@ -52,7 +53,8 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
   settings.addEventListener("person", () => connection.become(settings.person));
   connection.addEventListener("welcome", () => {
     if (!connection.welcome) return;
-    const { robot, run, limits, profiles } = connection.welcome;
+    const { run, limits, profiles } = connection.welcome;
+    const robot = robotWords(connection.welcome.robot);
     setText(byId("about"), run ? say("layout.about_run", { robot, run }) : say("layout.about_no_run", { robot }));
     /** @type {HTMLInputElement | null} */ (document.querySelector("input[name=latchS]"))?.setAttribute("max", String(limits.latch_max_s));
     dialog.offer(profiles);

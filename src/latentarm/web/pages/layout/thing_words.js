@@ -1,4 +1,4 @@
-/** Things and goals in words. What no catalogue knows, such as a plug-in's things, is called by its own name. */
+/** Things, goals and robots in words. What no catalogue knows, such as a plug-in's things, is called by its own name. */
 
 import { knows, say } from "./words.js";
 
@@ -17,6 +17,12 @@ export function theThing(name) {
 /** Where something is put: "in the bin". @param {string} name */
 export function intoThing(name) {
   return inWords(name, ".into");
+}
+
+/** What a robot is called. @param {string} name as its model has it */
+export function robotWords(name) {
+  const key = `robot.${name}`;
+  return knows(key) ? say(/** @type {WordKey} */ (key)) : name;
 }
 
 /** @param {string} name @param {string} form */
