@@ -213,8 +213,8 @@ test("the first choice stays lit for longer", () => {
 
 test("a group opens, Back leads out by one level, and a choice leads back to the first list", () => {
   const stop = choices("stop")[0];
-  const inner = groupOf("inner", "Inner", choices("deep"), [stop]);
-  scanner.offer([groupOf("outer", "Outer", [...choices("one"), inner], [stop]), ...choices("other")]);
+  const inner = groupOf("inner", "Inner", () => choices("deep"), [stop]);
+  scanner.offer([groupOf("outer", "Outer", () => [...choices("one"), inner], [stop]), ...choices("other")]);
   scanner.choose();
   assert.deepEqual(scanner.choices.map(({ id }) => id), ["one", "inner", "stop", "outer-back"]);
   scanner.next();
@@ -230,14 +230,14 @@ test("a group opens, Back leads out by one level, and a choice leads back to the
 });
 
 test("a group that is not offered any more closes", () => {
-  scanner.offer([groupOf("outer", "Outer", choices("one"))]);
+  scanner.offer([groupOf("outer", "Outer", () => choices("one"))]);
   scanner.choose();
   scanner.offer(choices("enable", "mode"));
   assert.equal(lit(), "enable");
 });
 
 test("a small change leaves the light where it is", () => {
-  scanner.offer([groupOf("outer", "Outer", choices("less", "more").map((one) => ({ ...one, stays: true })))]);
+  scanner.offer([groupOf("outer", "Outer", () => choices("less", "more").map((one) => ({ ...one, stays: true })))]);
   scanner.choose();
   scanner.choose();
   scanner.choose();

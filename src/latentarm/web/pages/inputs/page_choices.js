@@ -43,12 +43,12 @@ export function pageChoices() {
  * @returns {Choice}
  */
 export function moreChoices(help, here, stop) {
-  const group = (/** @type {string} */ id, /** @type {string} */ label, /** @type {Choice[]} */ inner) => groupOf(id, label, inner, [stop]);
-  return group("more", say("scanning.more"), [
-    ...(help.length ? [group("help", say("help.title"), help)] : []),
+  const group = (/** @type {string} */ id, /** @type {string} */ label, /** @type {() => Choice[]} */ inner) => groupOf(id, label, inner, [stop]);
+  return group("more", say("scanning.more"), () => [
+    ...(help.length ? [group("help", say("help.title"), () => help)] : []),
     ...here,
     ...BUTTONS.flatMap(buttonChoice),
-    group("settings", say("settings.title"), settingChoices(byId("settings-form", HTMLFormElement), group)),
-    group("pages", say("scanning.pages"), pageChoices()),
+    group("settings", say("settings.title"), () => settingChoices(byId("settings-form", HTMLFormElement), group)),
+    group("pages", say("scanning.pages"), pageChoices),
   ]);
 }

@@ -22,7 +22,7 @@ export function elementOf(choice) {
 
 /**
  * @param {HTMLElement} root
- * @param {(id: string, label: string, inner: Choice[]) => Choice} group a choice that opens others
+ * @param {(id: string, label: string, inner: () => Choice[]) => Choice} group a choice that opens others
  * @param {string} [id] under which they are known; the same controls have the same
  * @returns {Choice[]}
  */
@@ -30,11 +30,11 @@ export function pageControls(root, group, id = "page") {
   return controlsIn(root).flatMap((element, at) => choicesOf(element, `${id}-${element.id || at}`, group));
 }
 
-/** @param {HTMLElement} element @param {string} id @param {(id: string, label: string, inner: Choice[]) => Choice} group @returns {Choice[]} */
+/** @param {HTMLElement} element @param {string} id @param {(id: string, label: string, inner: () => Choice[]) => Choice} group @returns {Choice[]} */
 function choicesOf(element, id, group) {
   if (element.matches(PARTS)) {
     const inner = pageControls(element, group, id);
-    return inner.length < FEWEST ? inner : [known(group(id, nameOf(element), inner), element)];
+    return inner.length < FEWEST ? inner : [known(group(id, nameOf(element), () => inner), element)];
   }
   if (element instanceof HTMLInputElement || element instanceof HTMLSelectElement) return [known(fieldChoice(element, id, group), shownOf(element))];
   return [known({ id, label: nameOf(element), act: () => element.click() }, element)];

@@ -22,7 +22,7 @@ const READY_MS = 6000;
  * @property {string} id
  * @property {string} label
  * @property {() => void} [act]
- * @property {Choice[]} [inner] what it opens
+ * @property {() => Choice[]} [inner] what it opens
  * @property {boolean} [back] leads back to where it was opened from
  * @property {boolean} [stays] is one of several small changes: the light stays there
  */
@@ -213,7 +213,7 @@ export class Scanner extends EventTarget {
         this._path = this._path.slice(0, depth);
         break;
       }
-      choices = inner;
+      choices = inner();
     }
     return choices;
   }

@@ -25,13 +25,13 @@ export function directionChoices() {
  *
  * @param {string} id
  * @param {string} label
- * @param {Choice[]} inner
+ * @param {() => Choice[]} inner asked for only while it is open: some lists are long
  * @param {Choice[]} [always] what must be in reach from there too
  * @returns {Choice}
  */
 export function groupOf(id, label, inner, always = []) {
   const back = { id: `${id}-back`, label: say("scanning.back"), back: true };
-  return { id, label: say("scanning.group", { name: label }), inner: [...inner, ...always, back] };
+  return { id, label: say("scanning.group", { name: label }), inner: () => [...inner(), ...always, back] };
 }
 
 /**
@@ -69,11 +69,15 @@ export function attachScanning(
     if (scanner.ready !== null) return say("scanning.hold_to_move");
     return say(`scanning.hint_${scanner.style}`);
   };
+  const offer = () => {
+    if (scanner.on) scanner.offer(offered());
+  };
   const explain = () => {
     const { switches, switchKey, nextKey, switchMotion } = settings.values;
     const keys = { switchKey: keyWords(switchKey), nextKey: keyWords(nextKey) };
     parts.next.hidden = switches !== "2";
     setText(parts.help, `${say(`scanning.${scanner.style}`, keys)} ${say(`scanning.motion_${switchMotion}`)}`);
+    offer();
     paint();
   };
   const button = (/** @type {HTMLButtonElement} */ element, /** @type {number} */ number) => {
@@ -129,8 +133,7 @@ export function attachScanning(
 
   scanner.addEventListener("change", paint);
   settings.addEventListener("change", explain);
-  setInterval(() => scanner.offer(offered()), LOOK_MS);
-  scanner.offer(offered());
+  setInterval(offer, LOOK_MS);
   explain();
   return scanner;
 }

@@ -39,21 +39,24 @@ export function attachWholePage(settings, stop) {
   const home = /** @type {HTMLElement} */ (bar.parentElement);
   const input = new StillInput();
   const stops = { id: "stop", label: say("layout.stop"), act: stop };
-  const group = (/** @type {string} */ id, /** @type {string} */ label, /** @type {Choice[]} */ inner) => groupOf(id, label, inner, [stops]);
+  const group = (/** @type {string} */ id, /** @type {string} */ label, /** @type {() => Choice[]} */ inner) => groupOf(id, label, inner, [stops]);
 
-  const offered = () => {
-    const dialog = /** @type {HTMLDialogElement | null} */ (document.querySelector("dialog[open]"));
+  const dialogNow = () => /** @type {HTMLDialogElement | null} */ (document.querySelector("dialog[open]"));
+  const place = () => {
     // What stands behind a dialog cannot be pressed, the bar of the switches neither.
-    const place = dialog ?? home;
-    if (bar.parentElement !== place) place.append(bar);
+    const within = dialogNow() ?? home;
+    if (bar.parentElement !== within) within.append(bar);
     bar.hidden = settings.values.panel !== "switch";
     byId("panel-switch").hidden = false;
-    if (bar.hidden) return [];
+  };
+  const offered = () => {
+    place();
+    const dialog = dialogNow();
     if (dialog) return [...pageControls(dialog, group, dialog.id), stops];
     return [
       ...pageControls(byId("controls"), group),
-      group("settings", say("settings.title"), settingChoices(byId("settings-form", HTMLFormElement), group)),
-      group("pages", say("scanning.pages"), pageChoices()),
+      group("settings", say("settings.title"), () => settingChoices(byId("settings-form", HTMLFormElement), group)),
+      group("pages", say("scanning.pages"), pageChoices),
       stops,
     ];
   };
@@ -65,6 +68,7 @@ export function attachWholePage(settings, stop) {
   }, input, settings, offered, isTyping);
   /** The page may have drawn anew what is lit: it is looked up again and again. */
   const light = () => {
+    place();
     const lit = scanner.on ? elementOf(scanner.choices[scanner.lit]) : undefined;
     for (const other of [...document.getElementsByClassName(LIT)]) if (other !== lit) other.classList.remove(LIT);
     if (!lit || lit.classList.contains(LIT)) return;
@@ -73,5 +77,6 @@ export function attachWholePage(settings, stop) {
   };
   scanner.addEventListener("change", light);
   setInterval(light, LIGHT_MS);
+  light();
   attachGamepad(input, settings, { enable: () => {}, stop, gripper: () => {}, press: (number, down) => scanner.press(number, down) });
 }

@@ -9,14 +9,15 @@ const STEPS = 10;
 
 /**
  * @param {HTMLFormElement} form the dialog's
- * @param {(id: string, label: string, inner: Choice[]) => Choice} group a choice that opens others
+ * @param {(id: string, label: string, inner: () => Choice[]) => Choice} group a choice that opens others
  * @returns {Choice[]} one for each section.
  */
 export function settingChoices(form, group) {
   return [...form.querySelectorAll("fieldset")].flatMap((section, number) => {
     const id = `settings-${number}`;
-    const inner = fieldsOf(section).map((field, at) => fieldChoice(field, `${id}-${at}`, group));
-    return inner.length ? [group(id, wordsOf(section.querySelector("legend")), inner)] : [];
+    const fields = fieldsOf(section);
+    const inner = () => fields.map((field, at) => fieldChoice(field, `${id}-${at}`, group));
+    return fields.length ? [group(id, wordsOf(section.querySelector("legend")), inner)] : [];
   });
 }
 
@@ -29,18 +30,18 @@ function fieldsOf(section) {
 /**
  * @param {HTMLInputElement | HTMLSelectElement} field
  * @param {string} id
- * @param {(id: string, label: string, inner: Choice[]) => Choice} group
+ * @param {(id: string, label: string, inner: () => Choice[]) => Choice} group
  * @returns {Choice}
  */
 export function fieldChoice(field, id, group) {
   const label = wordsOf(field.closest("label"));
   if (field instanceof HTMLSelectElement) {
-    const options = [...field.options].map((option, at) => ({
+    const options = () => [...field.options].map((option, at) => ({
       id: `${id}-${at}`, label: marked(option.text, option.selected), act: () => set(field, option.value),
     }));
     return group(id, label, options);
   }
-  if (field.type === "range") return group(id, label, [slide(field, `${id}-less`, -1), slide(field, `${id}-more`, 1)]);
+  if (field.type === "range") return group(id, label, () => [slide(field, `${id}-less`, -1), slide(field, `${id}-more`, 1)]);
   return {
     id,
     label: marked(label, field.checked),
