@@ -19,6 +19,7 @@ from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Grains, Part, Thing
+from latentarm.tasks.eating import dessert
 from latentarm.tasks.place import ScenePlace
 from latentarm.types import Pose
 from latentarm.web.arm_process.drive import Drive
@@ -68,6 +69,19 @@ def test_a_thing_is_described_by_its_parts_as_a_body_by_its_geoms():
     assert cup["pose"] == [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
     (rice,) = about["grains"]
     assert rice["positions"] == [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+
+
+def test_icing_is_drawn_where_the_food_must_go_and_apart_from_what_is_solid():
+    icing = dessert.icing("icing", 0.4, -0.2)
+    (shown,) = described(Scene((icing,)))["things"]
+    assert len(shown["geoms"]) == len(icing.parts)
+    (soft,) = shown["soft"]
+    radius, half, _ = soft["size"]
+    bottom, top = soft["pos"][2] - half, soft["pos"][2] + half
+    assert (radius, bottom, top) == pytest.approx(
+        (dessert.WET.radius_m, dessert.WET.bottom_m, dessert.WET.top_m)
+    )
+    assert soft["rgba"][3] < 1.0
 
 
 def test_places_are_in_the_order_of_the_scene():

@@ -64,6 +64,7 @@ class Thing:
         fixed: whether it stands where it is, whatever pushes it.
         food: how it behaves under a fork; None where tines do not enter it.
         interior: the room in it, for a container; None for anything else.
+        soft: what gives way to everything, such as icing: it is seen, and never felt.
     """
 
     name: str
@@ -74,6 +75,7 @@ class Thing:
     fixed: bool = False
     food: Food | None = None
     interior: Interior | None = None
+    soft: tuple[Part, ...] = ()
 
     @property
     def room(self) -> Interior:

@@ -9,7 +9,7 @@ import numpy as np
 from latentarm.scene.containers import bowl, packed
 from latentarm.scene.interior import Interior
 from latentarm.scene.scene import Scene
-from latentarm.scene.thing import Grains, Thing
+from latentarm.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating.fork_task import OFF_M, ForkTask, fallen
 from latentarm.tasks.eating.stabbing import above, over, stab
 from latentarm.tasks.eating.table import (
@@ -65,6 +65,9 @@ BOWL_HEIGHT_M: Final = 0.035
 
 WET: Final = Interior(ICING_RADIUS_M, 0.0, ICING_DEEP_M)
 """Where the icing is, in the frame of its dish."""
+
+_ICING: Final = (0.93, 0.60, 0.70, 0.5)
+"""Its colour: what is drawn through it is seen."""
 
 MARSHMALLOW: Final = "marshmallow"
 
@@ -128,7 +131,9 @@ class Dessert(ForkTask):
 
 def icing(name: str, x: float, y: float) -> Thing:
     """Icing on a plate, its frame in the middle of the plate's top. Only the plate is solid."""
-    return plate(name, x, y, ICING_RADIUS_M)
+    size, middle = (WET.radius_m, (WET.top_m - WET.bottom_m) / 2), (WET.top_m + WET.bottom_m) / 2
+    soft = Part("cylinder", size, (0.0, 0.0, middle), colour=_ICING)
+    return replace(plate(name, x, y, ICING_RADIUS_M), soft=(soft,))
 
 
 def _steps(rice: Interior) -> tuple[TaskStep, ...]:

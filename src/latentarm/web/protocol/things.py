@@ -25,9 +25,9 @@ def described(scene: Scene) -> dict[str, object]:
         scene: what stands about the arm when it begins.
 
     Returns:
-        ``things``, each with its name, its ``pose`` at first, whether it is ``fixed`` there, and ``geoms``
-        like those of the robot's bodies; and ``grains``, each kind with its name, ``radius`` (m), ``rgba``
-        and first ``positions`` (m).
+        ``things``, each with its name, its ``pose`` at first, whether it is ``fixed`` there, ``geoms`` like
+        those of the robot's bodies, and ``soft`` ones, which give way to everything; and ``grains``, each
+        kind with its name, ``radius`` (m), ``rgba`` and first ``positions`` (m).
     """
     first = _rows([thing.pose for thing in scene.things])
     return {
@@ -37,6 +37,7 @@ def described(scene: Scene) -> dict[str, object]:
                 "pose": pose,
                 "fixed": thing.fixed,
                 "geoms": [_geom(part) for part in thing.parts],
+                "soft": [_geom(part) for part in thing.soft],
             }
             for thing, pose in zip(scene.things, first, strict=True)
         ],

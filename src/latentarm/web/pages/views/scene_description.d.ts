@@ -40,6 +40,8 @@ export interface Thing {
   /** Whether it stands where it is. */
   fixed: boolean;
   geoms: Geom[];
+  /** What gives way to everything; scenes of earlier versions have none. */
+  soft?: Geom[];
 }
 
 /** Equal round grains. */
