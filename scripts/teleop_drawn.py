@@ -2,7 +2,8 @@
 
 Server and browser are on this machine. Each input is an arrow key, timed by the browser's own event; motion
 is drawn when a frame with another tool position has been handed to the graphics processor. Between inputs the
-arm rests. For example:
+arm rests. A frame is finished when the graphics processor, or what stands in for it, has done its work; what
+the browser takes to put it on a screen is not in there. For example:
 
     python scripts/teleop_drawn.py RUN --inputs 500 --out drawn.json
 """
@@ -21,7 +22,14 @@ KEYS = ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown")
 HELD_MS = 250
 RESTING_MS = 450
 
-PARTS = ("pressed to sent", "sent to heard of motion", "heard to drawn", "pressed to drawn")
+PARTS = (
+    "pressed to sent",
+    "sent to heard of motion",
+    "heard to drawn",
+    "pressed to drawn",
+    "drawn to finished",
+    "pressed to finished",
+)
 
 WATCH = """{
   let press = null;
@@ -52,12 +60,24 @@ WATCH = """{
       if (press && !press.sent && deflected) press.sent = performance.now();
     }
   };
+  const finished = (tell) => {
+    const gl = document.getElementById("scene").getContext("webgl2");
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    const look = () => {
+      if (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) setTimeout(look, 1);
+      else tell(performance.now());
+    };
+    gl.flush();
+    setTimeout(look, 1);
+  };
   document.addEventListener("arm-drawn", ({ detail: { tool } }) => {
     if (press?.heard && moved(drawn, tool)) {
       const { at, sent, heard: known } = press;
       const now = performance.now();
-      window.delays.push([sent - at, known - sent, now - known, now - at]);
       press = null;
+      finished((end) => {
+        window.delays.push([sent - at, known - sent, now - known, now - at, end - now, end - at]);
+      });
     }
     drawn = tool;
   });

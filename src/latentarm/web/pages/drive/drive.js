@@ -179,10 +179,10 @@ connection.addEventListener("state", () => {
   showSoon();
 });
 connection.addEventListener("open", show);
-input.addEventListener("change", show);
+input.addEventListener("change", showSoon);
 
 attachViews(settings, say("drive.cannot_draw"), (loaded) => {
   drawing = loaded;
-  drawing.pace(() => input.lateness.frameGapMs, () => input.goFirst());
+  drawing.pace(() => input.lateness.frameGapMs > 0, () => input.goFirst());
   show();
 });

@@ -1,23 +1,28 @@
-/** Dashed lines in three dimensions: thick enough to be seen from everywhere, and one call to draw. */
+/** Dashed lines in three dimensions: thick enough to be seen from everywhere, and one call to draw all of them. */
 
 import { THREE } from "../three/index.js";
 
-const THICK_M = 0.0035;
+/** From the middle of a dash to its three edges. */
+const THICK_M = 0.0021;
 const DASH_M = 0.012;
 const EVERY_M = 0.022;
 const AHEAD = new THREE.Vector3(0, 0, 1);
 
 export class Dashes {
-  /** @param {THREE.MeshBasicMaterial} material @param {number} most how many dashes there can be */
-  constructor(material, most) {
+  /** @param {number} most how many dashes there can be */
+  constructor(most) {
     this._most = most;
-    this.object = new THREE.InstancedMesh(new THREE.BoxGeometry(THICK_M, THICK_M, DASH_M), material, most);
+    const dash = new THREE.CylinderGeometry(THICK_M, THICK_M, DASH_M, 3, 1, true).rotateX(Math.PI / 2);
+    this.object = new THREE.InstancedMesh(dash, new THREE.MeshBasicMaterial(), most);
     this.object.frustumCulled = false;
     this.object.count = 0;
+    /** At which dash each drawing begins. @type {number[]} */
+    this._begins = [];
   }
 
-  clear() {
-    this.object.count = 0;
+  /** What follows has a colour of its own. */
+  begin() {
+    this._begins.push(this.object.count);
   }
 
   /** A level ring. @param {THREE.Vector3} middle @param {number} radius m @param {number} dashes */
@@ -29,12 +34,22 @@ export class Dashes {
     }
   }
 
-  /** A line; what there is no dash left for is not drawn. @param {THREE.Vector3} from @param {THREE.Vector3} to */
-  line(from, to) {
+  /** A line, of no more dashes than these. @param {THREE.Vector3} from @param {THREE.Vector3} to @param {number} dashes */
+  line(from, to, dashes) {
     const along = to.clone().sub(from);
-    const length = along.length();
+    const end = Math.min(along.length(), DASH_M / 2 + dashes * EVERY_M);
     along.normalize();
-    for (let at = DASH_M / 2; at < length; at += EVERY_M) this._add(from.clone().addScaledVector(along, at), along);
+    for (let at = DASH_M / 2; at < end; at += EVERY_M) this._add(from.clone().addScaledVector(along, at), along);
+  }
+
+  /** @param {string[]} colours of each drawing, in the order in which they were begun */
+  paint(colours) {
+    colours.forEach((colour, index) => {
+      const painted = new THREE.Color(colour);
+      const end = this._begins[index + 1] ?? this.object.count;
+      for (let dash = this._begins[index]; dash < end; dash += 1) this.object.setColorAt(dash, painted);
+    });
+    if (this.object.instanceColor) this.object.instanceColor.needsUpdate = true;
   }
 
   /** @param {THREE.Vector3} at @param {THREE.Vector3} along */

@@ -37,6 +37,7 @@ export class Drawing {
     /** @type {State["things"]} */
     this._things = null;
     this._first = true;
+    this._late = () => false;
     // Until it is known where the arm is.
     scene.scene.visible = false;
     // For scripts that measure how long an input takes to be seen.
@@ -73,7 +74,7 @@ export class Drawing {
     this._things = state.things;
     this._around = around;
     this._tick = state.tick;
-    this._scene.take(state, this._views.smooth && !this._still.matches);
+    this._scene.take(state, this._views.smooth && !this._still.matches && !this._late());
     this._scene.markers.believe(state.belief);
     const likeliest = state.belief ? state.belief.indexOf(Math.max(...state.belief)) : -1;
     const tool = new THREE.Vector3(...state.tool);
@@ -130,11 +131,11 @@ export class Drawing {
   }
 
   /**
-   * @param {() => number} frameGapMs the least time between two frames, ms
+   * @param {() => boolean} late whether frames between two states would hold up what matters more
    * @param {() => void} first what goes before each frame
    */
-  pace(frameGapMs, first) {
-    this._views.frameGapMs = frameGapMs;
+  pace(late, first) {
+    this._late = late;
     this._views.beforeFrame.unshift(first);
     this._views.afterFrame.push(first);
   }

@@ -3,6 +3,8 @@
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
 import { DIRECTION_NAMES } from "../inputs/deflection.js";
+import { ROUND } from "./fineness.js";
+import { merged } from "./merged.js";
 import { MARKS } from "./predictions.js";
 
 /** @import {Direction} from "../inputs/deflection.js" */
@@ -15,6 +17,8 @@ const THICK_M = 0.006;
 /** A path shorter than this, m, is not drawn. */
 const SHORT_M = 0.006;
 const BEADS = 9;
+const HEAD = new THREE.ConeGeometry(0.016, 0.034, 10);
+const NO_COLOUR = new THREE.Color();
 const CLEAR = 0.95;
 const STEPPED_BACK = 0.3;
 
@@ -46,7 +50,7 @@ export class Ghosts {
       const visible = shown && path !== null && lengthOf(path) > SHORT_M;
       ghost.body.visible = visible && isUpright(ghost.direction);
       ghost.beads.visible = visible && !isUpright(ghost.direction);
-      ghost.head.visible = visible;
+      ghost.head.visible = ghost.beads.visible;
       const clear = pressed.length === 0 || pressed.includes(ghost.direction);
       ghost.material.opacity = share * (clear ? CLEAR : STEPPED_BACK);
       this._labels.set(`ghost-${ghost.direction}`, visible ? this._lay(ghost, path) : null,
@@ -58,9 +62,18 @@ export class Ghosts {
   _lay({ direction, body, beads, head }, path) {
     const points = path.map(([x, y, z]) => new THREE.Vector3(x, y, z));
     const curve = new THREE.CatmullRomCurve3(points);
+    const end = curve.getPoint(1);
+    const ahead = curve.getTangent(1);
+    head.position.copy(end).addScaledVector(ahead, 0.012);
+    head.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), ahead);
     if (isUpright(direction)) {
+      head.updateMatrix();
+      const tube = new THREE.TubeGeometry(curve, 10, THICK_M, 5);
       body.geometry.dispose();
-      body.geometry = new THREE.TubeGeometry(curve, 12, THICK_M, 6);
+      body.geometry = merged([
+        { geometry: tube, at: new THREE.Matrix4(), colour: NO_COLOUR },
+        { geometry: HEAD, at: head.matrix, colour: NO_COLOUR },
+      ]);
     } else {
       for (let bead = 0; bead < BEADS; bead += 1) {
         const { x, y, z } = curve.getPoint(bead / (BEADS - 1));
@@ -68,10 +81,6 @@ export class Ghosts {
       }
       beads.instanceMatrix.needsUpdate = true;
     }
-    const end = curve.getPoint(1);
-    const ahead = curve.getTangent(1);
-    head.position.copy(end).addScaledVector(ahead, 0.012);
-    head.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), ahead);
     return end.addScaledVector(ahead, 0.05);
   }
 }
@@ -81,8 +90,8 @@ function drawn(direction) {
   const material = new THREE.MeshBasicMaterial({ transparent: true, depthTest: false });
   /** @type {THREE.Mesh} */
   const body = new THREE.Mesh(new THREE.BufferGeometry(), material);
-  const head = new THREE.Mesh(new THREE.ConeGeometry(0.016, 0.034, 10), material);
-  const beads = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(0.0075, 1), material, BEADS);
+  const head = new THREE.Mesh(HEAD, material);
+  const beads = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(0.0075, ROUND.divided), material, BEADS);
   beads.frustumCulled = body.frustumCulled = false;
   for (const object of [body, head, beads]) {
     object.renderOrder = 2;

@@ -6,6 +6,7 @@
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
 import { Dashes } from "./dashes.js";
+import { ballOf } from "./shapes.js";
 import { colourOf, shapeOf } from "./symbols.js";
 
 /** @import {Goal} from "./scene_description.js" */
@@ -23,21 +24,20 @@ export class GoalMarkers {
   constructor(goals, placeOf, tableHeight) {
     this._goals = goals;
     this._placeOf = placeOf;
-    this._materials = goals.map(() => new THREE.MeshBasicMaterial());
     this._rings = goals.map((goal, index) => ring(index));
-    const dashes = goals.map((goal, index) => {
-      const made = new Dashes(this._materials[index], HOVER_DASHES + LINE_DASHES);
-      const hover = new THREE.Vector3(...goal.position);
-      made.ring(hover, HOVER_M, HOVER_DASHES);
-      made.line(hover, new THREE.Vector3(hover.x, hover.y, tableHeight));
-      return made.object;
-    });
+    this._dashes = new Dashes(goals.length * (HOVER_DASHES + LINE_DASHES));
+    for (const { position } of goals) {
+      const hover = new THREE.Vector3(...position);
+      this._dashes.begin();
+      this._dashes.ring(hover, HOVER_M, HOVER_DASHES);
+      this._dashes.line(hover, new THREE.Vector3(hover.x, hover.y, tableHeight), LINE_DASHES);
+    }
     this._ball = new THREE.Mesh(
-      new THREE.SphereGeometry(1, 24, 16),
+      ballOf(1),
       new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.18, depthWrite: false, side: THREE.DoubleSide }),
     );
     this._ball.visible = false;
-    this.objects = [...this._rings, ...dashes, this._ball];
+    this.objects = [...this._rings, this._dashes.object, this._ball];
     this.follow();
     this.repaint();
   }
@@ -74,14 +74,14 @@ export class GoalMarkers {
   repaint() {
     this._ball.material.color.set(colour("ring"));
     this._rings.forEach((one, index) => one.material.color.set(colour(`thing-${colourOf(index)}`)));
-    this._materials.forEach((one, index) => one.color.set(colour(`thing-${colourOf(index)}`)));
+    this._dashes.paint(this._goals.map((_, index) => colour(`thing-${colourOf(index)}`)));
   }
 }
 
 /** A ring of a goal's shape, which faces whichever view is being drawn. @param {number} index */
 function ring(index) {
   const { corners, turn } = shapeOf(index);
-  const made = new THREE.Mesh(new THREE.TorusGeometry(1, 0.08, 4, corners), new THREE.MeshBasicMaterial({ transparent: true }));
+  const made = new THREE.Mesh(new THREE.TorusGeometry(1, 0.08, 3, corners), new THREE.MeshBasicMaterial({ transparent: true }));
   const turned = new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), turn);
   made.onBeforeRender = (_renderer, _scene, camera) => {
     made.quaternion.copy(camera.quaternion).multiply(turned);

@@ -1,47 +1,56 @@
 /** From the geoms of a MuJoCo model to three.js meshes. */
 
 import { THREE } from "../three/index.js";
+import { coarser } from "./coarser.js";
+import { ROUND, SOFTWARE } from "./fineness.js";
+import { merged } from "./merged.js";
 
 /** @import {Geom, Obstacle} from "./scene_description.js" */
 /** @typedef {Map<number, THREE.BufferGeometry>} Meshes geometries by number */
 
 /**
- * A body: all its geoms together.
+ * A body: all its geoms together, in as few calls to draw as can be.
  *
  * @param {Geom[]} geoms
  * @param {Meshes} meshes
  */
 export function groupOf(geoms, meshes) {
+  return standing([{ geoms, pose: [0, 0, 0, 1, 0, 0, 0] }], meshes);
+}
+
+/**
+ * Several bodies that stay where they are, as one.
+ *
+ * @param {{geoms: Geom[], pose: number[]}[]} bodies
+ * @param {Meshes} meshes
+ */
+export function standing(bodies, meshes) {
+  const parts = bodies.flatMap(({ geoms, pose }) => geoms.flatMap((geom) => {
+    const geometry = geometryOf(geom, meshes);
+    const at = matrixOf(pose).multiply(matrixOf([...geom.pos, ...geom.quat]));
+    return geometry ? [{ geometry, at, colour: colourOf(geom.rgba), alpha: geom.rgba[3] }] : [];
+  }));
   const group = new THREE.Group();
-  for (const geom of geoms) {
-    const shape = shapeOf(geom, meshes);
-    if (shape) group.add(shape);
+  for (const opacity of new Set(parts.map(({ alpha }) => alpha))) {
+    const material = new THREE.MeshLambertMaterial({ vertexColors: true, transparent: opacity < 1, opacity });
+    group.add(new THREE.Mesh(merged(parts.filter(({ alpha }) => alpha === opacity)), material));
   }
   return group;
 }
 
-/**
- * One geom, placed in its body.
- *
- * @param {Geom} geom
- * @param {Meshes} meshes
- * @returns {THREE.Mesh | null} null for a kind that is not drawn
- */
-function shapeOf(geom, meshes) {
-  const geometry = geometryOf(geom, meshes);
-  if (geometry === null) return null;
-  const mesh = new THREE.Mesh(geometry, materialOf(geom.rgba));
-  place(mesh, [...geom.pos, ...geom.quat]);
-  return mesh;
+/** @param {number[]} pose x, y, z (m) and a quaternion w, x, y, z */
+function matrixOf([x, y, z, w, i, j, k]) {
+  return new THREE.Matrix4().compose(new THREE.Vector3(x, y, z), new THREE.Quaternion(i, j, k, w), new THREE.Vector3(1, 1, 1));
 }
 
 /** @param {Geom["rgba"]} rgba each in [0, 1] */
-export function materialOf([red, green, blue, alpha]) {
-  return new THREE.MeshLambertMaterial({
-    color: new THREE.Color().setRGB(red, green, blue, THREE.SRGBColorSpace),
-    transparent: alpha < 1,
-    opacity: alpha,
-  });
+function colourOf([red, green, blue]) {
+  return new THREE.Color().setRGB(red, green, blue, THREE.SRGBColorSpace);
+}
+
+/** @param {Geom["rgba"]} rgba each in [0, 1] */
+export function materialOf(rgba) {
+  return new THREE.MeshLambertMaterial({ color: colourOf(rgba), transparent: rgba[3] < 1, opacity: rgba[3] });
 }
 
 /**
@@ -52,16 +61,16 @@ export function materialOf([red, green, blue, alpha]) {
 export function obstacleOf(obstacle) {
   const material = new THREE.MeshLambertMaterial({ transparent: true, opacity: 0.6 });
   if (obstacle.type === "sphere") {
-    const ball = new THREE.Mesh(new THREE.SphereGeometry(obstacle.radius, 24, 16), material);
+    const ball = new THREE.Mesh(ballOf(obstacle.radius), material);
     ball.position.set(...obstacle.centre);
     return ball;
   }
   if (obstacle.type === "capsule") {
     const [start, end] = [new THREE.Vector3(...obstacle.start), new THREE.Vector3(...obstacle.end)];
     const along = end.clone().sub(start);
-    const rod = new THREE.Mesh(new THREE.CapsuleGeometry(obstacle.radius, along.length(), 8, 24), material);
+    const rod = new THREE.Mesh(rodOf(obstacle.radius, along.length()), material);
     rod.position.copy(start).lerp(end, 0.5);
-    rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
+    rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), along.normalize());
     return rod;
   }
   if (obstacle.type === "box") {
@@ -73,18 +82,18 @@ export function obstacleOf(obstacle) {
   return null;
 }
 
-/** @param {Geom} geom @param {Meshes} meshes @returns {THREE.BufferGeometry | null} */
+/** @param {Geom} geom @param {Meshes} meshes @returns {THREE.BufferGeometry | null} null for a kind that is not drawn */
 function geometryOf({ type, size, mesh }, meshes) {
   const [a, b, c] = size;
   switch (type) {
     case "sphere":
-      return new THREE.SphereGeometry(a, 24, 16);
+      return ballOf(a);
     case "ellipsoid":
-      return new THREE.SphereGeometry(1, 24, 16).scale(a, b, c);
+      return ballOf(1).scale(a, b, c);
     case "capsule":
-      return new THREE.CapsuleGeometry(a, 2 * b, 6, 18).rotateX(Math.PI / 2);
+      return rodOf(a, 2 * b);
     case "cylinder":
-      return new THREE.CylinderGeometry(a, a, 2 * b, 28).rotateX(Math.PI / 2);
+      return new THREE.CylinderGeometry(a, a, 2 * b, Math.round(1.4 * ROUND.about)).rotateX(Math.PI / 2);
     case "box":
       return new THREE.BoxGeometry(2 * a, 2 * b, 2 * c);
     case "mesh":
@@ -92,6 +101,16 @@ function geometryOf({ type, size, mesh }, meshes) {
     default:
       return null;
   }
+}
+
+/** @param {number} radius */
+export function ballOf(radius) {
+  return new THREE.SphereGeometry(radius, ROUND.about, ROUND.along);
+}
+
+/** A capsule along z. @param {number} radius @param {number} length without its caps */
+function rodOf(radius, length) {
+  return new THREE.CapsuleGeometry(radius, length, ROUND.cap, ROUND.about).rotateX(Math.PI / 2);
 }
 
 /**
@@ -106,9 +125,11 @@ export function place(object, [x, y, z, w, i, j, k]) {
 /** A mesh as the server sends it: two counts, vertices and faces, little-endian. @param {ArrayBuffer} bytes */
 export function meshGeometry(bytes) {
   const [vertices, faces] = new Uint32Array(bytes, 0, 2);
+  const all = { positions: new Float32Array(bytes, 8, 3 * vertices), faces: new Uint32Array(bytes, 8 + 12 * vertices, 3 * faces) };
+  const drawn = SOFTWARE ? coarser(all.positions, all.faces) : all;
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(bytes, 8, 3 * vertices), 3));
-  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes, 8 + 12 * vertices, 3 * faces), 1));
+  geometry.setAttribute("position", new THREE.BufferAttribute(drawn.positions, 3));
+  geometry.setIndex(new THREE.BufferAttribute(drawn.faces, 1));
   geometry.computeVertexNormals();
   return geometry;
 }

@@ -1,7 +1,8 @@
 /** What stands about the arm: things, which glide from one state to the next, and grains. */
 
 import { THREE } from "../three/index.js";
-import { groupOf, materialOf, place } from "./shapes.js";
+import { ROUND } from "./fineness.js";
+import { groupOf, materialOf, place, standing } from "./shapes.js";
 
 /** @import {State} from "../connection/messages.js" */
 /** @import {Grains, Thing} from "./scene_description.js" */
@@ -16,19 +17,26 @@ export class Things {
       return group;
     });
     this._grains = grains.map(({ radius, rgba, positions }) => {
-      const balls = new THREE.InstancedMesh(new THREE.SphereGeometry(radius, 8, 6), materialOf(rgba), positions.length / 3);
+      const balls = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(radius, ROUND.divided), materialOf(rgba), positions.length / 3);
       // They may go anywhere from where they are at first.
       balls.frustumCulled = false;
       scatter(balls, positions);
       return balls;
     });
-    this.objects = [...this._things, ...this._grains];
     this._names = things.map(({ name }) => name);
     const boxes = this._things.map((thing) => new THREE.Box3().setFromObject(thing));
     /** Corners of what there is at first: a thing that falls off the table does not take the view along. */
     this.extent = boxes.flatMap(({ min, max }) => [min, max]);
     /** What stands where it is. */
     this._standing = boxes.filter((_, index) => things[index].fixed);
+    // What is soft is added only now: the tool goes into it, and nothing stands on it.
+    this._things.forEach((group, index) => {
+      const { fixed, soft = [] } = things[index];
+      if (fixed) group.clear();
+      else group.add(groupOf(soft, meshes));
+    });
+    const still = things.filter(({ fixed }) => fixed).map(({ pose, geoms, soft = [] }) => ({ pose, geoms: [...geoms, ...soft] }));
+    this.objects = [...this._things, ...this._grains, standing(still, meshes)];
     /** @type {{position: THREE.Vector3, quaternion: THREE.Quaternion}[]} */
     this._from = [];
     /** @type {State["things"]} */

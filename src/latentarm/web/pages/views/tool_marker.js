@@ -2,10 +2,11 @@
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
+import { ballOf } from "./shapes.js";
 
 export class ToolMarker {
   constructor() {
-    this._dot = new THREE.Mesh(new THREE.SphereGeometry(0.014, 16, 12), new THREE.MeshBasicMaterial());
+    this._dot = new THREE.Mesh(ballOf(0.014), new THREE.MeshBasicMaterial());
     const line = new THREE.CylinderGeometry(0.0022, 0.0022, 1, 6).rotateX(Math.PI / 2).translate(0, 0, 0.5);
     this._plumb = new THREE.Mesh(line, new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.55 }));
     this._foot = new THREE.Mesh(new THREE.RingGeometry(0.016, 0.022, 24), new THREE.MeshBasicMaterial());

@@ -2,6 +2,7 @@
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
+import { ballOf } from "./shapes.js";
 
 const THICK_M = 0.009;
 
@@ -31,7 +32,7 @@ export class ToolPaths {
 
   /** @param {THREE.Vector3[]} points */
   _arrow(points) {
-    const start = new THREE.Mesh(new THREE.SphereGeometry(0.017, 14, 10), this._material);
+    const start = new THREE.Mesh(ballOf(0.017), this._material);
     start.position.copy(points[0]);
     /** @type {THREE.Mesh[]} */
     const parts = [start];

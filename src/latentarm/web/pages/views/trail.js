@@ -1,17 +1,21 @@
-/** Where the tool has been: beads along its path, the oldest replaced first. */
+/** Where the tool has been: dots along its path, the oldest replaced first. */
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
 
 const MOST = 600;
 const STEP_M = 0.008;
+const SIZE_PX = 3.5;
+const DISC_PX = 32;
 
 export class Trail {
   constructor() {
-    this._material = new THREE.MeshBasicMaterial();
-    this.object = new THREE.InstancedMesh(new THREE.OctahedronGeometry(0.0045), this._material, MOST);
+    this._places = new THREE.BufferAttribute(new Float32Array(3 * MOST), 3);
+    const geometry = new THREE.BufferGeometry().setAttribute("position", this._places);
+    this._material = new THREE.PointsMaterial({ size: SIZE_PX, sizeAttenuation: false, map: disc(), alphaTest: 0.5 });
+    this.object = new THREE.Points(geometry, this._material);
     this.object.frustumCulled = false;
-    this._next = 0;
+    this._next = this._count = 0;
     /** @type {THREE.Vector3 | null} */
     this._end = null;
     this.clear();
@@ -21,19 +25,36 @@ export class Trail {
   extend(tool) {
     if (this._end && this._end.distanceTo(tool) < STEP_M) return;
     this._end = tool.clone();
-    this.object.setMatrixAt(this._next, new THREE.Matrix4().makeTranslation(tool.x, tool.y, tool.z));
-    this.object.instanceMatrix.needsUpdate = true;
+    this._places.setXYZ(this._next, tool.x, tool.y, tool.z);
+    this._places.needsUpdate = true;
     this._next = (this._next + 1) % MOST;
-    this.object.count = Math.max(this.object.count, this._next);
+    this._show(Math.max(this._count, this._next));
   }
 
   clear() {
-    this.object.count = 0;
     this._next = 0;
     this._end = null;
+    this._show(0);
+  }
+
+  /** @param {number} count of the dots */
+  _show(count) {
+    this._count = count;
+    this.object.geometry.setDrawRange(0, count);
   }
 
   repaint() {
     this._material.color.set(colour("trail"));
   }
+}
+
+/** A point is a square: this makes it round. */
+function disc() {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = DISC_PX;
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  context.fillStyle = "white";
+  context.arc(DISC_PX / 2, DISC_PX / 2, DISC_PX / 2, 0, 2 * Math.PI);
+  context.fill();
+  return new THREE.CanvasTexture(canvas);
 }

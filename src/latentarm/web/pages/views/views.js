@@ -1,12 +1,16 @@
 /** Two cameras on one scene: front and side, drawn on one canvas, only when something has changed. */
 
 import { THREE } from "../three/index.js";
+import { SOFTWARE } from "./fineness.js";
 
 const FOV_DEG = 32;
 /** Room around the outermost points: the arm is thick, and labels are next to goals. */
 const MARGIN_M = 0.13;
-/** So many more frames that had to wait than frames that were drawn, and the drawing gets coarser. */
-const MOST_HELD = 40;
+/** How often is looked whether a frame is done, ms. */
+const LOOK_MS = 8;
+/** Frames may hold others up for so long, ms, less what each frame in time takes back; then the drawing gets coarser. */
+const MOST_HELD_MS = 640;
+const TAKEN_BACK_MS = 16;
 const COARSEST = 0.5;
 /** So far out, as a share of half a view, the tool is about to leave it. */
 const EDGE = 0.92;
@@ -25,7 +29,17 @@ const DIRECTIONS = {
   flat: { front: [0, -0.01, 1], side: [0, -1, 0.8] },
 };
 
-/** @typedef {{element: HTMLElement, labels: HTMLElement, camera: THREE.PerspectiveCamera, name: "front" | "side"}} View */
+/**
+ * @typedef {object} View
+ * @property {"front" | "side"} name
+ * @property {HTMLElement} element
+ * @property {HTMLElement} labels
+ * @property {THREE.PerspectiveCamera} camera
+ * @property {number} left of its left lower corner on the canvas, px
+ * @property {number} bottom
+ * @property {number} width px
+ * @property {number} height
+ */
 
 export class Views {
   /**
@@ -36,22 +50,19 @@ export class Views {
   constructor(canvas, elements, scene) {
     this._canvas = canvas;
     this._scene = scene;
-    const software = drawsInSoftware();
     /** Whether there is time for frames between two states. */
-    this.smooth = !software;
-    this._renderer = new THREE.WebGLRenderer({ canvas, antialias: !software, alpha: true, powerPreference: "low-power" });
+    this.smooth = !SOFTWARE;
+    this._renderer = new THREE.WebGLRenderer({ canvas, antialias: !SOFTWARE, alpha: true, powerPreference: "low-power" });
     this._renderer.setScissorTest(true);
-    this._ratio = Math.min(devicePixelRatio, 2) * (software ? SOFTWARE_SHARE : 1);
+    this._ratio = Math.min(devicePixelRatio, 2) * (SOFTWARE ? SOFTWARE_SHARE : 1);
     /** @type {WebGL2RenderingContext} */
     this._gl = /** @type {WebGL2RenderingContext} */ (this._renderer.getContext());
     /** @type {WebGLSync | null} Passed by the graphics processor when the last frame is done. */
     this._fence = null;
-    this._held = 0;
-    this._pending = 0;
+    this._heldMs = 0;
+    this._pending = false;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._soon = undefined;
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this._wait = undefined;
     /** @type {"facing" | "behind"} */
     this.seat = "facing";
     /** @type {View[]} */
@@ -60,25 +71,26 @@ export class Views {
       element: elements[name],
       labels: /** @type {HTMLElement} */ (elements[name].querySelector(".labels")),
       camera: new THREE.PerspectiveCamera(FOV_DEG, 1, 0.05, 20),
+      left: 0, bottom: 0, width: 0, height: 0,
     }));
     for (const view of this.views) view.camera.up.set(0, 0, 1);
     /** @type {THREE.Vector3[]} Where the tool was when it would have left a view, m: cameras hold these too. */
     this._reached = [];
-    /** The least time between two frames, ms. */
-    this.frameGapMs = () => 0;
-    this._drawnAt = -Infinity;
     /** @type {(() => void)[]} Called before each frame, to move labels. */
     this.beforeFrame = [];
     /** @type {(() => void)[]} Called after each frame. */
     this.afterFrame = [];
-    new ResizeObserver(() => this.layOut()).observe(canvas);
+    const observer = new ResizeObserver(() => this.layOut());
+    for (const one of [canvas, ...this.views.map(({ element }) => element)]) observer.observe(one);
     document.addEventListener("visibilitychange", () => this.invalidate());
   }
 
-  /** Something has changed: draw with the next frame. */
+  /** Something has changed: draw with the next frame; at once, as soon as all of it is known, where each frame takes long. */
   invalidate() {
     if (this._pending || document.hidden) return;
-    this._pending = requestAnimationFrame((now) => this._frame(now));
+    this._pending = true;
+    if (this.smooth) requestAnimationFrame(() => this._frame());
+    else queueMicrotask(() => this._frame());
   }
 
   /** Something has changed that may be drawn with whatever changes next, where each frame takes long. */
@@ -99,6 +111,14 @@ export class Views {
     if (!box.width || !box.height) return;
     this._renderer.setPixelRatio(this._ratio);
     this._renderer.setSize(box.width, box.height, false);
+    for (const view of this.views) {
+      const { element } = view;
+      const place = element.getBoundingClientRect();
+      view.left = place.left - box.left + element.clientLeft;
+      view.bottom = box.bottom - place.bottom + element.clientTop;
+      view.width = element.clientWidth;
+      view.height = element.clientHeight;
+    }
     this._aim();
     this.invalidate();
   }
@@ -111,10 +131,7 @@ export class Views {
    */
   project(view, point) {
     const seen = point.clone().project(view.camera);
-    return {
-      x: ((seen.x + 1) / 2) * view.element.clientWidth,
-      y: ((1 - seen.y) / 2) * view.element.clientHeight,
-    };
+    return { x: ((seen.x + 1) / 2) * view.width, y: ((1 - seen.y) / 2) * view.height };
   }
 
   /** Turn both cameras to the scene, as near as holds all of it. */
@@ -124,7 +141,7 @@ export class Views {
     const flat = size.z < 0.1 * Math.max(size.x, size.y);
     const directions = DIRECTIONS[flat ? "flat" : this.seat];
     for (const view of this.views) {
-      const aspect = view.element.clientWidth / Math.max(view.element.clientHeight, 1);
+      const aspect = view.width / Math.max(view.height, 1);
       const away = new THREE.Vector3(...directions[view.name]).normalize();
       const right = new THREE.Vector3(0, 0, 1).cross(away).normalize();
       const up = away.clone().cross(right);
@@ -157,36 +174,22 @@ export class Views {
     this._aim();
   }
 
-  /** @param {number} now */
-  _frame(now) {
-    this._pending = 0;
-    const early = this._drawnAt + this.frameGapMs() - now;
-    if (early > 0) {
-      this._wait ??= setTimeout(() => {
-        this._wait = undefined;
-        this.invalidate();
-      }, early);
-      return;
-    }
-    this._drawnAt = now;
+  _frame() {
     // A frame on top of an unfinished one would hold up the page, and inputs with it.
     if (!this._finished()) {
       this._hold();
       return;
     }
-    this._held = Math.max(this._held - 1, 0);
+    this._pending = false;
+    this._heldMs = Math.max(this._heldMs - TAKEN_BACK_MS, 0);
     clearTimeout(this._soon);
     this._soon = undefined;
-    const gliding = this._scene.advance(now);
+    const gliding = this._scene.advance(performance.now());
     this._keepInView(this._scene.tool);
     for (const call of this.beforeFrame) call();
-    const canvas = this._canvas.getBoundingClientRect();
-    for (const { element, camera } of this.views) {
-      const box = element.getBoundingClientRect();
-      const left = box.left - canvas.left + element.clientLeft;
-      const bottom = canvas.bottom - box.bottom + element.clientTop;
-      this._renderer.setViewport(left, bottom, element.clientWidth, element.clientHeight);
-      this._renderer.setScissor(left, bottom, element.clientWidth, element.clientHeight);
+    for (const { left, bottom, width, height, camera } of this.views) {
+      this._renderer.setViewport(left, bottom, width, height);
+      this._renderer.setScissor(left, bottom, width, height);
       this._renderer.render(this._scene.scene, camera);
     }
     const gl = this._gl;
@@ -205,28 +208,19 @@ export class Views {
     return true;
   }
 
-  /** Draw with the next frame instead; coarser, where that happens too often. */
+  /** Draw as soon as the frame before is done; coarser, where that takes too long too often. */
   _hold() {
-    this._held += 1;
-    if (this._held > MOST_HELD && this._ratio > COARSEST) {
+    this._heldMs += LOOK_MS;
+    if (this._heldMs > MOST_HELD_MS && this._ratio > COARSEST) {
       this._ratio = Math.max(this._ratio * 0.75, COARSEST);
-      this._held = 0;
+      this._heldMs = 0;
       this.layOut();
     }
-    this.invalidate();
+    setTimeout(() => this._frame(), LOOK_MS);
   }
 }
 
 /** The middle of what values there are. @param {number[]} values */
 function middleOf(values) {
   return (Math.min(...values) + Math.max(...values)) / 2;
-}
-
-/** Whether there is no graphics processor: then every pixel is the processor's work. */
-function drawsInSoftware() {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  const about = gl?.getExtension("WEBGL_debug_renderer_info");
-  const name = about ? String(gl?.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software/i.test(name);
 }

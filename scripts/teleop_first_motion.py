@@ -1,0 +1,94 @@
+"""How long it takes from opening the page until the arm can first be moved from it.
+
+Each try opens the page with nothing kept from earlier ones. A script in it presses Enable as soon as that can
+be pressed, then holds an arrow key, and waits for the first state in which the tool has moved. Times are from
+the start of the navigation. Server and browser are on this machine. For example:
+
+    python scripts/teleop_first_motion.py RUN --tries 10
+"""
+
+import argparse
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+from playwright.sync_api import Browser
+
+from teleop_page import chromium, served
+
+VIEWPORT = {"width": 1280, "height": 800}
+LONGEST_MS = 30_000
+STEPS = ("connected", "enabled", "moved", "views drawn")
+
+PRESS = """{
+  window.times = {};
+  const once = (name) => { window.times[name] ??= performance.now(); };
+  let first = null;
+  const Socket = window.WebSocket;
+  window.WebSocket = class extends Socket {
+    constructor(...words) {
+      super(...words);
+      this.addEventListener("message", ({ data }) => {
+        const { type, tool, phase } = JSON.parse(data);
+        if (type !== "state") return;
+        once("connected");
+        if (!["ready", "moving"].includes(phase)) return;
+        once("enabled");
+        if (first === null) {
+          first = tool;
+          const press = { code: "ArrowLeft", key: "ArrowLeft", bubbles: true };
+          document.body.dispatchEvent(new KeyboardEvent("keydown", press));
+        }
+        if (tool.some((value, axis) => Math.abs(value - first[axis]) > 1e-6)) once("moved");
+      });
+    }
+  };
+  document.addEventListener("arm-drawn", () => once("views drawn"));
+  const look = setInterval(() => {
+    if (!("connected" in window.times)) return;
+    document.getElementById("enable").click();
+    clearInterval(look);
+  }, 5);
+}"""
+
+
+def opened(browser: Browser, address: str) -> list[float]:
+    """When each of `STEPS` was reached, ms."""
+    page = browser.new_page(viewport=VIEWPORT)
+    page.add_init_script(PRESS)
+    page.goto(address, wait_until="commit")
+    page.wait_for_function(f"{json.dumps(STEPS)}.every((name) => name in times)", timeout=LONGEST_MS)
+    times = page.evaluate("times")
+    page.keyboard.press("Escape")
+    page.wait_for_timeout(1000)
+    page.context.close()
+    return [times[step] for step in STEPS]
+
+
+def main() -> None:
+    """Measure, print and write."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("run", type=Path)
+    parser.add_argument("--tries", type=int, default=10)
+    parser.add_argument("--out", type=Path)
+    given = parser.parse_args()
+    with served(given.run) as site, chromium() as browser:
+        times = np.array([opened(browser, site.address) for _ in range(given.tries)])
+    figures = {
+        "tries": given.tries,
+        **{
+            step: {"median_ms": round(float(np.median(column))), "worst_ms": round(float(column.max()))}
+            for step, column in zip(STEPS, times.T, strict=True)
+        },
+        "cores": os.cpu_count(),
+        "load_average": os.getloadavg()[0],
+    }
+    text = json.dumps(figures, indent=2)
+    print(text)
+    if given.out:
+        given.out.write_text(text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
