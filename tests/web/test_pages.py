@@ -82,6 +82,17 @@ def test_a_page_loads_at_most_300_kb_of_script(page):
     assert page.name != "drive" or THREE in loaded
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_a_page_names_every_module_that_it_needs_to_work_so_that_all_come_at_once(client, page):
+    named = set(re.findall(r'rel="modulepreload" href="([^"]*)"', client.get(page.path).text))
+    assets = Assets()
+    assert assets.path(page.script) in named
+    assert assets.path(THREE) not in named
+    for address in named:
+        for other in re.findall(r'^[^*/]* from "(\.[^"]+\.js)";$', client.get(address).text, re.MULTILINE):
+            assert posixpath.normpath(posixpath.join(posixpath.dirname(address), other)) in named
+
+
 def test_nothing_of_nicegui_is_imported():
     code = "import sys, latentarm.web.server.app as app; app.Assets(); print('nicegui' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -2,6 +2,8 @@
 
 import gzip
 import hashlib
+import posixpath
+import re
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -23,6 +25,7 @@ _TYPES: Final = {
     ".png": "image/png",
     ".webmanifest": "application/manifest+json",
 }
+_IMPORT: Final = re.compile(rb'^(?:import|export)\s[^"]*"(\.[^"]+\.js)"', re.MULTILINE)
 _KEPT: Final = "private, max-age=31536000, immutable"
 
 
@@ -66,6 +69,21 @@ class Assets:
         if name not in self._assets:
             raise KeyError(name)
         return f"/static/{self._version}/{name}"
+
+    def modules(self, script: str) -> list[str]:
+        """A script and everything that it imports, near or far, but nothing that it loads later.
+
+        Args:
+            script: its path in the folder of the pages.
+        """
+        found = [script]
+        for module in found:
+            folder = posixpath.dirname(module)
+            for named in _IMPORT.findall(self._assets[module].content):
+                path = posixpath.normpath(posixpath.join(folder, named.decode()))
+                if path not in found:
+                    found.append(path)
+        return found
 
     async def answer(self, request: Request) -> Response:
         """Serve ``/static/{version}/{name}``."""

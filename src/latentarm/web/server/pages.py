@@ -89,6 +89,7 @@ class Pages:
                 page=page,
                 pages=PAGES,
                 asset=assets.path,
+                modules=assets.modules(page.script),
                 language=words.language,
                 languages=list(languages().values()),
                 models=[_choice(model, words) for model in models],
