@@ -227,7 +227,7 @@ def test_a_held_stick_does_nothing_in_a_new_mode_before_it_is_let_go(enabled, ar
         if arm.comes_to(lambda: arm.state["let_go_first"] and arm.state["phase"] == "ready", 1.5):
             break
         enabled.keyboard.up("ArrowLeft")
-        enabled.get_by_role("radio", name="Learned, with help").check()
+        enabled.get_by_role("radio", name="Learned").check()
         arm.wait(lambda: arm.state["mode"] == "assisted")
     if arm.enabled:
         reads(enabled, "^The stick does something new now. Let go of it first.$")

@@ -12,11 +12,10 @@ from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
-from latentarm.web.arm_process.episode_header import episode_header
+from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.late_stops import LateStops
 from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.observed import Observed
-from latentarm.web.arm_process.outlook import Outlook
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
@@ -59,6 +58,8 @@ _HELD_BACK: Final[dict[str, HeldBack]] = {
 """Filters whose effect is shown to people; the others are always active."""
 
 _ORDERS_PER_TICK: Final = 4
+_LOOK_EVERY: Final = 10
+_STATISTICS_EVERY: Final = 100
 _SPARE_S: Final = 0.004
 """Deferrable work is done in a tick only if this much of the tick is left."""
 
@@ -117,7 +118,8 @@ class Drive:
         self._enable_until_s = -math.inf
         self._enable_driver = -1
         self._observed = Observed(setup.start, setup.task.robot.gripper)
-        self._outlook = Outlook(setup, self._step, self._loop, steering)
+        self._ghosts = GhostPaths(setup.task, setup.controller, setup.help)
+        self._late_share = self._late_p99_ms = 0.0
         self._whereabouts = Whereabouts(setup.scene, arm)
         self._run = steering.run or TaskRun(setup.todo, arm, setup.task.robot.chain)
         steering.run = self._run
@@ -154,7 +156,7 @@ class Drive:
         self._enable_if_asked(record.time_s)
         self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
-            self._outlook.look(record, self._observed.q)
+            self._look(record)
 
     def _obey(self, record: StepRecord) -> None:
         if self._channel.stop.version != self._stop_version:
@@ -224,7 +226,8 @@ class Drive:
         self._loop.finish()
 
     def _choose(self, mode: ModeName, axes: int, level: HelpLevel) -> None:
-        if self._steering.choose(self._setup, mode, axes, level):
+        modes, pairs = self._setup.modes, len(self._setup.axes)
+        if self._steering.choose(mode, axes, level, modes, pairs):
             # A stick that is held would go on, with another meaning.
             self._neutral.demand()
         self._way_back.end()
@@ -272,8 +275,8 @@ class Drive:
         self._steering.ending_episode = False
         if not self._writer.on:
             self._inputs.devices.clear()
-        things = self._whereabouts.names
-        self._writer.begin(episode_header(self._setup, things, self._steering.mode, task, person))
+        things, mode = self._whereabouts.names, self._steering.mode
+        self._writer.begin(self._setup.episode(things, mode, task, person))
 
     def _end_episode(self) -> None:
         self._writer.end(", ".join(sorted(self._inputs.devices)))
@@ -293,6 +296,20 @@ class Drive:
                 self._note_until_s = -math.inf
                 self._reasons.clear()
                 self._loop.enable()
+
+    def _look(self, record: StepRecord) -> None:
+        """Deferrable work: ghosts, one direction a tick, and the loop's statistics."""
+        steering = self._steering
+        phase = steering.tick % _LOOK_EVERY
+        if phase < 4:
+            # Without a reading nobody knows the gripper, which the decoder may look at.
+            if not math.isnan(record.state[0]):
+                mode = self._setup.mode_index(steering.mode, steering.axes)
+                self._ghosts.look(phase, self._step.context(self._observed.q), mode)
+        elif steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
+            statistics = self._loop.statistics()
+            self._late_share = 1.0 - statistics.met_share
+            self._late_p99_ms = 1000.0 * statistics.p99_s
 
     def _phase(self) -> Phase:
         at_rest = self._step.at_rest
@@ -341,11 +358,11 @@ class Drive:
             gripper=self._observed.gripper,
             task=self._run.state,
             things=self._whereabouts.look(self._steering.tick),
-            ghosts=self._outlook.ghosts,
+            ghosts=self._ghosts.newest,
             belief=tuple(record.belief.tolist()),
             alpha=record.alpha,
             bound_rad=None if math.isnan(record.bound_rad) else record.bound_rad,
             recording=self._writer.status,
-            late_share=self._outlook.late_share,
-            late_p99_ms=self._outlook.late_p99_ms,
+            late_share=self._late_share,
+            late_p99_ms=self._late_p99_ms,
         )

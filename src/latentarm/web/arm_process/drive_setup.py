@@ -11,12 +11,14 @@ from latentarm.arms.catalogue import ARMS, make_scene_arm
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.journal_limits import JournalLimits
+from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.back_to_start import BackToStart
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.joined import JoinedController
 from latentarm.controllers.latent import latent_controller
+from latentarm.demonstrations.provenance import provenance_now
 from latentarm.errors import UserError
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.tasks import task_of_run, task_without_run, usual_arm
@@ -155,6 +157,37 @@ class DriveSetup:
             axes: which pair of axes end-effector control moves.
         """
         return (1 if self.latent_dim else 0) + axes if mode == "end_effector" else 0
+
+    def episode(self, things: tuple[str, ...], mode: ModeName, task: str, person: str) -> EpisodeHeader:
+        """The header of an episode that begins now.
+
+        Args:
+            things: names of those whose poses are recorded.
+            mode: how the arm is steered.
+            task: what is done, in words.
+            person: who drives; "" where that is unknown.
+        """
+        robot, spec = self.task.robot, self.spec
+        return EpisodeHeader(
+            robot=robot.name,
+            joint_names=robot.joint_names,
+            joint_limits=robot.limits,
+            rate_hz=1.0 / PERIOD_S,
+            task=task,
+            goals=self.task.goals,
+            modes=self.controller.modes,
+            provenance=provenance_now(
+                person=person,
+                run="" if spec.run is None else spec.run.name,
+                run_fingerprint=self.run_fingerprint,
+                profile=spec.profile or "",
+                controller=mode,
+            ),
+            end_effector=robot.end_effector,
+            limits=robot.stated_limits,
+            things=things,
+            objects=self.objects if things else (),
+        )
 
     @property
     def way_back(self) -> int:

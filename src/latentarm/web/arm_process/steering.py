@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import final
 
-from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.task_run import TaskRun
 from latentarm.web.protocol.orders import HelpLevel, ModeName
@@ -35,23 +34,26 @@ class Steering:
         """How much the robot helps in this mode."""
         return self.help if self.mode == "assisted" else "off"
 
-    def choose(self, setup: DriveSetup, mode: ModeName, axes: int, level: HelpLevel) -> bool:
+    def choose(
+        self, mode: ModeName, axes: int, level: HelpLevel, modes: tuple[ModeName, ...], pairs: int
+    ) -> bool:
         """Steer in another way.
 
         Args:
-            setup: what is driven.
-            mode: one of its modes.
+            mode: one of the modes.
             axes: which pair of the end-effector's axes; the nearest that there is counts.
             level: how much the robot helps.
+            modes: to choose from.
+            pairs: how many pairs of axes there are.
 
         Returns:
             Whether a stick that is held means something else by now.
         """
         before = self.mode, self.axes, self.help_now
         self.mode = mode
-        self.axes = min(max(axes, 0), len(setup.axes) - 1)
+        self.axes = min(max(axes, 0), pairs - 1)
         self.help = level
-        if mode == "latent" and "assisted" in setup.modes:
+        if mode == "latent" and "assisted" in modes:
             self.help = "off"
         elif mode == "assisted" and level == "off":
             self.help = USUAL_HELP
