@@ -12,8 +12,9 @@ UV := $(CONSTRAIN) $(BIN)/python scripts/uv.py
 INSTALL := $(UV) pip install --quiet --python $(BIN)/python $(TORCH)
 WORKERS ?= $(shell env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)
 # One thread for each worker. A test file stays with one worker, so that what it trains is trained once; tests/conftest.py
-# orders the files.
-PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
+# orders the files. Tests start a hundred processes: bytecode is kept even where the environment says otherwise, because each
+# process would compile torch and us anew.
+PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
 PARALLEL := --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 .DEFAULT_GOAL := help

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import assume, event, given
+from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
 from latentarm.control.safety.body import Body, Placement
@@ -62,6 +62,8 @@ def path_states(q, velocity, brake, hold_s):
         yield q + hold[-1] + braking, speeds
 
 
+# An example looks along ten ways, for each of which the guard is asked some ten times.
+@settings(max_examples=settings.default.max_examples // 2)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["arm", "two_arms", "gantry"]))
 def test_what_passes_is_safe_all_the_way(arm, two_arms, gantry, oracle, seed, name):
     robot = {"arm": arm, "two_arms": two_arms, "gantry": gantry}[name]

@@ -101,7 +101,7 @@ def test_a_finished_training_is_not_run_again(demonstrations, tmp_path, monkeypa
 
 
 KILLED_SCRIPT = """
-import sys
+import sys, time
 from pathlib import Path
 import torch
 torch.set_num_threads(1)
@@ -111,14 +111,15 @@ from latentarm.models.catalogue import MODELS
 from latentarm.types import Demonstrations
 rng = np.random.default_rng(3)
 demonstrations = Demonstrations(tuple(ring(rng) for _ in range(12)), 20.0, ("a", "b", "c", "d"))
+# A moment between epochs: it must not be over before it is killed.
 MODELS["cvae"](epochs={epochs}, hidden=(8, 8), window=2, checkpoint_interval_s=0.0, patience=1000).fit(
-    demonstrations, checkpoint=Path(sys.argv[1]))
+    demonstrations, report=lambda *_: time.sleep(0.1), checkpoint=Path(sys.argv[1]))
 """
 
 
 def test_a_training_killed_outright_goes_on(demonstrations, samples, tmp_path):
     context, z = samples
-    epochs = 25
+    epochs = 8
     path = tmp_path / "checkpoint.safetensors"
     script = KILLED_SCRIPT.format(epochs=epochs)
     process = subprocess.Popen([sys.executable, "-c", script, str(path)])
