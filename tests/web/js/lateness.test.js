@@ -6,6 +6,7 @@ import { attachDialogs, dialogIsOpen } from "#pages/inputs/dialogs.js";
 import { DriveInput } from "#pages/inputs/drive_input.js";
 import { Lateness } from "#pages/inputs/lateness.js";
 import { attachNeutralFirst } from "#pages/inputs/neutral_first.js";
+import { paced } from "#pages/inputs/paced.js";
 import { FakeSocket, newBrowser, pass, stateOf } from "./browser.js";
 
 let fakes;
@@ -58,6 +59,29 @@ test("a page knows for a moment that it was too slow, also from inputs that have
   other.rest();
   pass(5000);
   assert.ok(!other.wasSlow);
+});
+
+test("what is paced is done at once after a rest, also where it was asked for in vain before", () => {
+  const done = [];
+  let moves = true;
+  const draw = paced(() => {
+    if (moves) done.push(performance.now());
+    return moves;
+  }, () => 100);
+  for (let passed = 0; passed < 500; passed += 20) {
+    draw();
+    pass(20);
+  }
+  assert.ok(done.length > 3);
+  assert.ok(done.slice(1).every((at, index) => at - done[index] >= 100));
+  moves = false;
+  for (let passed = 0; passed < 490; passed += 70) {
+    pass(70);
+    draw();
+  }
+  moves = true;
+  draw();
+  assert.equal(done.at(-1), performance.now());
 });
 
 /** A page that drives an enabled arm. */

@@ -1,6 +1,6 @@
 /** A co-pilot: a watcher who may slow or stop the arm, once the driver has said yes. */
 
-import { byId, setText } from "../layout/dom.js";
+import { byId, setHidden, setText } from "../layout/dom.js";
 import { say, sayName, sayPercent } from "../layout/words.js";
 
 /** @import {Connection} from "./connection.js" */
@@ -65,11 +65,11 @@ export function attachCopilot(connection) {
     was = isMe;
     // A new co-pilot slows nobody down yet.
     if (begins) choose(100);
-    ask.hidden = you || driver === null || copilot !== null || copilot_asking !== null;
-    accept.hidden = !you || copilot_asking === null;
-    end.hidden = !(isMe || askedHere || (you && (copilot !== null || copilot_asking !== null)));
+    setHidden(ask, you || driver === null || copilot !== null || copilot_asking !== null);
+    setHidden(accept, !you || copilot_asking === null);
+    setHidden(end, !(isMe || askedHere || (you && (copilot !== null || copilot_asking !== null))));
     setText(end, say(copilot === null ? (you ? "copilot.refuse" : "copilot.withdraw") : "copilot.end"));
-    byId("copilot-pace").hidden = !isMe;
+    setHidden(byId("copilot-pace"), !isMe);
     setText(byId("copilot"), copilotWords(state, welcome.id));
   });
 }

@@ -1,6 +1,6 @@
 /** The belief over goals as labelled bars, and how much the robot helps. */
 
-import { create, fillBar } from "../layout/dom.js";
+import { create, fillBar, setHidden } from "../layout/dom.js";
 import { thingWords } from "../layout/thing_words.js";
 import { sayPercent } from "../layout/words.js";
 import { isLikeliest } from "../views/likeliest.js";
@@ -36,13 +36,14 @@ export function attachBelief(parts) {
 
     /** @param {State} state */
     show({ belief, alpha, help, mode }) {
-      parts.list.hidden = belief === null;
+      setHidden(parts.list, belief === null);
       // With straight lines, and without anything learned, the robot cannot help.
-      parts.level.hidden = belief === null || help === null || mode === "end_effector";
-      parts.none.hidden = belief !== null;
+      setHidden(parts.level, belief === null || help === null || mode === "end_effector");
+      setHidden(parts.none, belief !== null);
       rows.forEach(({ item, bar, value }, index) => {
         fill(bar, value, belief?.[index] ?? 0);
-        item.dataset.likeliest = String(isLikeliest(belief, index));
+        const likeliest = String(isLikeliest(belief, index));
+        if (item.dataset.likeliest !== likeliest) item.dataset.likeliest = likeliest;
       });
       fill(parts.alpha, parts.alphaText, alpha);
     },

@@ -18,7 +18,7 @@ import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { modeInput } from "../inputs/shaping.js";
 import { attachStick } from "../inputs/stick.js";
 import { attachTremor } from "../inputs/tremor.js";
-import { byId, setText } from "../layout/dom.js";
+import { byId, setHidden, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say } from "../layout/words.js";
 import { attachTrialBanner } from "../personalise/trial.js";
@@ -134,20 +134,22 @@ byId("trail-clear").addEventListener("click", () => connection.send({ type: "tra
 
 let wordsAt = -Infinity;
 
+/** @returns {boolean} whether the arm or a thing is drawn elsewhere. */
 function show() {
   const { state, welcome } = connection;
-  if (!state || !welcome) return;
+  if (!state || !welcome) return false;
   const { pressed } = input;
   const paths = personalPaths(state.ghosts, state.tool, shaped);
   const wanted = wantedThing(welcome, state);
-  drawing?.show(state, paths, pressed, settings.values, wanted);
+  const moved = drawing?.show(state, paths, pressed, settings.values, wanted) ?? false;
   belief.show(state);
-  if (performance.now() - wordsAt < WORDS_MS) return;
+  if (performance.now() - wordsAt < WORDS_MS) return moved;
   wordsAt = performance.now();
   predictions.show(paths, pressed, (motion) => motionWords(motion, settings.values.seat));
   setText(byId("scene-text"), whereWords(welcome, state, wanted));
-  byId("bound-text").hidden = !settings.values.showBound || state.bound_m === null;
+  setHidden(byId("bound-text"), !settings.values.showBound || state.bound_m === null);
   if (state.bound_m !== null) setText(byId("bound-text"), say("drive.bound", { centimetres: Math.round(100 * state.bound_m) }));
+  return moved;
 }
 
 function showSettings() {

@@ -1,6 +1,6 @@
 /** How much the robot helps: the person chooses a level, which is kept with their settings. */
 
-import { setText } from "../layout/dom.js";
+import { setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -48,7 +48,7 @@ export function attachHelp(parts, connection, settings) {
   const show = () => {
     const { state } = connection;
     if (!state) return;
-    parts.fieldset.hidden = state.help === null;
+    setHidden(parts.fieldset, state.help === null);
     for (const radio of radios) {
       const checked = radio.value === (state.you ? settings.values.help : state.help);
       if (radio.checked !== checked) radio.checked = checked;

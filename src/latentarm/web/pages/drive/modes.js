@@ -1,6 +1,6 @@
 /** What the stick moves: latent actions, with help or without, or the tool along two axes at a time. */
 
-import { create } from "../layout/dom.js";
+import { create, setHidden } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -65,7 +65,7 @@ export function attachModes(parts, connection, settings) {
     if (!state || performance.now() - askedAt < ANSWER_MS) return;
     check(parts.mode, welcome ? steeringModes(welcome).indexOf(withoutHelp(state.mode)) : -1, state.you);
     check(parts.axes, state.axes, state.you);
-    parts.axes.hidden = state.mode !== "end_effector";
+    setHidden(parts.axes, state.mode !== "end_effector");
   });
 
   return {

@@ -1,6 +1,6 @@
 /** Recording what is driven into a dataset, one episode at a time. */
 
-import { setText } from "../layout/dom.js";
+import { setHidden, setText } from "../layout/dom.js";
 import { say, sayNotice } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -35,7 +35,7 @@ export function attachRecording(parts, connection) {
     parts.button.disabled = !state.you;
     parts.button.setAttribute("aria-pressed", String(on));
     setText(parts.button, say(on ? "recording.stop" : "recording.start"));
-    parts.teach.hidden = on || !state.recording?.episodes;
+    setHidden(parts.teach, on || !state.recording?.episodes);
     setText(parts.text, recordingWords(state));
   });
 }

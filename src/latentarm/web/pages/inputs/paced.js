@@ -3,7 +3,7 @@
 /**
  * Does it at once, or where the last time was too short ago, as soon as that is over: however often it is asked for.
  *
- * @param {() => void} act
+ * @param {() => boolean} act whether there was something to do: what comes after nothing need not wait
  * @param {() => number} gapMs the least time between two times, ms
  */
 export function paced(act, gapMs) {
@@ -14,8 +14,8 @@ export function paced(act, gapMs) {
   const now = () => {
     clearTimeout(waiting);
     waiting = undefined;
-    doneAt = performance.now();
-    act();
+    const began = performance.now();
+    if (act()) doneAt = began;
   };
   return () => {
     const early = doneAt + gapMs() - performance.now();

@@ -1,6 +1,6 @@
 /** Switches and gamepads on a page without a stick: its controls light up in turn, and a gamepad's button stops the arm. */
 
-import { byId } from "../layout/dom.js";
+import { byId, setHidden } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { settingChoices } from "../settings/setting_choices.js";
 import { Deflection } from "./deflection.js";
@@ -46,8 +46,8 @@ export function attachWholePage(settings, stop) {
     // What stands behind a dialog cannot be pressed, the bar of the switches neither.
     const within = dialogNow() ?? home;
     if (bar.parentElement !== within) within.append(bar);
-    bar.hidden = settings.values.panel !== "switch";
-    byId("panel-switch").hidden = false;
+    setHidden(bar, settings.values.panel !== "switch");
+    setHidden(byId("panel-switch"), false);
   };
   const offered = () => {
     place();

@@ -20,6 +20,11 @@ export function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
+/** Show or hide it, where that changes anything: browsers style a part of the page anew with every write. @param {HTMLElement} element @param {boolean} hidden */
+export function setHidden(element, hidden) {
+  if (element.hidden !== hidden) element.hidden = hidden;
+}
+
 /**
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag

@@ -1,6 +1,6 @@
 /** An alignment that is tried: whose it is, and whether it is kept. */
 
-import { byId, setText } from "../layout/dom.js";
+import { byId, setHidden, setText } from "../layout/dom.js";
 import { say, sayNotice } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -49,10 +49,10 @@ export function attachTrialBanner(connection, settings, lease) {
   const show = () => {
     const personalise = connection.learning?.personalise;
     const tried = personalise?.phase === "learned" && connection.state?.profile === TRIAL ? personalise : null;
-    byId("trial").hidden = tried === null;
+    setHidden(byId("trial"), tried === null);
     if (tried === null) return;
     setText(byId("trial-title"), say("trial.title", { name: tried.name }));
-    byId("trial-why").hidden = !tried.why;
+    setHidden(byId("trial-why"), !tried.why);
     setText(byId("trial-why"), tried.why ? sayNotice(tried.why) : "");
   };
   connection.addEventListener("learning", show);

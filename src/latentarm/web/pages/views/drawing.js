@@ -62,13 +62,14 @@ export class Drawing {
    * @param {Direction[]} pressed
    * @param {Values} wanted
    * @param {string | null} [thing] what the task is about now
+   * @returns {boolean} whether the arm or a thing is somewhere else now
    */
   show(state, paths, pressed, wanted, thing = null) {
     // An arm at rest needs no new frame; a press or a new belief none that would be in the way of its motion.
     const pose = JSON.stringify([state.bodies, state.gripper?.width_m]);
     const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted, thing]);
     const moved = pose !== this._pose || state.things !== this._things;
-    if (!moved && around === this._around) return;
+    if (!moved && around === this._around) return false;
     this._scene.scene.visible = true;
     this._pose = pose;
     this._things = state.things;
@@ -87,6 +88,7 @@ export class Drawing {
     this._lookFrom(wanted.seat);
     if (moved) this._views.invalidate();
     else this._views.invalidateSoon();
+    return moved;
   }
 
   /**
