@@ -1,8 +1,9 @@
 """How long it takes from opening the page until the arm can first be moved from it.
 
 Each try opens the page with nothing kept from earlier ones. A script in it presses Enable as soon as that can
-be pressed, then holds an arrow key, and waits for the first state in which the tool has moved. Times are from
-the start of the navigation. Server and browser are on this machine. For example:
+be pressed, and again where the arm has stopped before it moved, then holds an arrow key, and waits for the
+first state in which the tool has moved. Times are from the start of the navigation. Server and browser are on
+this machine. For example:
 
     python scripts/teleop_first_motion.py RUN --tries 10
 """
@@ -23,7 +24,9 @@ STEPS = ("connected", "enabled", "moved", "views drawn")
 
 PRESS = """{
   window.times = {};
+  window.presses = 0;
   const once = (name) => { window.times[name] ??= performance.now(); };
+  let pressed = -Infinity;
   let first = null;
   const Socket = window.WebSocket;
   window.WebSocket = class extends Socket {
@@ -33,28 +36,28 @@ PRESS = """{
         const { type, tool, phase } = JSON.parse(data);
         if (type !== "state") return;
         once("connected");
-        if (!["ready", "moving"].includes(phase)) return;
-        once("enabled");
-        if (first === null) {
-          first = tool;
-          const press = { code: "ArrowLeft", key: "ArrowLeft", bubbles: true };
-          document.body.dispatchEvent(new KeyboardEvent("keydown", press));
+        const key = { code: "ArrowLeft", key: "ArrowLeft", bubbles: true };
+        if (["ready", "moving"].includes(phase)) {
+          once("enabled");
+          if (first === null) document.body.dispatchEvent(new KeyboardEvent("keydown", key));
+          first ??= tool;
+          if (tool.some((value, axis) => Math.abs(value - first[axis]) > 1e-6)) once("moved");
+        } else if (!("moved" in window.times) && performance.now() - pressed > 300) {
+          document.body.dispatchEvent(new KeyboardEvent("keyup", key));
+          window.presses += 1;
+          pressed = performance.now();
+          first = null;
+          setTimeout(() => document.getElementById("enable").click());
         }
-        if (tool.some((value, axis) => Math.abs(value - first[axis]) > 1e-6)) once("moved");
       });
     }
   };
   document.addEventListener("arm-drawn", () => once("views drawn"));
-  const look = setInterval(() => {
-    if (!("connected" in window.times)) return;
-    document.getElementById("enable").click();
-    clearInterval(look);
-  }, 5);
 }"""
 
 
-def opened(browser: Browser, address: str) -> list[float]:
-    """When each of `STEPS` was reached, ms."""
+def opened(browser: Browser, address: str) -> tuple[list[float], int]:
+    """When each of `STEPS` was reached, ms, and how often Enable was pressed."""
     page = browser.new_page(viewport=VIEWPORT)
     page.add_init_script(PRESS)
     page.goto(address, wait_until="commit")
@@ -62,10 +65,11 @@ def opened(browser: Browser, address: str) -> list[float]:
     while not times.keys() >= set(STEPS):
         page.wait_for_timeout(LOOK_MS)
         times = page.evaluate("times")
+    presses = page.evaluate("presses")
     page.keyboard.press("Escape")
     page.wait_for_timeout(1000)
     page.context.close()
-    return [times[step] for step in STEPS]
+    return [times[step] for step in STEPS], presses
 
 
 def main() -> None:
@@ -76,13 +80,15 @@ def main() -> None:
     parser.add_argument("--out", type=Path)
     given = parser.parse_args()
     with served(given.run) as site, chromium() as browser:
-        times = np.array([opened(browser, site.address) for _ in range(given.tries)])
+        tries = [opened(browser, site.address) for _ in range(given.tries)]
+    times = np.array([one for one, _ in tries])
     figures = {
         "tries": given.tries,
         **{
             step: {"median_ms": round(float(np.median(column))), "worst_ms": round(float(column.max()))}
             for step, column in zip(STEPS, times.T, strict=True)
         },
+        "presses_of_enable": sum(presses for _, presses in tries),
         "cores": os.cpu_count(),
         "load_average": os.getloadavg()[0],
     }

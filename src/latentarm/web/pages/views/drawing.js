@@ -33,7 +33,7 @@ export class Drawing {
     this._toolPaths = new ToolPaths(scene.scene);
     this._still = matchMedia("(prefers-reduced-motion: reduce)");
     this._tick = -1;
-    this._pose = this._around = "";
+    this._pose = this._around = this._pressed = "";
     /** @type {State["things"]} */
     this._things = null;
     this._first = true;
@@ -53,7 +53,9 @@ export class Drawing {
    * @throws where the browser cannot draw, or the scene cannot be loaded.
    */
   static async load(elements, where) {
-    return new Drawing(elements, await ArmScene.load(where));
+    const drawing = new Drawing(elements, await ArmScene.load(where));
+    await drawing._views.prepare();
+    return drawing;
   }
 
   /**
@@ -70,6 +72,8 @@ export class Drawing {
     const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted, thing]);
     const moved = pose !== this._pose || state.things !== this._things;
     if (!moved && around === this._around) return false;
+    const turned = this._pressed !== pressed.join();
+    this._pressed = pressed.join();
     this._scene.scene.visible = true;
     this._pose = pose;
     this._things = state.things;
@@ -87,7 +91,7 @@ export class Drawing {
     this._ghosts.show(paths, pressed, wanted.showGhosts, this._clearOf(tool, thing));
     this._lookFrom(wanted.seat);
     if (moved) this._views.invalidate();
-    else this._views.invalidateSoon();
+    else this._views.invalidateSoon(turned);
     return moved;
   }
 

@@ -12,6 +12,7 @@ const LOOK_MS = 8;
 const MOST_HELD_MS = 640;
 const TAKEN_BACK_MS = 16;
 const COARSEST = 0.5;
+const LONGEST_COMPILING_MS = 3000;
 /** So far out, as a share of half a view, the tool is about to leave it. */
 const EDGE = 0.92;
 /** Without a graphics processor, pixels are dear from the start. */
@@ -85,6 +86,16 @@ export class Views {
     document.addEventListener("visibilitychange", () => this.invalidate());
   }
 
+  /** Compile what is drawn with, while the page goes on: the first frame would hold up inputs for that. */
+  async prepare() {
+    const { scene } = this._scene;
+    const was = scene.visible;
+    scene.visible = true;
+    const compiled = this._renderer.compileAsync(scene, this.views[0].camera);
+    scene.visible = was;
+    await Promise.race([compiled, new Promise((resolve) => setTimeout(resolve, LONGEST_COMPILING_MS))]);
+  }
+
   /** Something has changed: draw with the next frame; at once, as soon as all of it is known, where each frame takes long. */
   invalidate() {
     if (this._pending || document.hidden) return;
@@ -93,10 +104,21 @@ export class Views {
     else queueMicrotask(() => this._frame());
   }
 
-  /** Something has changed that may be drawn with whatever changes next, where each frame takes long. */
-  invalidateSoon() {
-    if (this.smooth) this.invalidate();
-    else this._soon ??= setTimeout(() => this.invalidate(), SOON_MS);
+  /**
+   * Something has changed that may be drawn with whatever changes next, where each frame takes long.
+   *
+   * @param {boolean} expected whether the arm is about to move: a frame that is under way then would hold its first one up
+   */
+  invalidateSoon(expected) {
+    if (this.smooth) {
+      this.invalidate();
+      return;
+    }
+    if (expected) {
+      clearTimeout(this._soon);
+      this._soon = undefined;
+    }
+    this._soon ??= setTimeout(() => this.invalidate(), SOON_MS);
   }
 
   /** The tool is somewhere else altogether: forget where it has been. */
