@@ -66,7 +66,7 @@ def report(tick, phase, tool, code=None, **changes):
         nonce="", tick=tick, time_s=100.0 + 0.01 * tick, driver=1, phase=phase, note=None,
         reason=None if code is None else Notice(code=code), held_back=None, mode="assisted", axes=0, run=None,
         returning=False, at_start=False, let_go_first=False, late_stops=0, help="medium", seed=0,
-        task=TaskState(choice=0, done=0, outcome=None, why=None, time_s=0.0),
+        task=TaskState(choice=0, done=0, outcome=None, why=None, time_s=0.0, to_go=None),
         profile=None, loading=False,
         q=(0.0, *[0.1 * tool] * 6), speed=0.0, tool=(tool, 0.0, 0.0), gripper=None,
         things=None, ghosts=None, belief=(), alpha=0.5, bound_rad=None, recording=None, late_share=0.0,

@@ -14,7 +14,7 @@ let done;
 let scanning;
 
 function plug(index = 0) {
-  const pad = { index, connected: true, axes: [0, 0], buttons: Array.from({ length: 4 }, () => ({ pressed: false })) };
+  const pad = { index, connected: true, axes: [0, 0], buttons: Array.from({ length: 6 }, () => ({ pressed: false })) };
   pads[index] = pad;
   return pad;
 }
@@ -40,6 +40,7 @@ beforeEach(() => {
     enable: () => done.push("enable"),
     stop: () => done.push("stop"),
     gripper: () => done.push("gripper"),
+    nextMode: () => done.push("mode"),
     press: (number, down) => {
       if (scanning && down) done.push(`switch ${number}`);
       return scanning;
@@ -99,6 +100,15 @@ test("the third button moves the gripper, the fourth where the third stops, and 
   settings.change({ gamepadStop: "any" });
   press(pads[0], 2);
   assert.deepEqual(done, ["gripper", "stop", "gripper", "stop"]);
+});
+
+test("a shoulder button goes on to the next directions, and stops where any button stops", () => {
+  const pad = plug();
+  press(pad, 4);
+  press(pad, 5);
+  settings.change({ gamepadStop: "any" });
+  press(pad, 5);
+  assert.deepEqual(done, ["mode", "mode", "stop"]);
 });
 
 test("where scanning is on, buttons are switches and neither stop nor enable", () => {

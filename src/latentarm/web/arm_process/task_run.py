@@ -1,6 +1,7 @@
 """One run of a task, as pages follow it: its steps tick off until it has succeeded or failed."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final, final
 
@@ -11,10 +12,14 @@ from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.steps import Failure, Progress, StepKind, TaskStep, Waypoint
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray, Pose
-from latentarm.web.protocol.report import TaskState, Why
+from latentarm.web.arm_process.guide import Guide
+from latentarm.web.protocol.report import TaskState, ToGo, Why
 
 _FEW: Final = 2
 """Waypoints that a person can be told one by one; of a longer way only the end counts."""
+
+_LOOK_EVERY_S: Final = 0.1
+"""How often is looked what is left of the way: it is told in words."""
 
 
 @final
@@ -86,6 +91,9 @@ class TaskRun:
         self._arm = arm if isinstance(arm, SceneArm) else None
         self._chain = chain
         self._progress = Progress(todo.steps, todo.failures)
+        self._guide = Guide()
+        self._to_go: ToGo | None = None
+        self._looked_s = -math.inf
         self._began_s: float | None = None
         self._time_s = 0.0
 
@@ -99,6 +107,7 @@ class TaskRun:
             outcome="failure" if failure else "success" if self._succeeded else None,
             why=None if failure is None else Why(code=failure.kind, thing=failure.thing),
             time_s=round(self._time_s, 2),
+            to_go=self._to_go,
         )
 
     def see(self, time_s: float, q: FloatArray, *, enabled: bool) -> None:
@@ -111,12 +120,19 @@ class TaskRun:
         """
         if not self._todo.steps or self._progress.failure or self._succeeded:
             return
-        if self._began_s is None:
-            if not enabled:
-                return
+        looks = time_s - self._looked_s >= _LOOK_EVERY_S
+        if self._began_s is None and enabled:
             self._began_s = time_s
-        self._time_s = time_s - self._began_s
-        self._progress.update(self._scene_state(q))
+        if self._began_s is None and not looks:
+            return
+        state = self._scene_state(q)
+        if self._began_s is not None:
+            self._time_s = time_s - self._began_s
+            self._progress.update(state)
+        if looks or self._progress.failure or self._succeeded:
+            self._looked_s = time_s
+            step = None if self._progress.failure else self._progress.step
+            self._to_go = self._guide.look(step, replace(state, time_s=time_s))
 
     @property
     def _succeeded(self) -> bool:

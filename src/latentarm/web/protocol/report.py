@@ -86,6 +86,21 @@ class Why(Message):
 
 
 @final
+class ToGo(Message):
+    """What is left of the way to where the tool is to be next.
+
+    Attributes:
+        shift_m: along the axes of the base frame, m.
+        turn_rad: about the tool's own axes, a rotation vector, rad.
+        gripper: what is to be asked of the gripper now; null for nothing.
+    """
+
+    shift_m: Point
+    turn_rad: Point
+    gripper: Literal["open", "close"] | None
+
+
+@final
 class TaskState(Message):
     """How far a run of the task has come.
 
@@ -95,6 +110,7 @@ class TaskState(Message):
         outcome: null while it goes on.
         why: why it has failed.
         time_s: since the arm was first enabled in this run, until its outcome, s.
+        to_go: to where the step that is to be done now takes the tool; null where nothing is left to do.
     """
 
     choice: int
@@ -102,6 +118,7 @@ class TaskState(Message):
     outcome: Literal["success", "failure"] | None
     why: Why | None
     time_s: float
+    to_go: ToGo | None
 
 
 @final

@@ -285,6 +285,7 @@ export interface TaskState {
   outcome: "success" | "failure" | null;
   why: Why | null;
   time_s: number;
+  to_go: ToGo | null;
 }
 
 export interface TaskToDo {
@@ -298,6 +299,12 @@ export interface TaskToDo {
 export interface Things {
   poses: [number, number, number, number, number, number, number][];
   grains: number[][];
+}
+
+export interface ToGo {
+  shift_m: [number, number, number];
+  turn_rad: [number, number, number];
+  gripper: "open" | "close" | null;
 }
 
 export interface TrailClear {

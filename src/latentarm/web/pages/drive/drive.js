@@ -4,6 +4,7 @@ import { attachEnableButton, enableButtonOf } from "../connection/enable_button.
 import { attachDialogs, dialogIsOpen } from "../inputs/dialogs.js";
 import { attachCard } from "../card/card.js";
 import { attachCopilot } from "../connection/copilot.js";
+import { DIRECTIONS } from "../inputs/deflection.js";
 import { attachDpad } from "../inputs/dpad.js";
 import { DriveInput } from "../inputs/drive_input.js";
 import { attachGamepad } from "../inputs/gamepad.js";
@@ -33,10 +34,12 @@ import { attachModes } from "./modes.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
 import { attachTask } from "./task_panel.js";
+import { attachToGo, moved } from "./to_go.js";
 import { wantedThing } from "./task_words.js";
 import { whereWords } from "./where_words.js";
 import { attachWayBack } from "./way_back.js";
 
+/** @import {Direction} from "../inputs/deflection.js" */
 /** @import {Welcome} from "../connection/messages.js" */
 /** @import {Drawing} from "../views/drawing.js" */
 
@@ -78,6 +81,9 @@ attachLateStops(byId("late-stops"), connection);
 const wayBack = attachWayBack({ button: byId("way-back"), why: byId("way-back-why") }, connection);
 
 const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection, settings);
+const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {number} */ y) =>
+  connection.state ? modeInput(settings.values, { ...connection.state, mode: "end_effector", axes }, connection.welcome, x, y) : [0, 0];
+attachToGo(byId("to-go"), connection, inPair);
 const help = attachHelp({ fieldset: byId("help"), text: byId("help-text") }, connection, settings);
 attachCopilot(connection);
 attachTrialBanner(connection, settings, lease);
@@ -121,7 +127,7 @@ const scanner = attachScanning({
 });
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, {
-  enable, stop, gripper: () => gripper.toggle("gamepad"), press: (number, down) => scanner.press(number, down),
+  enable, stop, gripper: () => gripper.toggle("gamepad"), nextMode: modes.next, press: (number, down) => scanner.press(number, down),
 });
 attachInputChoice(input, settings);
 
@@ -145,7 +151,11 @@ function show() {
   belief.show(state);
   if (performance.now() - wordsAt < WORDS_MS) return moved;
   wordsAt = performance.now();
-  predictions.show(paths, pressed, (motion) => motionWords(motion, settings.values.seat));
+  const pair = state.mode === "end_effector" ? welcome.end_effector_modes[state.axes] : null;
+  const turns = (/** @type {Direction} */ direction) =>
+    pair !== null && moved(pair, shaped(...DIRECTIONS[direction])).part.of === "turn_rad";
+  predictions.show(paths, pressed, (motion, direction) =>
+    turns(direction) ? say("motion.turns") : motionWords(motion, settings.values.seat));
   setText(byId("scene-text"), whereWords(welcome, state, wanted));
   setHidden(byId("bound-text"), !settings.values.showBound || state.bound_m === null);
   if (state.bound_m !== null) setText(byId("bound-text"), say("drive.bound", { centimetres: Math.round(100 * state.bound_m) }));

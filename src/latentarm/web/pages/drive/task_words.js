@@ -2,11 +2,15 @@
 
 import { capital, intoThing, theThing } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
+import { degreesToGo } from "./to_go.js";
 
 /** @import {State, StepToDo, TaskState, Welcome} from "../connection/messages.js" */
 
 /** Steps for which it helps to know how far away the thing is. */
 const FAR = new Set(["approached", "reached", "above", "holding", "stabbed"]);
+
+/** A turn that need not be told, degrees. */
+const SMALL_TURN = 10;
 
 /** What is to be done in a step. @param {StepToDo} step */
 export function stepWords({ kind, thing }) {
@@ -66,13 +70,19 @@ export function distance(tool, place) {
 }
 
 /**
- * How far the tool has to go in the step that is to be done now, in words; empty where that says nothing.
+ * How far the tool has to go in the step that is to be done now, and to turn, in words; or what the gripper is to do.
  *
  * @param {Welcome} welcome
  * @param {State} state
  */
 export function awayWords(welcome, state) {
-  const step = welcome.task.steps[state.task.done];
-  const place = step && state.task.outcome === null && FAR.has(step.kind) ? placeOf(step.thing, welcome, state) : null;
-  return place ? say("task.away", { centimetres: Math.round(100 * distance(state.tool, place)) }) : "";
+  const { done, outcome, to_go } = state.task;
+  const step = welcome.task.steps[done];
+  if (!step || outcome !== null) return "";
+  if (to_go?.gripper) return say(`to_go.gripper_${to_go.gripper}`);
+  const place = FAR.has(step.kind) ? placeOf(step.thing, welcome, state) : null;
+  const far = place ? distance(state.tool, place) : to_go && Math.hypot(...to_go.shift_m);
+  if (far === null) return "";
+  const [centimetres, degrees] = [Math.round(100 * far), to_go ? degreesToGo(to_go) : 0];
+  return degrees > SMALL_TURN ? say("task.away_turn", { centimetres, degrees }) : say("task.away", { centimetres });
 }

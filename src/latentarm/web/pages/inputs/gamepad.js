@@ -6,6 +6,8 @@
 const ENABLE_BUTTON = 0;
 /** The first of these that does not stop moves the gripper. */
 const GRIPPER_BUTTONS = [2, 3];
+/** On its shoulders: another mode, or another pair of directions. */
+const MODE_BUTTONS = [4, 5];
 /** A stick that rests a little off its middle is at rest. */
 const REST = 0.08;
 const IDLE_MS = 100;
@@ -13,7 +15,7 @@ const IDLE_MS = 100;
 /**
  * @param {PersonInput} input
  * @param {Settings} settings
- * @param {{enable: () => void, stop: () => void, gripper: () => void, press: (number: number, down: boolean) => boolean}} actions
+ * @param {{enable: () => void, stop: () => void, gripper: () => void, nextMode: () => void, press: (number: number, down: boolean) => boolean}} actions
  *   `press` takes a button as a switch, where scanning is on, and says whether it did.
  */
 export function attachGamepad(input, settings, actions) {
@@ -51,6 +53,7 @@ export function attachGamepad(input, settings, actions) {
     if (stops === "any" || Number(stops) === number) actions.stop();
     else if (number === ENABLE_BUTTON) actions.enable();
     else if (number === GRIPPER_BUTTONS.find((one) => one !== Number(stops))) actions.gripper();
+    else if (MODE_BUTTONS.includes(number)) actions.nextMode();
   };
 
   window.addEventListener("gamepaddisconnected", (event) => {

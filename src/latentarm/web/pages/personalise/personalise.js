@@ -58,7 +58,7 @@ const scanner = attachScanning({
   help: byId("scan-help"),
 }, input, settings, offered);
 attachKeyboard(input, settings, { enable: answer, nextMode: () => {}, axes: () => {}, gripper: () => {} });
-attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, press: (number, down) => scanner.press(number, down) });
+attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) });
 attachInputChoice(input, settings);
 
 /** What a switch reaches at each step: the step's own buttons, and then the pages and settings. @returns {Choice[]} */

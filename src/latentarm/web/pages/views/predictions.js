@@ -63,12 +63,12 @@ export function attachPredictions(list) {
     /**
      * @param {Paths} paths
      * @param {Direction[]} pressed
-     * @param {(motion: number[]) => string} describe
+     * @param {(motion: number[], direction: Direction) => string} describe
      */
     show(paths, pressed, describe) {
       for (const { direction, item, words } of rows) {
         const path = paths[direction];
-        setText(words, path === null ? "–" : describe(displacement(path)));
+        setText(words, path === null ? "–" : describe(displacement(path), direction));
         item.dataset.pressed = String(pressed.includes(direction));
       }
     },

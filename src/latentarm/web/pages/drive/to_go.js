@@ -1,0 +1,107 @@
+/** What is left of the way to where the tool is to be next: for each pair of directions, which way to push and how far. */
+
+import { DIRECTIONS, DIRECTION_NAMES } from "../inputs/deflection.js";
+import { create, setText } from "../layout/dom.js";
+import { say, sayNumber } from "../layout/words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {ToGo} from "../connection/messages.js" */
+/** @import {Direction} from "../inputs/deflection.js" */
+/** @import {WordKey} from "../layout/words.js" */
+
+/** @typedef {{of: "shift_m" | "turn_rad", axis: number}} Part one of the six ways in which the tool can move */
+
+/** What the two axes of each pair move. @type {Record<string, [Part, Part]>} */
+const PAIRS = {
+  "x-y": [{ of: "shift_m", axis: 0 }, { of: "shift_m", axis: 1 }],
+  "z-yaw": [{ of: "shift_m", axis: 2 }, { of: "turn_rad", axis: 2 }],
+  "roll-pitch": [{ of: "turn_rad", axis: 0 }, { of: "turn_rad", axis: 1 }],
+};
+/** Less than this need not be driven, m and rad. */
+const LEAST = { shift_m: 0.003, turn_rad: 0.05 };
+/** From here on, tenths of a centimetre say nothing. */
+const WHOLE_CM = 10;
+const WORDS_MS = 250;
+
+/** How far the tool has yet to turn, degrees. @param {ToGo} toGo */
+export function degreesToGo({ turn_rad }) {
+  return Math.round((180 * Math.hypot(...turn_rad)) / Math.PI);
+}
+
+/**
+ * What a direction moves, and which way: 1 or -1.
+ *
+ * @param {string} pair
+ * @param {number[]} sent what is sent for it
+ */
+export function moved(pair, sent) {
+  const axis = Math.abs(sent[1] ?? 0) > Math.abs(sent[0]) ? 1 : 0;
+  return { part: PAIRS[pair][axis], way: Math.sign(sent[axis]) };
+}
+
+/**
+ * What is left in one pair of directions; nothing where it need not be driven.
+ *
+ * @param {ToGo} toGo
+ * @param {string} pair its name
+ * @param {(x: number, y: number) => number[]} shaped from stick to what is sent in it
+ * @returns {{direction: Direction, text: string}[]}
+ */
+export function leftToGo(toGo, pair, shaped) {
+  return DIRECTION_NAMES.flatMap((direction) => {
+    const { part, way } = moved(pair, shaped(...DIRECTIONS[direction]));
+    const far = way * toGo[part.of][part.axis];
+    if (far < LEAST[part.of]) return [];
+    const name = say(`directions.${direction}`);
+    if (part.of === "turn_rad") return [{ direction, text: say("to_go.turn", { direction: name, degrees: Math.round((180 * far) / Math.PI) }) }];
+    const centimetres = sayNumber(100 * far, 100 * far < WHOLE_CM ? 1 : 0);
+    return [{ direction, text: say("to_go.length", { direction: name, centimetres }) }];
+  });
+}
+
+/**
+ * The list under the views.
+ *
+ * @param {HTMLElement} list
+ * @param {Connection} connection
+ * @param {(axes: number, x: number, y: number) => number[]} shaped from stick to what is sent in a pair
+ */
+export function attachToGo(list, connection, shaped) {
+  let wordsAt = -Infinity;
+  let begun = "";
+
+  connection.addEventListener("welcome", () => {
+    const { end_effector_modes } = /** @type {NonNullable<Connection["welcome"]>} */ (connection.welcome);
+    list.replaceChildren(...end_effector_modes.map((name) => {
+      const item = create("li");
+      const pair = say("to_go.pair", { pair: say(/** @type {WordKey} */ (`axes.${name}`)) });
+      item.append(create("span", { className: "to-go-pair", textContent: pair }), create("span"), create("span"));
+      return item;
+    }));
+    wordsAt = -Infinity;
+  });
+  connection.addEventListener("state", () => {
+    const { state, welcome } = connection;
+    const toGo = state?.task.to_go ?? null;
+    // Learned motions have no such directions.
+    list.hidden = toGo === null || state?.mode !== "end_effector";
+    if (!state || !welcome || toGo === null || list.hidden) return;
+    // Another pair, or another step, is told at once.
+    const now = JSON.stringify([state.task.choice, state.task.done, state.axes]);
+    if (now === begun && performance.now() - wordsAt < WORDS_MS) return;
+    begun = now;
+    wordsAt = performance.now();
+    welcome.end_effector_modes.forEach((name, axes) => {
+      const left = leftToGo(toGo, name, (x, y) => shaped(axes, x, y));
+      const item = list.children[axes];
+      if (axes === state.axes) item.setAttribute("aria-current", "true");
+      else item.removeAttribute("aria-current");
+      const [, first, second] = item.children;
+      [first, second].forEach((line, index) => {
+        const one = left[index];
+        setText(line, one?.text ?? (index === 0 ? "✓" : ""));
+        /** @type {HTMLElement} */ (line).dataset.ghost = one?.direction ?? "";
+      });
+    });
+  });
+}
