@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import Page
 
-from teleop_page import chromium, enable, served
+from teleop_page import SOFTWARE_GL, USUAL_GL, chromium, enable, served
 
 KEYS = ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown")
 HELD_MS = 250
@@ -109,7 +109,7 @@ def main() -> None:
     parser.add_argument("--hardware", action="store_true", help="draw with the graphics processor")
     parser.add_argument("--out", type=Path)
     given = parser.parse_args()
-    with served(given.run) as site, chromium(software=not given.hardware) as browser:
+    with served(given.run) as site, chromium(USUAL_GL if given.hardware else SOFTWARE_GL) as browser:
         page = browser.new_page(viewport={"width": 1280, "height": 800})
         page.add_init_script(WATCH)
         page.goto(site.address)

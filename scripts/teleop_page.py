@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +19,9 @@ from playwright.sync_api import Browser, Page, sync_playwright
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+USUAL_GL = ()
+NO_GL = ("--disable-3d-apis",)
+"""The page then says that it cannot draw the views, and everything else works."""
 START_S = 60.0
 AT_START = "way_back.at_start"
 
@@ -37,12 +40,13 @@ class Site:
 
 
 @contextmanager
-def served(run: Path | None, out: Path | None = None) -> Iterator[Site]:
+def served(run: Path | None, out: Path | None = None, options: Sequence[str] = ()) -> Iterator[Site]:
     """`latentarm teleop RUN` as long as the block lasts.
 
     Args:
         run: a trained run.
         out: keeps what is recorded.
+        options: further words of the command.
     """
     with tempfile.TemporaryDirectory() as folder:
         said = Path(folder) / "said"
@@ -53,6 +57,7 @@ def served(run: Path | None, out: Path | None = None) -> Iterator[Site]:
             "latentarm",
             "teleop",
             *words,
+            *options,
             "--port",
             "0",
             "--out",
@@ -87,13 +92,12 @@ def _answers(address: str) -> bool:
 
 
 @contextmanager
-def chromium(software: bool = True) -> Iterator[Browser]:
+def chromium(drawing: Sequence[str] = SOFTWARE_GL) -> Iterator[Browser]:
     """A Chromium of this machine, without a window.
 
     Args:
-        software: draw without a graphics processor.
+        drawing: arguments that say how it draws in three dimensions; without a graphics processor at first.
     """
-    drawing = SOFTWARE_GL if software else ()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=find_chromium(), args=[*drawing, *sandboxed()])
         yield browser

@@ -1,0 +1,235 @@
+"""A scripted person who does a task of the page, by what the page shows and nothing else.
+
+They drive straight lines, one direction at a time: look what is left of the way, choose a direction, push for
+as long as that should take, let go, look again. From each push they learn how far the tool goes.
+"""
+
+import logging
+import time
+from dataclasses import asdict, dataclass, field
+from typing import Any, Final
+
+from person_hands import Hand
+from person_page import Left, Look, Unit, look
+
+READS_S: Final = 0.3
+"""How long they look before they press: the page's words change four times a second."""
+
+_log = logging.getLogger(__name__)
+
+LEVELS: Final = ({"cm": 1.0, "°": 10.0}, {"cm": 0.5, "°": 5.0}, {"cm": 0.3, "°": 3.0})
+"""What they leave as it is: first the large parts of the way, then the small ones."""
+
+FIRST_GUESS: Final = {"cm": 15.0, "°": 28.0}
+"""How fast they take the tool to be before they have seen it move, per second."""
+
+SHORTEST_S: Final = 0.04
+SHARE: Final = 0.92
+"""How much of a long way they dare to drive at once."""
+
+TURN_AT_ONCE: Final = 30.0
+"""Degrees; two turns at once come out otherwise than one after the other."""
+
+LONG_CM: Final = 3.0
+POUR_AT_LEAST: Final = 12.0
+"""Degrees; who pours tips the cup a little at a time, and looks."""
+
+TIPPED: Final = 20.0
+"""Degrees; a cup that leans so far is set upright before it is carried elsewhere."""
+
+GIVES_UP_S: Final = 330.0
+STUCK_LOOKS: Final = 25
+
+
+@dataclass
+class Drive:
+    """What became of a try.
+
+    Attributes:
+        success: whether the page said that all is done.
+        seconds: from the first press until the page said how it ended.
+        presses: in this time.
+        stops: how often the arm stopped by itself.
+        first_step_s: until the first step was ticked off; None if never.
+        steps: how many were.
+        said: what the page said at the end, or why the person gave up.
+        reasons: why the arm stopped, as the page said it.
+        pushes: how often the arm was pushed.
+    """
+
+    success: bool = False
+    seconds: float = 0.0
+    presses: int = 0
+    stops: int = 0
+    first_step_s: float | None = None
+    steps: int = 0
+    said: str = ""
+    reasons: list[str] = field(default_factory=list)
+    pushes: int = 0
+
+    def as_json(self) -> dict[str, Any]:
+        """For a file."""
+        found = asdict(self)
+        found["seconds"] = round(self.seconds, 1)
+        if self.first_step_s is not None:
+            found["first_step_s"] = round(self.first_step_s, 1)
+        return found
+
+
+class Person:
+    """Drives with one hand.
+
+    Args:
+        hand: what they press with.
+    """
+
+    def __init__(self, hand: Hand) -> None:
+        self.hand = hand
+        self._rate = dict(FIRST_GUESS)
+        self._more_s: dict[Unit, float] = {"cm": 0.02, "°": 0.02}
+
+    def drive(self) -> Drive:
+        """Do the task that the page shows, from its start on."""
+        drive = Drive()
+        began_s, before = time.monotonic(), self.hand.presses
+        was_enabled, quiet = False, 0
+        while time.monotonic() - began_s < GIVES_UP_S:
+            seen = look(self.hand.page)
+            _log.info("%s", _brief(seen))
+            drive.steps = seen.done
+            if drive.first_step_s is None and (seen.done or seen.outcome == "success"):
+                drive.first_step_s = time.monotonic() - began_s
+            if seen.outcome is not None:
+                drive.success, drive.said = seen.outcome == "success", seen.said
+                break
+            if not seen.enabled:
+                if was_enabled:
+                    drive.stops += 1
+                    drive.reasons.append(seen.status)
+                    time.sleep(READS_S)
+                was_enabled = self._enable()
+                continue
+            was_enabled = True
+            acted = self._act(seen, drive)
+            quiet = 0 if acted else quiet + 1
+            if quiet > STUCK_LOOKS:
+                drive.said = "gave up: nothing is left to drive"
+                break
+            time.sleep(READS_S)
+        else:
+            drive.said = f"gave up after {GIVES_UP_S:.0f} s"
+        drive.seconds, drive.presses = time.monotonic() - began_s, self.hand.presses - before
+        return drive
+
+    def _enable(self) -> bool:
+        self.hand.enable()
+        for _ in range(20):
+            if look(self.hand.page).enabled:
+                return True
+            time.sleep(0.05)
+        return False
+
+    def _act(self, seen: Look, drive: Drive) -> bool:
+        """Do one thing; whether there was anything to do."""
+        if "gripper now" in seen.step:
+            self._grip("Close" in seen.step, seen)
+            return True
+        if seen.gripper.startswith("Closed") and "go to" in seen.step.lower():
+            self._grip(False, seen)
+            return True
+        wanted = _next(seen)
+        if wanted is None:
+            return False
+        if wanted.pair != seen.pair:
+            self._choose(wanted.pair, seen.pair)
+            return True
+        drive.pushes += 1
+        self._push(wanted, seen)
+        return True
+
+    def _choose(self, pair: int, now: int) -> None:
+        self.hand.choose(pair, now)
+        for _ in range(12):
+            if look(self.hand.page).pair == pair:
+                return
+            time.sleep(0.05)
+
+    def _grip(self, close: bool, seen: Look) -> None:
+        self.hand.grip(close)
+        for _ in range(15):
+            time.sleep(0.2)
+            now = look(self.hand.page)
+            if now.gripper.startswith("Holding") == close and "gripper now" not in now.step:
+                return
+            if not now.enabled:
+                return
+
+    def _push(self, wanted: Left, seen: Look) -> None:
+        unit, far = wanted.unit, wanted.amount
+        if unit == "cm" and far > LONG_CM:
+            far *= SHARE
+        if unit == "°":
+            far = min(far, TURN_AT_ONCE)
+            if "pour" in seen.step.lower():
+                far = min(far, max(POUR_AT_LEAST, far / 2))
+        speed = self._rate[unit]
+        hold_s = max(far / speed - self._more_s[unit], SHORTEST_S)
+        _log.info("push %s %.2f s for %.1f %s", wanted.direction, hold_s, far, unit)
+        self.hand.push(wanted.direction, hold_s)
+        time.sleep(READS_S)
+        now = look(self.hand.page)
+        after = [one for one in now.left if (one.pair, one.unit) == (wanted.pair, unit)]
+        rest = sum(
+            one.amount * {wanted.direction: 1.0, _OTHER[wanted.direction]: -1.0}.get(one.direction, 0.0)
+            for one in after
+        )
+        gone = wanted.amount - rest
+        self._learn(unit, hold_s, gone, far)
+
+    def _learn(self, unit: Unit, hold_s: float, gone: float, meant: float) -> None:
+        """How much longer the arm moves than it is pushed."""
+        if not 0.3 * meant < gone < 2.5 * meant + 2.0 or hold_s <= SHORTEST_S:
+            return
+        error_s = gone / self._rate[unit] - hold_s
+        self._more_s[unit] = min(max(0.7 * self._more_s[unit] + 0.3 * error_s, -0.05), 0.25)
+
+
+_OTHER: Final = {"Up": "Down", "Down": "Up", "Left": "Right", "Right": "Left"}
+
+
+def _brief(seen: Look) -> str:
+    left = ", ".join(f"{one.pair} {one.direction} {one.amount:g}{one.unit}" for one in seen.left)
+    return f"{seen.enabled} | {seen.step} | {seen.pair} | {left} | {seen.gripper} | {seen.said}"
+
+
+def _next(seen: Look) -> Left | None:
+    """What to drive next: up first, then across, then turns, and down last; what is held is turned first."""
+    tipped = [one for one in seen.left if one.unit == "°" and one.amount >= TIPPED]
+    if tipped and seen.gripper.startswith("Holding") and "go over" in seen.step.lower():
+        return min(tipped, key=lambda one: (one.pair != seen.pair, -one.amount))
+    for level in LEVELS:
+        wanted = [one for one in seen.left if one.amount >= level[one.unit]]
+        if not wanted:
+            continue
+        first = min(wanted, key=lambda one: (_order(one), one.pair != seen.pair, -one.amount))
+        if _order(first) == _DOWN:
+            # Down only from right over it.
+            aside = [
+                one
+                for one in seen.left
+                if _order(one) < _DOWN and one.unit == "cm" and one.amount >= LEVELS[1]["cm"]
+            ]
+            return max(aside, key=lambda one: one.amount) if aside else first
+        return first
+    return None
+
+
+_DOWN: Final = 3
+
+
+def _order(one: Left) -> int:
+    if one.unit == "°":
+        return 2
+    if one.pair == 0:
+        return 1
+    return 0 if one.direction == "Up" else _DOWN
