@@ -34,7 +34,7 @@ import { attachModes } from "./modes.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
 import { attachTask } from "./task_panel.js";
-import { attachToGo, moved } from "./to_go.js";
+import { attachToGo, movedPart } from "./to_go.js";
 import { wantedThing } from "./task_words.js";
 import { whereWords } from "./where_words.js";
 import { attachWayBack } from "./way_back.js";
@@ -153,7 +153,7 @@ function show() {
   wordsAt = performance.now();
   const pair = state.mode === "end_effector" ? welcome.end_effector_modes[state.axes] : null;
   const turns = (/** @type {Direction} */ direction) =>
-    pair !== null && moved(pair, shaped(...DIRECTIONS[direction])).part.of === "turn_rad";
+    pair !== null && movedPart(pair, shaped(...DIRECTIONS[direction])).part.of === "turn_rad";
   predictions.show(paths, pressed, (motion, direction) =>
     turns(direction) ? say("motion.turns") : motionWords(motion, settings.values.seat));
   setText(byId("scene-text"), whereWords(welcome, state, wanted));

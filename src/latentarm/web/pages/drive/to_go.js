@@ -34,7 +34,7 @@ export function degreesToGo({ turn_rad }) {
  * @param {string} pair
  * @param {number[]} sent what is sent for it
  */
-export function moved(pair, sent) {
+export function movedPart(pair, sent) {
   const axis = Math.abs(sent[1] ?? 0) > Math.abs(sent[0]) ? 1 : 0;
   return { part: PAIRS[pair][axis], way: Math.sign(sent[axis]) };
 }
@@ -49,7 +49,7 @@ export function moved(pair, sent) {
  */
 export function leftToGo(toGo, pair, shaped) {
   return DIRECTION_NAMES.flatMap((direction) => {
-    const { part, way } = moved(pair, shaped(...DIRECTIONS[direction]));
+    const { part, way } = movedPart(pair, shaped(...DIRECTIONS[direction]));
     const far = way * toGo[part.of][part.axis];
     if (far < LEAST[part.of]) return [];
     const name = say(`directions.${direction}`);

@@ -78,5 +78,5 @@ export function attachWholePage(settings, stop) {
   scanner.addEventListener("change", light);
   setInterval(light, LIGHT_MS);
   light();
-  attachGamepad(input, settings, { enable: () => {}, stop, gripper: () => {}, press: (number, down) => scanner.press(number, down) });
+  attachGamepad(input, settings, { enable: () => {}, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) });
 }
