@@ -124,7 +124,7 @@ def serve(spec: Spec, sender: Any) -> None:
     listening = listen(config)
     port = int(listening.getsockname()[1])
     control = ControlProcess(spec)
-    app = gated(build_app(load_setup(spec), control), control, config, port, None, lambda: "")
+    app = gated(build_app(load_setup(spec), control, config), control, config, port, None, lambda: "")
     server = uvicorn.Server(server_config(app, config))
 
     def block() -> None:

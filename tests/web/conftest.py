@@ -321,16 +321,13 @@ class Site:
 
 
 @contextmanager
-def served(spec: Spec) -> Iterator[Site]:
-    config = TeleopConfig(spec, port=0)
+def served(spec: Spec, *, pins: bool = False) -> Iterator[Site]:
+    config = TeleopConfig(spec, port=0, pins=pins)
     listening = listen(config)
     port = int(listening.getsockname()[1])
     control = ControlProcess(spec)
-    server = uvicorn.Server(
-        server_config(
-            gated(build_app(load_setup(spec), control), control, config, port, None, lambda: ""), config
-        )
-    )
+    app = build_app(load_setup(spec), control, config)
+    server = uvicorn.Server(server_config(gated(app, control, config, port, None, lambda: ""), config))
     loops: list[asyncio.AbstractEventLoop] = []
 
     async def run() -> None:
@@ -350,7 +347,7 @@ def served(spec: Spec) -> Iterator[Site]:
 
 
 @pytest.fixture(scope="session")
-def serve() -> Callable[[Spec], AbstractContextManager[Site]]:
+def serve() -> Callable[..., AbstractContextManager[Site]]:
     """A server of its own for a test that changes what is driven."""
     return served
 

@@ -40,6 +40,7 @@ def teleop(
     keep_free_gb: Annotated[
         float, arg(metavar="GB", help="End the recording when less than this is free on the disk.")
     ] = 0.5,
+    pin: Annotated[bool, arg(help="People may protect their records by a PIN.")] = False,
     json: Json = False,
 ) -> int:
     """Drive a simulated arm from a web page: stick, buttons, keyboard, gamepad or switches.
@@ -57,6 +58,6 @@ def teleop(
             print(json_format.dumps({"address": address}), flush=True)
 
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
-    config = TeleopConfig(Spec(run, profile, seed, out, room, arm, task), host, port, certfile, keyfile)
+    config = TeleopConfig(Spec(run, profile, seed, out, room, arm, task), host, port, certfile, keyfile, pin)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

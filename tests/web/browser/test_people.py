@@ -13,7 +13,7 @@ def place(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def served(start_server, place):
-    with start_server(place, "--task", "entree") as address:
+    with start_server(place, "--task", "entree", "--pin") as address:
         yield address
 
 
@@ -76,3 +76,38 @@ def test_a_person_is_exported_deleted_and_brought_back(page, place, tmp_path):
     expect(page.get_by_role("button", name="Choose Guest")).to_have_attribute("aria-pressed", "true")
     page.locator("#import-file").set_input_files(tmp_path / "grete.zip")
     page.get_by_role("button", name="Choose Grete").wait_for()
+
+
+def test_a_record_with_a_pin_opens_by_keys_or_by_the_digits_on_the_screen(page, chromium, served):
+    page.locator("#add input").fill("Mina")
+    page.get_by_role("button", name="Add a person").click()
+    page.get_by_role("button", name="Set a PIN for Mina").click()
+    dialog = page.locator("#pin")
+    expect(dialog).to_contain_text("New PIN for Mina")
+    page.keyboard.type("2718")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Remove the PIN of Mina").wait_for()
+    expect(page.get_by_role("button", name="Choose Mina")).to_have_attribute("aria-pressed", "true")
+
+    context = chromium.new_context()
+    other = context.new_page()
+    other.goto(served)
+    settings(other).get_by_label("Who drives").select_option("Mina")
+    dialog = other.locator("#pin")
+    expect(dialog).to_contain_text("PIN of Mina")
+    expect(other).to_have_url(f"{served}/people#{other.url[-16:]}")
+    other.keyboard.type("0000")
+    other.keyboard.press("Enter")
+    expect(dialog).to_contain_text("This PIN is wrong.")
+    for digit in "2718":
+        dialog.get_by_role("button", name=digit, exact=True).click()
+    dialog.get_by_role("button", name="Done").click()
+    expect(other.get_by_role("button", name="Choose Mina")).to_have_attribute("aria-pressed", "true")
+    with other.expect_download():
+        other.get_by_role("link", name="Export everything of Mina").click()
+    # Whoever drives next has not given it.
+    other.get_by_role("button", name="Choose Guest").click()
+    expect(other.get_by_role("button", name="Choose Guest")).to_have_attribute("aria-pressed", "true")
+    other.get_by_role("button", name="Delete Mina").click()
+    expect(dialog).to_contain_text("PIN of Mina")
+    context.close()

@@ -12,6 +12,7 @@ from latentarm.errors import UserError
 from latentarm.untrusted.names import MOST_CHARACTERS, clean_name, same_name
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
 from latentarm.web.records.documents import ID, new_id, now, read_record, unreadable, write_record
+from latentarm.web.records.pin import PinHash, hash_of
 
 VERSION: Final = 1
 MOST_PEOPLE: Final = 500
@@ -50,6 +51,7 @@ class PersonRecord(Message):
         added: when, ISO 8601 in UTC.
         settings: as the page keeps them.
         profiles: what was learned of them.
+        pin: opens the record; None for none.
     """
 
     version: Literal[1] = VERSION
@@ -58,6 +60,7 @@ class PersonRecord(Message):
     added: Annotated[str, Field(max_length=40)]
     settings: Settings = Field(default_factory=dict)
     profiles: Annotated[tuple[KeptProfile, ...], Field(max_length=1000)] = ()
+    pin: PinHash | None = None
 
 
 @final
@@ -131,7 +134,7 @@ class People:
                 brought.name,
                 *(f"{brought.name[:34]} ({number})" for number in range(2, MOST_PEOPLE + 2)),
             ]
-            person = brought.model_copy(update={"id": new_id(), "name": self._first_free(names)})
+            person = brought.model_copy(update={"id": new_id(), "name": self._first_free(names), "pin": None})
             staging = self._folder / f"{_STAGING}{person.id}"
             try:
                 write_record(person, staging / PERSON_NAME)
@@ -162,6 +165,16 @@ class People:
         """
         with self._lock:
             return self._keep(self._known(person).model_copy(update={"settings": settings}))
+
+    def keep_pin(self, person: str, pin: str | None) -> PersonRecord:
+        """Give a person's record a PIN, or none.
+
+        Raises:
+            UserError: there is no such person, or the record cannot be written.
+        """
+        kept = None if pin is None else hash_of(pin)
+        with self._lock:
+            return self._keep(self._known(person).model_copy(update={"pin": kept}))
 
     def add_profile(self, person: str, run: str, name: str) -> PersonRecord:
         """Note that a profile is theirs.

@@ -172,7 +172,7 @@ class Records:
 
     def _everything(self, person: PersonRecord) -> Iterator[tuple[str, bytes]]:
         profiles = self._profiles(person)
-        kept = person.model_copy(update={"profiles": tuple(profiles)})
+        kept = person.model_copy(update={"profiles": tuple(profiles), "pin": None})
         yield PERSON_NAME, kept.model_dump_json(indent=1).encode()
         scenes: set[str] = set()
         for drive in self.drives.wanted(Wanted(person=person.id)):

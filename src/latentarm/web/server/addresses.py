@@ -27,6 +27,7 @@ class TeleopConfig:
         port: 0 takes any free one.
         certfile: for TLS, PEM.
         keyfile: its private key, PEM.
+        pins: whether people may protect their records by a PIN.
 
     Raises:
         UserError: the address cannot be one that people open, or only one file for TLS is named.
@@ -37,6 +38,7 @@ class TeleopConfig:
     port: int = 8460
     certfile: Path | None = None
     keyfile: Path | None = None
+    pins: bool = False
 
     def __post_init__(self) -> None:
         if not 0 <= self.port <= 65535:

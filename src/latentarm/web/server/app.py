@@ -36,6 +36,7 @@ from latentarm.web.server.learning import Learning
 from latentarm.web.server.loaded_run import LoadedRun, RunList
 from latentarm.web.server.logs import LOGGING
 from latentarm.web.server.pages import PAGES, Pages
+from latentarm.web.server.pins import Pins
 from latentarm.web.server.record_routes import IMPORT, RecordRoutes
 from latentarm.web.server.security import DRIVE, Gate, Keys
 from latentarm.web.server.sessions import Sessions
@@ -77,7 +78,7 @@ def serve(
     before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     control = ControlProcess(config.spec)
     try:
-        app = build_app(setup, control)
+        app = build_app(setup, control, config)
         gate = gated(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
         )
@@ -106,12 +107,13 @@ def serve(
         say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
 
 
-def build_app(setup: DriveSetup, control: ControlProcess) -> FastAPI:
+def build_app(setup: DriveSetup, control: ControlProcess, config: TeleopConfig) -> FastAPI:
     """The application: the pages and what they load, the scene, and the socket that drives.
 
     Args:
         setup: what is driven.
         control: drives it.
+        config: says whether people may have PINs.
     """
     sessions = Sessions()
     spec = setup.spec
@@ -120,7 +122,8 @@ def build_app(setup: DriveSetup, control: ControlProcess) -> FastAPI:
     records = Records(spec.out, run_list.runs, states.journal)
     learning = Learning(control, states, run_list, spec.out)
     history = History(states, sessions, records)
-    drive = DriveSocket(control, states, sessions, learning, records.people, history)
+    pins = Pins(records.people, wanted=config.pins)
+    drive = DriveSocket(control, states, sessions, learning, records.people, pins, history)
 
     def driven_with(person: PersonRecord) -> bool:
         report = states.report
@@ -165,7 +168,7 @@ def build_app(setup: DriveSetup, control: ControlProcess) -> FastAPI:
     app.add_api_websocket_route(DRIVE, drive)
     app.add_route("/scene.json", describe)
     app.add_route("/mesh/{number}", mesh)
-    RecordRoutes(records, history, busy, let_go).add_to(app)
+    RecordRoutes(records, history, busy, let_go, pins).add_to(app)
     for page in PAGES:
         app.add_route(page.path, pages.answer)
     app.add_route("/static/{version}/{name:path}", assets.answer)

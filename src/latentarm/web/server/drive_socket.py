@@ -49,6 +49,7 @@ from latentarm.web.records.people import People
 from latentarm.web.server.frames import TOO_MANY
 from latentarm.web.server.history import History
 from latentarm.web.server.learning import Learning
+from latentarm.web.server.pins import Pins
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
 from latentarm.web.server.sessions import MOST, Page, Sessions
 from latentarm.web.server.states import PageMemory, States
@@ -97,6 +98,7 @@ class DriveSocket:
         sessions: who is there.
         learning: what is recorded, trained and chosen.
         people: whose records there are.
+        pins: says whose records a visitor may open.
         history: logs what is driven.
     """
 
@@ -107,6 +109,7 @@ class DriveSocket:
         sessions: Sessions,
         learning: Learning,
         people: People,
+        pins: Pins,
         history: History,
     ) -> None:
         self._control = control
@@ -114,6 +117,7 @@ class DriveSocket:
         self._sessions = sessions
         self._learning = learning
         self._people = people
+        self._pins = pins
         self._history = history
         self._open = 0
         self._asked: AskedGripper | None = None
@@ -143,7 +147,7 @@ class DriveSocket:
         try:
             async with asyncio.timeout(HELLO_WITHIN_S):
                 hello = await _receive(socket)
-            if not isinstance(hello, Hello) or (page := self._join(hello)) is None:
+            if not isinstance(hello, Hello) or (page := self._join(hello, socket)) is None:
                 raise _ViolationError
             sender = asyncio.create_task(self._send_states(socket, page))
             while True:
@@ -166,10 +170,14 @@ class DriveSocket:
             if page is not None:
                 self._leave(page)
 
-    def _join(self, hello: Hello) -> Page | None:
+    def _join(self, hello: Hello, socket: WebSocket) -> Page | None:
         """The page of a person with a record, or of a guest; None if there are too many pages."""
         known = self._people.find(hello.person)
-        return self._sessions.join(hello.name) if known is None else self._sessions.join(known.name, known.id)
+        if known is None:
+            return self._sessions.join(hello.name)
+        # Whoever has not given the PIN drives as a guest.
+        opened = self._pins.opened(known, socket.cookies)
+        return self._sessions.join(known.name, known.id) if opened else self._sessions.join(None)
 
     def _leave(self, page: Page) -> None:
         if self._sessions.copilot.leaves(page.id):

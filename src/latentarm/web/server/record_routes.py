@@ -24,13 +24,22 @@ from latentarm.web.protocol.notice import Message, Notice, NoticeError, notice_o
 from latentarm.web.records.drive_record import DriveRecord
 from latentarm.web.records.drives import Wanted
 from latentarm.web.records.people import PersonRecord, Settings
+from latentarm.web.records.pin import PIN
 from latentarm.web.records.records import Records
 from latentarm.web.server.history import History
+from latentarm.web.server.pins import OPEN_S, Pins, cookie_of
 
 IMPORT: Final = "/records/import"
 """Takes longer bodies than all else: see `latentarm.web.records.exchange.IMPORT_LIMIT`."""
 
 _NO_STORE: Final = {"cache-control": "no-store"}
+_STATUS: Final = {
+    "person_unknown": 404,
+    "record_unknown": 404,
+    "pin_needed": 403,
+    "pin_wait": 429,
+    "pin_wrong": 403,
+}
 _COLUMNS: Final = (
     "started",
     "person",
@@ -73,6 +82,11 @@ class _Titled(Message):
     title: Annotated[str, Field(max_length=80)]
 
 
+@final
+class _Pinned(Message):
+    pin: Annotated[str, Field(pattern=PIN)] | None
+
+
 _SETTINGS: Final[TypeAdapter[dict[str, bool | float | str]]] = TypeAdapter(Settings)
 
 
@@ -85,6 +99,7 @@ class RecordRoutes:
         history: logs the drive under way.
         busy: whether the arm is enabled for a person, or with a profile of theirs.
         let_go: makes the arm drive without the profiles of a person who is about to be deleted.
+        pins: says whose records a visitor may open.
     """
 
     def __init__(
@@ -93,11 +108,13 @@ class RecordRoutes:
         history: History,
         busy: Callable[[PersonRecord], bool],
         let_go: Callable[[PersonRecord], None],
+        pins: Pins,
     ) -> None:
         self._records = records
         self._history = history
         self._busy = busy
         self._let_go = let_go
+        self._pins = pins
 
     def add_to(self, app: FastAPI) -> None:
         """Serve everything here."""
@@ -105,6 +122,9 @@ class RecordRoutes:
             ("/records/people", {"GET": self._people, "POST": self._add}),
             ("/records/people/{person}", {"GET": self._person, "PUT": self._rename, "DELETE": self._erase}),
             ("/records/people/{person}/settings", {"PUT": self._keep_settings}),
+            ("/records/people/{person}/pin", {"PUT": self._keep_pin}),
+            ("/records/people/{person}/unlock", {"POST": self._unlock}),
+            ("/records/people/{person}/lock", {"POST": self._lock}),
             ("/records/people/{person}/export", {"GET": self._export}),
             (IMPORT, {"POST": self._import}),
             ("/records/drives", {"GET": self._drives}),
@@ -134,10 +154,12 @@ class RecordRoutes:
                         "id": person.id,
                         "name": person.name,
                         "added": person.added,
+                        "pin": self._pins.asked(person),
                         **_history_of(person, drives),
                     }
                     for person in self._records.people.all()
                 ],
+                "pins": self._pins.wanted,
                 "problems": [problem.model_dump() for problem in self._records.people.problems],
             }
         )
@@ -152,6 +174,17 @@ class RecordRoutes:
         return _json({**_shown(person), "settings": person.settings, **contents.model_dump()})
 
     def _found(self, request: Request) -> PersonRecord:
+        """The person whom a request names, and whose record the visitor may open.
+
+        Raises:
+            NoticeError: nobody has this id, or their PIN must be given first.
+        """
+        person = self._named(request)
+        if not self._pins.opened(person, request.cookies):
+            raise NoticeError("pin_needed", name=person.name)
+        return person
+
+    def _named(self, request: Request) -> PersonRecord:
         """The person whom a request names.
 
         Raises:
@@ -162,17 +195,31 @@ class RecordRoutes:
             raise NoticeError("person_unknown")
         return person
 
+    async def _unlock(self, request: Request) -> Response:
+        given, person = await _body(request, _Pinned), self._named(request)
+        key = await asyncio.to_thread(self._pins.unlock, person, given.pin or "")
+        return _with_key(request, person.id, key)
+
+    async def _lock(self, request: Request) -> Response:
+        self._pins.lock(self._named(request).id, request.cookies)
+        return Response(status_code=204, headers=_NO_STORE)
+
+    async def _keep_pin(self, request: Request) -> Response:
+        person, given = self._found(request), await _body(request, _Pinned)
+        key = await asyncio.to_thread(self._pins.change, person.id, given.pin)
+        return _with_key(request, person.id, key)
+
     async def _rename(self, request: Request) -> Response:
-        named = await _body(request, _Named)
-        person = request.path_params["person"]
-        return _json(_shown(await asyncio.to_thread(self._records.people.rename, person, named.name)))
+        named, person = await _body(request, _Named), self._found(request)
+        return _json(_shown(await asyncio.to_thread(self._records.people.rename, person.id, named.name)))
 
     async def _keep_settings(self, request: Request) -> Response:
         try:
             settings = _SETTINGS.validate_json(json.dumps(_object(await request.body())))
         except ValidationError as error:
             raise NoticeError("request_invalid") from error
-        await asyncio.to_thread(self._records.people.keep_settings, request.path_params["person"], settings)
+        person = self._found(request)
+        await asyncio.to_thread(self._records.people.keep_settings, person.id, settings)
         return Response(status_code=204, headers=_NO_STORE)
 
     async def _erase(self, request: Request) -> Response:
@@ -188,7 +235,7 @@ class RecordRoutes:
 
     async def _export(self, request: Request) -> Response:
         await self._history.settled()
-        path = await asyncio.to_thread(self._records.export, request.path_params["person"])
+        path = await asyncio.to_thread(self._records.export, self._found(request).id)
         # A neutral name: a file's name is seen by more people than what is in it.
         return FileResponse(
             path,
@@ -284,8 +331,7 @@ def _guarded(answer: Answer) -> Answer:
             return await answer(request)
         except UserError as error:
             notice = notice_of(error)
-            status = 404 if notice.code in ("person_unknown", "record_unknown") else 400
-            return _refusal(notice, status)
+            return _refusal(notice, _STATUS.get(notice.code, 400))
 
     return guarded
 
@@ -296,6 +342,16 @@ def _refusal(notice: Notice, status: int) -> Response:
 
 def _json(content: object, status: int = 200) -> Response:
     return JSONResponse(content, status, headers=_NO_STORE)
+
+
+def _with_key(request: Request, person: str, key: str) -> Response:
+    """An answer that opens a person's record for this browser."""
+    answer = Response(status_code=204, headers=_NO_STORE)
+    secure = request.url.scheme == "https"
+    answer.set_cookie(
+        cookie_of(person), key, max_age=round(OPEN_S), secure=secure, httponly=True, samesite="strict"
+    )
+    return answer
 
 
 def _object(body: bytes) -> dict[str, object]:

@@ -5,8 +5,9 @@ import { byId, create, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice } from "../layout/words.js";
 import { ask, sayTime } from "../records/ask.js";
+import { attachPinDialog } from "./pin_dialog.js";
 
-/** @typedef {{id: string, name: string, drives: number, last: string | null}} Person */
+/** @typedef {{id: string, name: string, pin: boolean, drives: number, last: string | null}} Person */
 
 const { settings, stop } = attachPage();
 attachWholePage(settings, stop);
@@ -17,8 +18,14 @@ const newName = /** @type {HTMLInputElement} */ (renaming.querySelector("input")
 const erasing = byId("erase", HTMLDialogElement);
 const file = byId("import-file", HTMLInputElement);
 
+const pin = attachPinDialog(settings);
+
 /** The person whom the open dialog is about. @type {Person | null} */
 let about = null;
+/** Whether the host wants PINs. */
+let pins = false;
+/** The person whom another page led here to choose, until they were looked for. */
+let asked = location.hash.slice(1);
 
 /** Do it, and say what went wrong where the person looks. @param {() => Promise<void>} act @param {string} [where] */
 async function attempt(act, where = "problem") {
@@ -38,10 +45,15 @@ function choose(person) {
 }
 
 async function refresh() {
-  const { people, problems } = await ask("GET", "/records/people");
+  const found = await ask("GET", "/records/people");
+  const { people, problems } = found;
+  pins = found.pins;
   const row = document.activeElement?.closest("li")?.dataset.person;
   byId("people").replaceChildren(rowOf(null), ...people.map(rowOf));
   if (row !== undefined) /** @type {HTMLElement | null} */ (byId("people").querySelector(`[data-person="${row}"] button`))?.focus();
+  const wanted = /** @type {Person[]} */ (people).find(({ id }) => id === asked);
+  asked = "";
+  if (wanted) pin.opened(wanted, () => choose(wanted));
   if (problems.length) {
     setText(byId("problem"), problems.map(sayNotice).join(" "));
     byId("problem").hidden = false;
@@ -57,19 +69,53 @@ function rowOf(person) {
   const name = create("span", { className: "person-name" });
   name.append(create("bdi", { textContent: person?.name ?? say("settings.guest") }), create("small", { textContent: person ? driven(person) : say("people.guest_help") }));
   const tools = create("div", { className: "row" });
-  tools.append(button("people.choose", person, () => choose(person), { pressed: here }));
+  tools.append(button("people.choose", person, () => pin.opened(person, () => choose(person)), { pressed: here }));
   if (person) {
     tools.append(
-      button("people.rename", person, () => openRename(person)),
-      create("a", {
-        className: "button", href: `/records/people/${person.id}/export`, download: "latentarm-person.zip",
-        textContent: say("people.export"), ariaLabel: say("people.export_of", { name: person.name }),
-      }),
-      button("people.erase", person, () => openErase(person)),
+      button("people.rename", person, () => pin.opened(person, () => openRename(person))),
+      exportLink(person),
+      button("people.erase", person, () => pin.opened(person, () => openErase(person))),
     );
+    if (pins) tools.append(person.pin ? button("people.pin_remove", person, () => removePin(person)) : button("people.pin_set", person, () => setPin(person)));
   }
   row.append(name, tools);
   return row;
+}
+
+/** @param {Person} person */
+function exportLink(person) {
+  const link = create("a", {
+    className: "button", href: `/records/people/${person.id}/export`, download: "latentarm-person.zip",
+    textContent: say("people.export"), ariaLabel: say("people.export_of", { name: person.name }),
+  });
+  let opened = !person.pin;
+  link.addEventListener("click", (event) => {
+    if (opened) return;
+    event.preventDefault();
+    pin.opened(person, () => {
+      opened = true;
+      link.click();
+      opened = false;
+    });
+  });
+  return link;
+}
+
+/** @param {Person} person */
+function setPin(person) {
+  pin.choose(person, () => {
+    setText(byId("told"), say("pin.kept", { name: person.name }));
+    attempt(refresh);
+  });
+}
+
+/** @param {Person} person */
+function removePin(person) {
+  pin.opened(person, () => attempt(async () => {
+    await ask("PUT", `/records/people/${person.id}/pin`, { pin: null });
+    setText(byId("told"), say("pin.removed", { name: person.name }));
+    await refresh();
+  }));
 }
 
 /** @param {Person} person */
@@ -78,7 +124,7 @@ function driven({ drives, last }) {
 }
 
 /**
- * @param {"people.choose" | "people.rename" | "people.erase"} word
+ * @param {"people.choose" | "people.rename" | "people.erase" | "people.pin_set" | "people.pin_remove"} word
  * @param {Person | null} person
  * @param {() => void} act
  * @param {{pressed?: boolean}} [state]

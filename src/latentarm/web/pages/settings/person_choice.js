@@ -8,15 +8,19 @@ import { ask } from "../records/ask.js";
 
 /** @param {HTMLSelectElement} select @param {Settings} settings */
 export function attachPersonChoice(select, settings) {
-  /** @param {{id: string, name: string}[]} people */
+  /** Those who have a PIN, which the People page asks for. @type {Set<string>} */
+  let pinned = new Set();
+  /** @param {{id: string, name: string, pin?: boolean}[]} people */
   const fill = (people) => {
+    pinned = new Set(people.filter(({ pin }) => pin).map(({ id }) => id));
     const guest = create("option", { value: "", textContent: say("settings.guest") });
     select.replaceChildren(guest, ...people.map(({ id, name }) => create("option", { value: id, textContent: name })));
     select.value = settings.person?.id ?? "";
   };
   select.addEventListener("change", () => {
     const [chosen] = select.selectedOptions;
-    settings.become(chosen.value ? { id: chosen.value, name: chosen.text } : null);
+    if (pinned.has(chosen.value)) location.assign(`/people#${chosen.value}`);
+    else settings.become(chosen.value ? { id: chosen.value, name: chosen.text } : null);
   });
   return {
     /** Show who there is now. */

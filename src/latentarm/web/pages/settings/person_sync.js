@@ -27,12 +27,20 @@ export function attachPersonSync(settings) {
     clearTimeout(timer);
     timer = setTimeout(send, WAIT_MS);
   };
+  /** Whose record this browser may have opened by a PIN. */
+  let before = settings.person?.id;
+  const lock = () => {
+    if (before && before !== settings.person?.id) fetch(`/records/people/${before}/lock`, { method: "POST", keepalive: true }).catch(() => {});
+    before = settings.person?.id;
+  };
   const look = async () => {
     const { person } = settings;
     if (!person) return;
     const answer = await fetch(`/records/people/${person.id}`, { cache: "no-store" }).catch(() => null);
     if (settings.person?.id !== person.id || waiting) return;
     if (answer?.status === 404) settings.forget(person);
+    // Their PIN must be given first, on the People page.
+    if (answer?.status === 403) settings.become(null);
     if (!answer?.ok) return;
     const known = await answer.json();
     settings.rename(known.name);
@@ -43,6 +51,7 @@ export function attachPersonSync(settings) {
   settings.addEventListener("edited", edited);
   settings.addEventListener("person", () => {
     send();
+    lock();
     look();
   });
   window.addEventListener("pagehide", send);

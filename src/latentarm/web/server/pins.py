@@ -1,0 +1,123 @@
+"""Whose records a visitor may open: those without a PIN, and those whose PIN they have given."""
+
+import secrets
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final, final
+
+from latentarm.web.protocol.notice import NoticeError
+from latentarm.web.records.people import People, PersonRecord
+from latentarm.web.records.pin import fits
+
+TRIES: Final = 5
+"""So many wrong PINs are allowed for a person before one has to wait."""
+
+WAIT_S: Final = 60.0
+"""How long each further try has to wait, s: all PINs of four digits would take a week."""
+
+OPEN_S: Final = 8 * 3600.0
+"""How long a record stays open, s."""
+
+_COOKIE: Final = "latentarm_pin_"
+_MOST_KEYS: Final = 1000
+
+
+@dataclass
+class _Tries:
+    count: int = 0
+    not_before_s: float = 0.0
+
+
+@final
+class Pins:
+    """Keeps which browsers have given which PIN; only until the server ends.
+
+    Args:
+        people: whose records there are.
+        wanted: whether the host wants PINs; else nobody is asked, which is the way out for a forgotten one.
+        now_s: the time, s; monotonic.
+    """
+
+    def __init__(self, people: People, *, wanted: bool, now_s: Callable[[], float] = time.monotonic) -> None:
+        self.wanted = wanted
+        self._people = people
+        self._now_s = now_s
+        self._lock = threading.Lock()
+        self._tries: dict[str, _Tries] = {}
+        self._keys: dict[str, tuple[str, float]] = {}
+
+    def asked(self, person: PersonRecord) -> bool:
+        """Whether this record has a PIN that counts."""
+        return self.wanted and person.pin is not None
+
+    def opened(self, person: PersonRecord, cookies: Mapping[str, str]) -> bool:
+        """Whether a visitor with these cookies may open a record."""
+        if not self.asked(person):
+            return True
+        of, until_s = self._keys.get(cookies.get(cookie_of(person.id), ""), ("", 0.0))
+        return of == person.id and self._now_s() < until_s
+
+    def unlock(self, person: PersonRecord, pin: str) -> str:
+        """Open a record. Waits for the hash, some 50 ms.
+
+        Args:
+            person: whose.
+            pin: as it was given.
+
+        Returns:
+            The value of the cookie `cookie_of`.
+
+        Raises:
+            NoticeError: the PIN is wrong, or there were too many wrong ones.
+        """
+        with self._lock:
+            # Counted before it is looked at: tries at the same time count too.
+            tries = self._tries.setdefault(person.id, _Tries())
+            left_s = tries.not_before_s - self._now_s()
+            if left_s > 0.0:
+                raise NoticeError("pin_wait", seconds=round(left_s + 0.5))
+            tries.count += 1
+            if tries.count >= TRIES:
+                tries.not_before_s = self._now_s() + WAIT_S
+        if person.pin is None or not fits(pin, person.pin):
+            raise NoticeError("pin_wrong")
+        with self._lock:
+            self._tries.pop(person.id, None)
+        return self._key(person.id)
+
+    def lock(self, person: str, cookies: Mapping[str, str]) -> None:
+        """Close a record for a visitor."""
+        self._keys.pop(cookies.get(cookie_of(person), ""), None)
+
+    def change(self, person: str, pin: str | None) -> str:
+        """Give a record a PIN, or none; it is closed for everybody else.
+
+        Returns:
+            The value of the cookie `cookie_of` for who changes it.
+
+        Raises:
+            NoticeError: the host wants no PINs.
+            UserError: there is no such person, or the record cannot be written.
+        """
+        if not self.wanted:
+            raise NoticeError("request_invalid")
+        self._people.keep_pin(person, pin)
+        with self._lock:
+            self._keys = {key: kept for key, kept in self._keys.items() if kept[0] != person}
+        return self._key(person)
+
+    def _key(self, person: str) -> str:
+        key = secrets.token_urlsafe(16)
+        with self._lock:
+            now_s = self._now_s()
+            kept = {one: value for one, value in self._keys.items() if value[1] > now_s}
+            self._keys = dict([*kept.items()][1 - _MOST_KEYS :])
+            self._keys[key] = (person, now_s + OPEN_S)
+        return key
+
+
+def cookie_of(person: str) -> str:
+    """Name of the cookie that opens a person's record."""
+    return _COOKIE + person

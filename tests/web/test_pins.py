@@ -1,0 +1,143 @@
+"""A record with a PIN opens only for who gives it; tries are few, and nothing but the record needs it."""
+
+import httpx
+import pytest
+
+from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.protocol.notice import NoticeError
+from latentarm.web.records.people import PERSON_NAME, People
+from latentarm.web.server.pins import OPEN_S, TRIES, WAIT_S, Pins, cookie_of
+
+PIN, WRONG = "271828", "0000"
+
+
+class Time:
+    s = 0.0
+
+    def __call__(self):
+        return self.s
+
+
+@pytest.fixture
+def people(tmp_path):
+    return People(tmp_path)
+
+
+@pytest.fixture
+def time():
+    return Time()
+
+
+@pytest.fixture
+def ada(people):
+    return people.keep_pin(people.add("Ada").id, PIN)
+
+
+@pytest.fixture
+def pins(people, time):
+    return Pins(people, wanted=True, now_s=time)
+
+
+def code(act, *arguments):
+    with pytest.raises(NoticeError) as told:
+        act(*arguments)
+    return told.value.notice.code
+
+
+def test_the_file_holds_no_pin_and_two_people_with_the_same_one_have_different_hashes(people, ada):
+    bea = people.keep_pin(people.add("Bea").id, PIN)
+    assert PIN not in (people.folder_of(ada.id) / PERSON_NAME).read_text()
+    assert ada.pin.salt != bea.pin.salt
+    assert ada.pin.hash != bea.pin.hash
+    again = People(people.folder_of(ada.id).parent)
+    assert again.find(ada.id).pin == ada.pin
+
+
+def test_a_record_opens_for_who_has_given_the_pin_until_they_leave_or_it_is_late(pins, ada, time):
+    key = {cookie_of(ada.id): pins.unlock(ada, PIN)}
+    assert pins.opened(ada, key)
+    assert not pins.opened(ada, {})
+    assert not pins.opened(ada, {cookie_of(ada.id): "guessed"})
+    pins.lock(ada.id, key)
+    assert not pins.opened(ada, key)
+    key = {cookie_of(ada.id): pins.unlock(ada, PIN)}
+    time.s = OPEN_S + 1.0
+    assert not pins.opened(ada, key)
+
+
+def test_the_key_of_one_person_opens_no_other_record(pins, people, ada):
+    bea = people.keep_pin(people.add("Bea").id, PIN)
+    key = pins.unlock(ada, PIN)
+    assert not pins.opened(bea, {cookie_of(bea.id): key})
+
+
+def test_after_some_wrong_pins_each_try_must_wait_the_right_one_too(pins, ada, time):
+    assert [code(pins.unlock, ada, WRONG) for _ in range(TRIES)] == ["pin_wrong"] * TRIES
+    assert code(pins.unlock, ada, PIN) == "pin_wait"
+    time.s = WAIT_S + 1.0
+    assert code(pins.unlock, ada, WRONG) == "pin_wrong"
+    assert code(pins.unlock, ada, PIN) == "pin_wait"
+    time.s = 2 * WAIT_S + 2.0
+    pins.unlock(ada, PIN)
+    assert code(pins.unlock, ada, WRONG) == "pin_wrong"
+
+
+def test_a_new_pin_closes_the_record_for_everybody_else(pins, people, ada):
+    other = {cookie_of(ada.id): pins.unlock(ada, PIN)}
+    mine = {cookie_of(ada.id): pins.change(ada.id, "1234")}
+    changed = people.find(ada.id)
+    assert pins.opened(changed, mine)
+    assert not pins.opened(changed, other)
+    assert code(pins.unlock, changed, PIN) == "pin_wrong"
+
+
+def test_where_the_host_wants_no_pins_nobody_is_asked(people, ada):
+    without = Pins(people, wanted=False)
+    assert without.opened(ada, {})
+    assert code(without.change, ada.id, "1234") == "request_invalid"
+
+
+@pytest.fixture(scope="module")
+def server(trained, serve, tmp_path_factory):
+    with serve(Spec(trained, out=tmp_path_factory.mktemp("pins")), pins=True) as site:
+        yield site
+
+
+def test_choosing_exporting_and_deleting_need_the_pin_and_stop_does_not(server):
+    def browser():
+        return httpx.Client(base_url=server.origin, headers={"origin": server.origin})
+
+    with browser() as mine, browser() as other:
+        person = mine.post("/records/people", json={"name": "Ada"}).json()["id"]
+        path = f"/records/people/{person}"
+        for pin in ("123", "123456789", "12a4", ""):
+            assert mine.put(f"{path}/pin", json={"pin": pin}).status_code == 400
+        assert mine.put(f"{path}/pin", json={"pin": PIN}).status_code == 204
+        assert mine.get(path).json()["name"] == "Ada"
+
+        refused = [
+            other.get(path),
+            other.get(f"{path}/export"),
+            other.put(path, json={"name": "Eve"}),
+            other.put(f"{path}/settings", json={"panel": "dpad"}),
+            other.put(f"{path}/pin", json={"pin": None}),
+            other.delete(path),
+        ]
+        assert {(one.status_code, one.json()["notice"]["code"]) for one in refused} == {(403, "pin_needed")}
+        with server.page(person=person) as page:
+            # Without the PIN somebody drives as a guest, and stops the arm as ever.
+            assert isinstance(page.state["driver_name"], int)
+            page.enable()
+            page.send(type="stop")
+            page.wait(lambda state: state["phase"] != "ready")
+
+        assert other.post(f"{path}/unlock", json={"pin": WRONG}).json()["notice"]["code"] == "pin_wrong"
+        assert other.post(f"{path}/unlock", json={"pin": PIN}).status_code == 204
+        zipped = other.get(f"{path}/export").content
+        # What is brought to another computer has no PIN there, and no hash of one.
+        brought = other.post("/records/import", content=zipped).json()["person"]
+        listed = {one["id"]: one["pin"] for one in other.get("/records/people").json()["people"]}
+        assert listed == {person: True, brought: False}
+        other.post(f"{path}/lock")
+        assert other.get(path).status_code == 403
+        assert mine.delete(path).status_code == 204
