@@ -1,5 +1,9 @@
 """A record with a PIN opens only for who gives it; tries are few, and nothing but the record needs it."""
 
+import io
+import json
+import zipfile
+
 import httpx
 import pytest
 
@@ -141,3 +145,36 @@ def test_choosing_exporting_and_deleting_need_the_pin_and_stop_does_not(server):
         other.post(f"{path}/lock")
         assert other.get(path).status_code == 403
         assert mine.delete(path).status_code == 204
+
+
+DRIVE = {
+    "id": "0123456789abcdef", "person": None, "started": "2026-11-20T10:00:00+00:00", "time_s": 5.0,
+    "moving_s": 3.0, "robot": "panda", "task": "entree", "run": None, "profile": None, "modes": [],
+    "inputs": ["keyboard"], "presses": 2, "stops": 0, "late_stops": 0, "reasons": {}, "way_m": 0.2,
+    "help": None, "ended": "reset", "scene": None,
+}  # fmt: skip
+
+
+def test_drives_are_told_only_to_those_who_may_open_the_record(server):
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as zipped:
+        zipped.writestr("person.json", json.dumps({"id": DRIVE["id"], "name": "Cy", "added": ""}))
+        zipped.writestr(f"drives/{DRIVE['id']}.json", json.dumps(DRIVE))
+    with (
+        httpx.Client(base_url=server.origin, headers={"origin": server.origin}) as mine,
+        httpx.Client(base_url=server.origin) as other,
+    ):
+        person = mine.post("/records/import", content=archive.getvalue()).json()["person"]
+        of_them = {"person": person}
+        (drive,) = other.get("/records/drives", params=of_them).json()["drives"]
+        assert mine.put(f"/records/people/{person}/pin", json={"pin": PIN}).status_code == 204
+        assert [one["id"] for one in mine.get("/records/drives", params=of_them).json()["drives"]] == [
+            drive["id"]
+        ]
+        assert other.get("/records/drives", params=of_them).json()["drives"] == []
+        assert len(other.get("/records/drives.csv", params=of_them).text.splitlines()) == 1
+        path = f"/records/drives/{drive['id']}"
+        other.headers["origin"] = server.origin
+        for refused in (other.get(f"{path}/trace"), other.put(path, json={"title": "x"}), other.delete(path)):
+            assert refused.status_code == 403
+        assert mine.put(path, json={"title": "mine"}).json()["title"] == "mine"

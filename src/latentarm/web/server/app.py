@@ -36,8 +36,9 @@ from latentarm.web.server.learning import Learning
 from latentarm.web.server.loaded_run import LoadedRun, RunList
 from latentarm.web.server.logs import LOGGING
 from latentarm.web.server.pages import PAGES, Pages
+from latentarm.web.server.people_routes import IMPORT, PeopleRoutes
 from latentarm.web.server.pins import Pins
-from latentarm.web.server.record_routes import IMPORT, RecordRoutes
+from latentarm.web.server.record_routes import RecordRoutes
 from latentarm.web.server.security import DRIVE, Gate, Keys
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
@@ -168,7 +169,8 @@ def build_app(setup: DriveSetup, control: ControlProcess, config: TeleopConfig) 
     app.add_api_websocket_route(DRIVE, drive)
     app.add_route("/scene.json", describe)
     app.add_route("/mesh/{number}", mesh)
-    RecordRoutes(records, history, busy, let_go, pins).add_to(app)
+    PeopleRoutes(records, history, busy, let_go, pins).add_to(app)
+    RecordRoutes(records, history, pins).add_to(app)
     for page in PAGES:
         app.add_route(page.path, pages.answer)
     app.add_route("/static/{version}/{name:path}", assets.answer)

@@ -1,0 +1,70 @@
+"""How requests about records are read and answered: JSON objects with known fields, and errors as notices."""
+
+from collections.abc import Awaitable, Callable
+from typing import Final, TypeVar
+
+from pydantic import ValidationError
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+
+from latentarm.errors import UserError
+from latentarm.untrusted.documents import parse_object
+from latentarm.web.protocol.notice import Message, NoticeError, notice_of
+
+NO_STORE: Final = {"cache-control": "no-store"}
+"""Header of answers with what is kept of people."""
+
+_STATUS: Final = {
+    "person_unknown": 404,
+    "record_unknown": 404,
+    "pin_needed": 403,
+    "pin_wait": 429,
+    "pin_wrong": 403,
+}
+
+Answer = Callable[[Request], Awaitable[Response]]
+Asked = TypeVar("Asked", bound=Message)
+
+
+def guarded(answer: Answer) -> Answer:
+    """The same, with an error of the user's as a notice."""
+
+    async def guarded(request: Request) -> Response:
+        try:
+            return await answer(request)
+        except UserError as error:
+            notice = notice_of(error)
+            return json_answer({"notice": notice.model_dump()}, _STATUS.get(notice.code, 400))
+
+    return guarded
+
+
+def json_answer(content: object, status: int = 200) -> Response:
+    """An answer that no cache keeps."""
+    return JSONResponse(content, status, headers=NO_STORE)
+
+
+def object_in(body: bytes) -> dict[str, object]:
+    """The object that a request holds.
+
+    Raises:
+        NoticeError: it holds none.
+    """
+    try:
+        return parse_object(body, "The request")
+    except UserError as error:
+        raise NoticeError("request_invalid") from error
+
+
+async def body_of(request: Request, kind: type[Asked]) -> Asked:
+    """What a request asks for.
+
+    Raises:
+        NoticeError: it is not of that kind.
+    """
+    body = await request.body()
+    object_in(body)
+    try:
+        return kind.model_validate_json(body)
+    except ValidationError as error:
+        raise NoticeError("request_invalid") from error

@@ -1,0 +1,217 @@
+"""The addresses under ``/records/people``: people, their settings and PINs, export and import.
+
+Requests are JSON objects with known fields; answers are JSON, or a notice with a status of 4xx. The gate in
+front has checked where each request comes from and how long it is.
+"""
+
+import asyncio
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Annotated, Final, final
+
+from fastapi import FastAPI
+from pydantic import Field, TypeAdapter, ValidationError
+from starlette.background import BackgroundTask
+from starlette.requests import Request
+from starlette.responses import FileResponse, Response
+
+from latentarm.web.protocol.notice import Message, NoticeError
+from latentarm.web.records.drive_record import DriveRecord
+from latentarm.web.records.drives import Wanted
+from latentarm.web.records.people import PersonRecord, Settings
+from latentarm.web.records.pin import PIN
+from latentarm.web.records.records import Records
+from latentarm.web.server.answers import NO_STORE, body_of, guarded, json_answer, object_in
+from latentarm.web.server.history import History
+from latentarm.web.server.pins import OPEN_S, Pins, cookie_of
+
+IMPORT: Final = "/records/import"
+"""Takes longer bodies than all else: see `latentarm.web.records.exchange.IMPORT_LIMIT`."""
+
+
+@final
+class _Named(Message):
+    name: Annotated[str, Field(max_length=200)]
+
+
+@final
+class _Pinned(Message):
+    pin: Annotated[str, Field(pattern=PIN)] | None
+
+
+_SETTINGS: Final[TypeAdapter[dict[str, bool | float | str]]] = TypeAdapter(Settings)
+
+
+@final
+class PeopleRoutes:
+    """Answers requests about people.
+
+    Args:
+        records: what is kept.
+        history: logs the drive under way.
+        busy: whether the arm is enabled for a person, or with a profile of theirs.
+        let_go: makes the arm drive without the profiles of a person who is about to be deleted.
+        pins: says whose records a visitor may open.
+    """
+
+    def __init__(
+        self,
+        records: Records,
+        history: History,
+        busy: Callable[[PersonRecord], bool],
+        let_go: Callable[[PersonRecord], None],
+        pins: Pins,
+    ) -> None:
+        self._records = records
+        self._history = history
+        self._busy = busy
+        self._let_go = let_go
+        self._pins = pins
+
+    def add_to(self, app: FastAPI) -> None:
+        """Serve everything here."""
+        for path, methods in (
+            ("/records/people", {"GET": self._people, "POST": self._add}),
+            ("/records/people/{person}", {"GET": self._person, "PUT": self._rename, "DELETE": self._erase}),
+            ("/records/people/{person}/settings", {"PUT": self._keep_settings}),
+            ("/records/people/{person}/pin", {"PUT": self._keep_pin}),
+            ("/records/people/{person}/unlock", {"POST": self._unlock}),
+            ("/records/people/{person}/lock", {"POST": self._lock}),
+            ("/records/people/{person}/export", {"GET": self._export}),
+            (IMPORT, {"POST": self._import}),
+        ):
+            for method, answer in methods.items():
+                app.add_route(path, guarded(answer), methods=[method])
+
+    async def _people(self, _: Request) -> Response:
+        await self._history.settled()
+        drives = self._records.drives.wanted(Wanted())
+        return json_answer(
+            {
+                "people": [
+                    {
+                        "id": person.id,
+                        "name": person.name,
+                        "added": person.added,
+                        "pin": self._pins.asked(person),
+                        **_history_of(person, drives),
+                    }
+                    for person in self._records.people.all()
+                ],
+                "pins": self._pins.wanted,
+                "problems": [problem.model_dump() for problem in self._records.people.problems],
+            }
+        )
+
+    async def _add(self, request: Request) -> Response:
+        named = await body_of(request, _Named)
+        return json_answer(_shown(await asyncio.to_thread(self._records.people.add, named.name)), 201)
+
+    async def _person(self, request: Request) -> Response:
+        person = self._found(request)
+        contents = await asyncio.to_thread(self._records.contents, person.id)
+        return json_answer({**_shown(person), "settings": person.settings, **contents.model_dump()})
+
+    def _found(self, request: Request) -> PersonRecord:
+        """The person whom a request names, and whose record the visitor may open.
+
+        Raises:
+            NoticeError: nobody has this id, or their PIN must be given first.
+        """
+        person = self._named(request)
+        if not self._pins.opened(person, request.cookies):
+            raise NoticeError("pin_needed", name=person.name)
+        return person
+
+    def _named(self, request: Request) -> PersonRecord:
+        """The person whom a request names.
+
+        Raises:
+            NoticeError: nobody has this id.
+        """
+        person = self._records.people.find(request.path_params["person"])
+        if person is None:
+            raise NoticeError("person_unknown")
+        return person
+
+    async def _unlock(self, request: Request) -> Response:
+        given, person = await body_of(request, _Pinned), self._named(request)
+        key = await asyncio.to_thread(self._pins.unlock, person, given.pin or "")
+        return _with_key(request, person.id, key)
+
+    async def _lock(self, request: Request) -> Response:
+        self._pins.lock(self._named(request).id, request.cookies)
+        return Response(status_code=204, headers=NO_STORE)
+
+    async def _keep_pin(self, request: Request) -> Response:
+        person, given = self._found(request), await body_of(request, _Pinned)
+        key = await asyncio.to_thread(self._pins.change, person.id, given.pin)
+        return _with_key(request, person.id, key)
+
+    async def _rename(self, request: Request) -> Response:
+        named, person = await body_of(request, _Named), self._found(request)
+        return json_answer(
+            _shown(await asyncio.to_thread(self._records.people.rename, person.id, named.name))
+        )
+
+    async def _keep_settings(self, request: Request) -> Response:
+        try:
+            settings = _SETTINGS.validate_json(json.dumps(object_in(await request.body())))
+        except ValidationError as error:
+            raise NoticeError("request_invalid") from error
+        person = self._found(request)
+        await asyncio.to_thread(self._records.people.keep_settings, person.id, settings)
+        return Response(status_code=204, headers=NO_STORE)
+
+    async def _erase(self, request: Request) -> Response:
+        person = self._found(request)
+        if self._busy(person):
+            raise NoticeError("person_driving", name=person.name)
+        if self._history.person == person.id:
+            self._history.end("driver_changed")
+        await self._history.settled()
+        self._let_go(person)
+        await asyncio.to_thread(self._records.erase, person.id)
+        return Response(status_code=204, headers=NO_STORE)
+
+    async def _export(self, request: Request) -> Response:
+        await self._history.settled()
+        path = await asyncio.to_thread(self._records.export, self._found(request).id)
+        # A neutral name: a file's name is seen by more people than what is in it.
+        return FileResponse(
+            path,
+            filename="latentarm-person.zip",
+            media_type="application/zip",
+            headers=NO_STORE,
+            background=BackgroundTask(_remove, path),
+        )
+
+    async def _import(self, request: Request) -> Response:
+        return json_answer(
+            (await asyncio.to_thread(self._records.bring, await request.body())).model_dump(), 201
+        )
+
+
+def _with_key(request: Request, person: str, key: str) -> Response:
+    """An answer that opens a person's record for this browser."""
+    answer = Response(status_code=204, headers=NO_STORE)
+    secure = request.url.scheme == "https"
+    answer.set_cookie(
+        cookie_of(person), key, max_age=round(OPEN_S), secure=secure, httponly=True, samesite="strict"
+    )
+    return answer
+
+
+def _shown(person: PersonRecord) -> dict[str, object]:
+    return {"id": person.id, "name": person.name, "added": person.added}
+
+
+def _history_of(person: PersonRecord, drives: Sequence[DriveRecord]) -> dict[str, object]:
+    """How often somebody has driven, and when last."""
+    theirs = [drive for drive in drives if drive.person == person.id]
+    return {"drives": len(theirs), "last": theirs[0].started if theirs else None}
+
+
+def _remove(path: Path) -> None:
+    path.unlink(missing_ok=True)
