@@ -374,6 +374,7 @@ class StepRecord:
         gripper: what the gripper measured, or None without one.
         things: (K, 7), where the things about the arm stand, in the order of the episode's header: position,
             m, and quaternion (w, x, y, z), in the base frame; empty where nobody looks. `Step` does not.
+        pace: share of the asked-for speed that a second person left, see `Input.pace`.
     """
 
     time_s: float
@@ -389,6 +390,7 @@ class StepRecord:
     bound_rad: float = math.nan
     gripper: GripperReading | None = None
     things: FloatArray = field(default_factory=lambda: NO_THINGS)
+    pace: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -60,13 +60,14 @@ def record(tick, *, goals=2, stop=None, limited_by=()):
         mode=tick % 3,
         command=Command(rng.normal(size=7), 0.025, stop, limited_by),
         bound_rad=math.nan if tick % 3 == 1 else rng.uniform(0, 9),
+        pace=rng.uniform(),
     )
 
 
 def same(one, other):
     for name in ("state", "input", "latent", "action_human", "action_assist", "belief"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
-    assert (one.time_s, one.alpha, one.mode) == (other.time_s, other.alpha, other.mode)
+    assert (one.time_s, one.alpha, one.mode, one.pace) == (other.time_s, other.alpha, other.mode, other.pace)
     np.testing.assert_equal(one.bound_rad, other.bound_rad)
     np.testing.assert_array_equal(one.command.velocity, other.command.velocity)
     assert one.command.duration_s == other.command.duration_s
@@ -145,14 +146,17 @@ def rewritten(path, scalars_of):
     database.close()
 
 
-def test_a_journal_from_before_the_bound_was_recorded_is_read_and_gone_on_with(tmp_path):
+@pytest.mark.parametrize(
+    ("scalars", "missing"), [(4, {"bound_rad": math.nan, "pace": 1.0}), (5, {"pace": 1.0})]
+)
+def test_a_journal_from_before_the_bound_or_the_pace_is_read_and_gone_on_with(tmp_path, scalars, missing):
     path = tmp_path / "drive.sqlite"
     write(path, [3])
-    rewritten(path, lambda scalars: scalars[:4])
+    rewritten(path, lambda every: every[:scalars])
     write(path, [2])
     old, new = read_journal(path)
     for tick, one in enumerate(old.records):
-        same(dataclasses.replace(record(tick), bound_rad=math.nan), one)
+        same(dataclasses.replace(record(tick), **missing), one)
     same(record(0), new.records[0])
     assert "assist.bound" in demonstrations_of([old], source="drive").episodes[0].extras
 
@@ -313,7 +317,7 @@ def test_things_that_are_missing_or_not_finite_are_neither_written_nor_read(tmp_
         read_journal(path)
 
 
-@pytest.mark.parametrize("count", [3, 6])
+@pytest.mark.parametrize("count", [3, 7])
 def test_a_sample_of_unknown_make_is_damage(tmp_path, count):
     path = tmp_path / "drive.sqlite"
     write(path, [3])

@@ -260,3 +260,14 @@ def test_a_mode_can_be_chosen_and_none_that_is_not_there(arm, scripted):
     for mode in (-1, 3):
         with pytest.raises(UserError, match="modes 0 to 2"):
             step.choose_mode(mode)
+
+
+def test_a_step_says_what_a_second_person_left_of_the_speed(arm, scripted):
+    step = Step(arm, scripted(MATRIX), SafetyConfig())
+    assert stepped(step, Input(np.zeros(2), pace=0.0), 0.0, arm.home, now_s()).pace == 0.0
+    assert step.enable() is None
+    slow = stepped(step, Input(np.array([1.0, 0.0]), pace=0.4), 0.0, arm.home, now_s())
+    assert slow.pace == 0.4
+    assert slow.command.stop is None
+    # Nothing is known of an input that cannot be used.
+    assert stepped(step, Input(np.array([1.0, 0.0]), pace=2.0), 0.0, arm.home, now_s()).pace == 1.0

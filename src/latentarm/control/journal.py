@@ -21,7 +21,10 @@ from latentarm.untrusted.documents import parse_object
 from latentarm.untrusted.memory import bounded_memory
 from latentarm.untrusted.opening import check_file, is_missing
 
-_SCALARS = 5
+_EARLIER = (math.nan, 1.0)
+"""The bound and the pace, in samples from before they were recorded."""
+
+_SCALARS = 6
 _LATER = 3
 _MOST_FIGURES = 100_000
 _MOST_CELL_BYTES = 1 << 20
@@ -255,9 +258,11 @@ def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str)
     scalars, state, given, latent, human, assist, belief, velocity, *later = parts
     # Journals from before grippers or things were recorded have no such parts.
     measured, asked, things = [*later, *[np.zeros(0)] * (_LATER - len(later))]
-    # Journals from before the bound was recorded have one less.
-    known = scalars.tolist() if len(scalars) == _SCALARS else [*scalars.tolist(), math.nan]
-    time_s, alpha, mode, duration_s, bound_rad = known
+    missing = _SCALARS - len(scalars)
+    known = [*scalars.tolist(), *_EARLIER[len(_EARLIER) - missing :]] if missing else scalars.tolist()
+    time_s, alpha, mode, duration_s, bound_rad, pace = known
+    if not 0.0 <= pace <= 1.0:
+        raise ValueError("a sample has a pace outside [0, 1]")
     return StepRecord(
         time_s=time_s,
         state=state,
@@ -278,6 +283,7 @@ def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str)
         bound_rad=bound_rad,
         gripper=gripper_reading(measured),
         things=thing_poses(things),
+        pace=pace,
     )
 
 

@@ -33,7 +33,16 @@ def figures_of(record: StepRecord) -> Sequence[FloatArray]:
     command = record.command
     measured, asked = record.gripper, command.gripper
     return (
-        np.array([record.time_s, record.alpha, float(record.mode), command.duration_s, record.bound_rad]),
+        np.array(
+            [
+                record.time_s,
+                record.alpha,
+                float(record.mode),
+                command.duration_s,
+                record.bound_rad,
+                record.pace,
+            ]
+        ),
         record.state,
         record.input,
         record.latent,

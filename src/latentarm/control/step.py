@@ -129,6 +129,7 @@ class Step:
         self._engagement = Engagement()
         self._gripper = GripperFilter(robot.gripper, safety)
         self._faltering = False
+        self._pace = 1.0
         self._mode = 0
         self._switch_held = False
 
@@ -286,7 +287,7 @@ class Step:
             self._plausibility.reset()
             self.halted(lost)
         self._time_s = time_s
-        self._faltering = False
+        self._faltering, self._pace = False, 1.0
         self._stack.tick(time_s)
         self._gripper.tick()
         q = self._positions_now(reading, time_s)
@@ -302,6 +303,7 @@ class Step:
         if isinstance(u, Stop):
             self._engagement.stop(u)
             return self._record(time_s, q, Passed(self._stack.stop()))
+        self._pace = float(given.pace)
         neutral = u is self._no_input
         self._engagement.saw(neutral)
         self._switch(bool(given.switch_mode))
@@ -310,7 +312,7 @@ class Step:
             return self._record(time_s, q, Passed(self._stack.stop()))
         if neutral and not self._shared.acts_at_rest:
             return self._record(time_s, q, self._passed(self._no_motion, q, input_age_s))
-        return self._driven(u, float(given.pace), input_age_s, q, time_s)
+        return self._driven(u, input_age_s, q, time_s)
 
     def _doubts(self, q: FloatArray, time_s: float, *, new: bool) -> bool:
         """Whether a reading cannot be true; the arm is disengaged for it."""
@@ -334,9 +336,7 @@ class Step:
         except Exception:  # noqa: BLE001 - an age that is no number is refused further on
             return False
 
-    def _driven(
-        self, u: FloatArray, pace: float, input_age_s: float, q: FloatArray, time_s: float
-    ) -> StepRecord:
+    def _driven(self, u: FloatArray, input_age_s: float, q: FloatArray, time_s: float) -> StepRecord:
         """Lines 6 to 10 for an input that asks for motion, or at rest if the robot helps there too."""
         shared = self._shared
         belief = shared.belief
@@ -349,7 +349,7 @@ class Step:
                 choices, bound_rad = shared.update(u, context, self._mode, alpha)
                 # A person who lets go commands no motion, whatever the decoder makes of zero.
                 z, a_h = (u, self._no_motion) if u is self._no_input else choices.chosen(u)
-                wanted = pace * blend(a_h, a_r, alpha) if a_h.shape == q.shape else a_h
+                wanted = self._pace * blend(a_h, a_r, alpha) if a_h.shape == q.shape else a_h
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
             said = _said(error)
             stop = Stop(
@@ -377,6 +377,7 @@ class Step:
             command=command,
             bound_rad=bound_rad,
             gripper=self._gripper.reading,
+            pace=self._pace,
         )
 
     def _passed(self, wanted: FloatArray, q: FloatArray, input_age_s: float) -> Passed:
@@ -474,6 +475,7 @@ class Step:
             mode=self._mode,
             command=self._command(passed),
             gripper=self._gripper.reading,
+            pace=self._pace,
         )
 
 
