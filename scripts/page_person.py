@@ -94,7 +94,7 @@ def drives(
         phone = {"viewport": PHONE, "has_touch": True, "is_mobile": True}
         context = browser.new_context(**(phone if name == "touch" else {"viewport": DESKTOP}), locale="en-GB")
         page = context.new_page()
-        page.set_default_timeout(10_000)
+        page.set_default_timeout(20_000)
         if kind.script:
             page.add_init_script(kind.script)
         page.goto(site.address)

@@ -83,11 +83,13 @@ def look(page: Page) -> Look:
     """Look at the page, which is in English."""
     seen: dict[str, Any] = page.evaluate(LOOK)
     said = seen["said"]
+    ticked = sum(step.startswith("✓") for step in seen["steps"])
     return Look(
         status=seen["status"],
         enabled=seen["mark"] in ("ready", "moving"),
         step=next((step for step in seen["steps"] if step.startswith("▸")), ""),
-        done=sum(step.startswith("✓") for step in seen["steps"]),
+        # A phone shows the step that is to be done now alone, and says how many are done.
+        done=max([ticked, *map(int, re.findall(r"^Step (\d+)", said))]),
         outcome="success" if said.startswith("Done!") else "failure" if "try again" in said else None,
         said=said,
         left=tuple(one for pair, parts in enumerate(seen["pairs"]) for one in _left(pair, parts)),

@@ -41,7 +41,7 @@ test("the step tells the turn apart from the distance, and what the gripper is t
   const step = { kind: "poured", thing: "bowl" };
   const welcome = welcomeOf({ task: { name: "pour", seed: 0, choices: [], choice: 0, steps: [step] } });
   const at = (to_go) => awayWords(welcome, stateOf({ task: { choice: 0, done: 0, outcome: null, why: null, time_s: 0, to_go } }));
-  assert.equal(at({ shift_m: [0.03, 0.04, 0], turn_rad: [0, 0.9, 0], gripper: null }), "5 cm to go, 52° to turn");
+  assert.equal(at({ shift_m: [0.03, 0.04, 0], turn_rad: [0, 0.9, 0], gripper: null }), "5 cm, turn 52°");
   assert.equal(at({ shift_m: [0.03, 0.04, 0], turn_rad: [0, 0.1, 0], gripper: null }), "5 cm to go");
   assert.equal(at({ ...TO_GO, gripper: "close" }), "Close the gripper now");
 });
