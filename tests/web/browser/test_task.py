@@ -130,6 +130,7 @@ class TestStabbing:
         seed = arm.welcome["task"]["seed"]
         following.click()
         arm.wait(lambda: arm.state["task"]["choice"] == 1 and outcome(arm) is None)
+        assert page.evaluate("document.activeElement.id") == "enable"
         arm.wait(lambda: arm.welcome["task"]["seed"] == seed + 1)
         arm.wait(lambda: np.abs(np.array(arm.things["poses"][1][:2]) - lay[:2]).max() > 1e-3)
         said.get_by_text("Done!").wait_for(state="detached")

@@ -99,6 +99,7 @@ const task = attachTask({
   panel: byId("task"), steps: byId("task-steps"), said: byId("task-said"), time: byId("task-time"), why: byId("task-why"),
   chooser: byId("task-chooser"), choice: byId("task-choice", HTMLSelectElement),
   next: byId("task-next", HTMLButtonElement), again: byId("task-again", HTMLButtonElement),
+  then: byId("enable"),
 }, connection, feedback.tell);
 
 const gripper = attachGripper({

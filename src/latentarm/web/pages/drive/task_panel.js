@@ -24,6 +24,7 @@ const MARKS = { done: "✓", now: "▸", later: "○" };
  * @property {HTMLSelectElement} choice
  * @property {HTMLButtonElement} next
  * @property {HTMLButtonElement} again
+ * @property {HTMLElement} then what is pressed once another run was begun, and has the focus then
  */
 
 /**
@@ -38,7 +39,10 @@ export function attachTask(parts, connection, ended) {
 
   const blocked = () => (connection.state ? blockedWords(connection.state) : say("status.connecting"));
   const begin = (/** @type {{choice: number | null, anew: boolean}} */ what) => {
-    if (!blocked()) connection.send({ type: "begin_run", ...what });
+    if (blocked()) return;
+    connection.send({ type: "begin_run", ...what });
+    // Enter would begin yet another one.
+    if (document.activeElement === parts.next || document.activeElement === parts.again) parts.then.focus({ preventScroll: true });
   };
   const next = () => {
     const { state, welcome } = connection;
