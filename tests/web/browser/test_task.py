@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from playwright.sync_api import expect
 
 SOUNDS = """
 window.tones = 0;
@@ -122,7 +123,7 @@ class TestStabbing:
         # A busy computer may have stopped the arm in the meantime.
         press_enable(page, arm)
         following = page.get_by_role("button", name="Next task")
-        assert following.get_attribute("aria-disabled") == "true"
+        expect(following).to_have_attribute("aria-disabled", "true")
         following.click(force=True)
         assert arm.state["task"]["choice"] == 0
         page.keyboard.press("Escape")
