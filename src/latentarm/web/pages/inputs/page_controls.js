@@ -6,7 +6,8 @@ import { fieldChoice, wordsOf } from "../settings/setting_choices.js";
 
 const PRESSED = "button, a[href], summary";
 const FIELDS = "select, input[type=radio], input[type=checkbox], input[type=range]";
-const PARTS = "section, article, form, fieldset, li, dialog";
+/** Parts that are a choice of their own, which opens what is in them: each has a name. */
+const PARTS = "section, article, form[aria-label], fieldset, li";
 /** A part with fewer controls than this is no list of its own. */
 const FEWEST = 3;
 /** Of a part without a name of its own, so much of its text is its name. */
