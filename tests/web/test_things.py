@@ -136,7 +136,10 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
     begun = load_setup(Spec(task="marshmallows", arm="mujoco"))
     assert begun.objects == ("left marshmallow", "middle marshmallow", "right marshmallow")
     setup = replace(
-        begun, task=ScenePlace(begun.task.robot, (), (), objects=("ball",)), scene=Scene((cup, ball))
+        begun,
+        task=ScenePlace(begun.task.robot, (), (), objects=("ball",)),
+        todo=replace(begun.todo, steps=(), failures=()),
+        scene=Scene((cup, ball)),
     )
     reading, orders = Pipe(duplex=False)
     clock, writer = SimulatedClock(), EpisodeWriter(tmp_path / "teleop")
