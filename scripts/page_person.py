@@ -99,7 +99,7 @@ def drives(
             page.add_init_script(kind.script)
         page.goto(site.address)
         page.locator("#status:not([data-phase=connecting], [data-phase=lost])").wait_for()
-        # The drawing is loaded last, or it is said that there is none.
+        # The drawing is loaded last, or the page says that it cannot draw.
         page.locator(".label, #scene-lost:not([hidden])").first.wait_for(state="attached")
         page.get_by_role("button", name="Skip", exact=True).click()
         hand = kind(page)
@@ -118,7 +118,7 @@ def drives(
 
 
 def begin(page: Page, choice: str | None, anew: bool) -> None:
-    """Have a run of the task begin; whoever sits next to the person does this."""
+    """Have a run of the task begin; a helper at the person's side does this."""
     if anew:
         page.locator("#task-next").click(timeout=5000)
         page.wait_for_timeout(1500)

@@ -105,7 +105,7 @@ def test_a_record_with_a_pin_opens_by_keys_or_by_the_digits_on_the_screen(page, 
     expect(other.get_by_role("button", name="Choose Mina")).to_have_attribute("aria-pressed", "true")
     with other.expect_download():
         other.get_by_role("link", name="Export everything of Mina").click()
-    # Whoever drives next has not given it.
+    # The next driver has not given it.
     other.get_by_role("button", name="Choose Guest").click()
     expect(other.get_by_role("button", name="Choose Guest")).to_have_attribute("aria-pressed", "true")
     other.get_by_role("button", name="Delete Mina").click()

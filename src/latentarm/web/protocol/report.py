@@ -154,7 +154,7 @@ class Report(Message):
         task: how far it has come.
         things: where they are, sent in every few reports; None in the others and in an empty scene.
         ghosts: what each direction would do now.
-        belief: over the goals; empty where there are none.
+        belief: over the goals; empty for a task without goals.
         alpha: how much the robot helps.
         bound_rad: the radius of equation 14, where there is help.
         recording: where something is recorded.

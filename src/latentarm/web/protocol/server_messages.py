@@ -140,7 +140,7 @@ class State(Message):
         task: how far it has come.
         things: where they are; null if the scene has no things, or nothing has moved since the last.
         ghosts: where each direction would take the tool; null if nothing has moved by 1 mm since the last.
-        belief: over the goals, or null where there are none.
+        belief: over the goals; null for a task without goals.
         alpha: how much the robot helps, in [0, 1].
         bound_m: how far from the likeliest goal help lets the tool be, m, to first order; or null.
         driver: id of the page that drives, or null.

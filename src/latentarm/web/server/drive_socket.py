@@ -175,7 +175,7 @@ class DriveSocket:
         known = self._people.find(hello.person)
         if known is None:
             return self._sessions.join(hello.name)
-        # Whoever has not given the PIN drives as a guest.
+        # A visitor who has not given the PIN drives as a guest.
         opened = self._pins.opened(known, socket.cookies)
         return self._sessions.join(known.name, known.id) if opened else self._sessions.join(None)
 

@@ -1,6 +1,6 @@
 /** How finely round things are drawn: where there is no graphics processor, every triangle is the processor's work. */
 
-/** Whether there is none. */
+/** Whether this computer draws without a graphics processor. */
 export const SOFTWARE = drawsInSoftware();
 
 /** Segments about an axis, from pole to pole, and of each cap of a capsule; and how often an icosahedron is divided. */
