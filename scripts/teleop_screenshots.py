@@ -7,6 +7,7 @@ a row for each state and a column for each look. For example:
 """
 
 import argparse
+import re
 import shutil
 import tempfile
 import time
@@ -17,6 +18,7 @@ from typing import Any
 
 from PIL import Image, ImageDraw, ImageFont
 from playwright.sync_api import Browser, Locator, Page
+from playwright.sync_api import Error as PlaywrightError
 
 from latentarm.web.words.catalogue import COOKIE, Words, languages
 from teleop_page import chromium, drive_back, enable, served
@@ -72,10 +74,6 @@ class Visit:
     def button(self, key: str) -> Locator:
         """The button with this text."""
         return self.page.get_by_role("button", name=self.words.say(key), exact=True)
-
-    def link(self, key: str) -> Locator:
-        """The link with this text."""
-        return self.page.get_by_role("link", name=self.words.say(key), exact=True)
 
     def mode(self, name: str) -> None:
         """Choose what the stick moves."""
@@ -173,9 +171,11 @@ def push_for(page: Page, moving_ms: int) -> None:
 
 
 def episodes(page: Page) -> int:
-    """How many are recorded, as the page says it."""
-    said = page.locator("#record-text").inner_text()
-    return int(said.split()[0]) if said[:1].isdigit() else 0
+    """How many are recorded, as the page says it in any language; 0 while it records."""
+    if page.locator("#record-teach").is_hidden():
+        return 0
+    number = re.search(r"\d+", page.locator("#record-text").inner_text())
+    return int(number.group()) if number else 0
 
 
 def trained(visit: Visit) -> None:
@@ -190,7 +190,7 @@ def trained(visit: Visit) -> None:
 
 def personalise(visit: Visit) -> None:
     """The Personalise page as a person finds it."""
-    visit.link("pages.personalise").click()
+    visit.page.goto(f"{visit.page.url}personalise")
     visit.page.locator("#begin").wait_for()
 
 
@@ -364,22 +364,21 @@ def take(browser: Browser, address: str, name: str, look: str, out: Path) -> Non
     size, scheme, language = look.split("-")
     width, height = SIZES[size]
     # Twice as fine: the software renderer spares pixels.
-    context = browser.new_context(
+    with browser.new_context(
         viewport={"width": width, "height": height},
         device_scale_factor=2,
         reduced_motion="reduce",
         **SCHEMES[scheme],
-    )
-    page = context.new_page()
-    visit = begin(page, address, language)
-    drive_back(page)
-    page.evaluate("scrollTo(0, 0)")
-    page.wait_for_timeout(SETTLE_MS)
-    SHOTS[name](visit)
-    page.wait_for_timeout(600)
-    page.screenshot(path=out / f"{name}-{look}.png")
-    tidy(page)
-    context.close()
+    ) as context:
+        page = context.new_page()
+        visit = begin(page, address, language)
+        drive_back(page)
+        page.evaluate("scrollTo(0, 0)")
+        page.wait_for_timeout(SETTLE_MS)
+        SHOTS[name](visit)
+        page.wait_for_timeout(600)
+        page.screenshot(path=out / f"{name}-{look}.png")
+        tidy(page)
     # So that the next page finds nobody who drives.
     time.sleep(0.3)
 
@@ -416,6 +415,7 @@ def main() -> None:
     parser.add_argument("--looks", nargs="+", default=list(CROSS), metavar="SIZE-SCHEME-LANGUAGE")
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
+    missing: list[str] = []
     with tempfile.TemporaryDirectory() as folder:
         # What is learned for the pictures is not kept.
         run = Path(shutil.copytree(given.run, Path(folder) / given.run.name))
@@ -423,9 +423,16 @@ def main() -> None:
             drive_once(browser, site.address)
             for look in given.looks:
                 for name in given.only:
-                    take(browser, site.address, name, look, given.out)
-                    print(f"{name}-{look}", flush=True)
+                    try:
+                        take(browser, site.address, name, look, given.out)
+                    except PlaywrightError as error:
+                        # The other pictures are taken all the same.
+                        missing.append(f"{name}-{look}: {error.message.splitlines()[0]}")
+                    else:
+                        print(f"{name}-{look}", flush=True)
     contact_sheet(given.out)
+    if missing:
+        raise SystemExit("Not taken:\n" + "\n".join(missing))
 
 
 if __name__ == "__main__":
