@@ -37,7 +37,7 @@ POUR_AT_LEAST: Final = 12.0
 TIPPED: Final = 20.0
 """Degrees; a cup that leans so far is set upright before it is carried elsewhere."""
 
-GIVES_UP_S: Final = 330.0
+GIVES_UP_S: Final = 600.0
 STUCK_LOOKS: Final = 25
 
 

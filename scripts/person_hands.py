@@ -6,7 +6,7 @@ from typing import Final
 
 from playwright.sync_api import Locator, Page
 
-from person_page import Direction, choices, look
+from person_page import Direction, choices, look, moving
 
 KEYS: Final = {"Up": "ArrowUp", "Down": "ArrowDown", "Left": "ArrowLeft", "Right": "ArrowRight"}
 WAYS: Final = {"Up": (0, 1), "Down": (0, -1), "Left": (-1, 0), "Right": (1, 0)}
@@ -19,6 +19,9 @@ LOOKS_S: Final = 0.03
 
 GONE_S: Final = 0.5
 """A choice that is not offered for so long is not waited for, s."""
+
+BACK: Final = "Back"
+"""The choice that leads out of what another one has opened."""
 
 GAMEPAD: Final = """
 const buttons = Array.from({ length: 8 }, () => ({ pressed: false, touched: false, value: 0 }));
@@ -256,9 +259,15 @@ class SwitchHand(Hand):
 
     def push(self, direction: Direction, hold_s: float) -> None:
         """See the base class."""
-        if self.take(direction):
-            time.sleep(max(hold_s - TAP_S, 0.0))
-            self.press("Enter")
+        if not self.take(direction):
+            return
+        end_s = time.monotonic() + hold_s - TAP_S
+        while time.monotonic() < end_s:
+            time.sleep(LOOKS_S)
+            if not moving(self.page):
+                # The arm has stopped by itself: a press would now take a choice.
+                return
+        self.press("Enter")
 
     def enable(self) -> None:
         """See the base class."""
@@ -292,6 +301,11 @@ class SwitchHand(Hand):
                 continue
             gone_at_s = gone_at_s or time.monotonic()
             if time.monotonic() - gone_at_s > GONE_S:
+                if BACK in names:
+                    # A press that came late has opened something.
+                    self.take(BACK)
+                    gone_at_s = None
+                    continue
                 return False
             time.sleep(LOOKS_S)
 

@@ -105,6 +105,11 @@ def choices(page: Page) -> tuple[list[str], str]:
     return seen["names"], seen["lit"]
 
 
+def moving(page: Page) -> bool:
+    """Whether the lit direction is marked as one in which the arm moves."""
+    return page.locator("#scan li[data-moving]").count() > 0
+
+
 def _left(pair: int, parts: list[str]) -> list[Left]:
     found = []
     for part in parts[1:]:
