@@ -29,6 +29,7 @@ from websockets.sync.client import ClientConnection, connect
 from latentarm.control.clock import MonotonicClock
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.process import ControlProcess
+from latentarm.web.records.calendar import SYSTEM_CALENDAR
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.connections import ConnectionLimits
@@ -124,7 +125,8 @@ def serve(spec: Spec, sender: Any) -> None:
     listening = listen(config)
     port = int(listening.getsockname()[1])
     control = ControlProcess(spec)
-    app = gated(build_app(load_setup(spec), control, config), control, config, port, None, lambda: "")
+    app = build_app(load_setup(spec), control, config, SYSTEM_CALENDAR)
+    app = gated(app, control, config, port, None, lambda: "")
     server = uvicorn.Server(server_config(app, config))
 
     def block() -> None:

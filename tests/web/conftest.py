@@ -30,6 +30,7 @@ from latentarm.web.protocol.channel import new_channel
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import AskedGripper, Given, Order, Paced
 from latentarm.web.protocol.report import Report, parse_report
+from latentarm.web.records.calendar import SYSTEM_CALENDAR
 from latentarm.web.server.addresses import TeleopConfig, listen
 from latentarm.web.server.app import build_app, gated, serve_on, server_config
 from latentarm.web.server.connections import ConnectionLimits
@@ -326,7 +327,7 @@ def served(spec: Spec, *, pins: bool = False) -> Iterator[Site]:
     listening = listen(config)
     port = int(listening.getsockname()[1])
     control = ControlProcess(spec)
-    app = build_app(load_setup(spec), control, config)
+    app = build_app(load_setup(spec), control, config, SYSTEM_CALENDAR)
     server = uvicorn.Server(server_config(gated(app, control, config, port, None, lambda: ""), config))
     loops: list[asyncio.AbstractEventLoop] = []
 

@@ -9,6 +9,7 @@ import pytest
 
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.protocol.notice import NoticeError
+from latentarm.web.records.calendar import SYSTEM_CALENDAR
 from latentarm.web.records.people import PERSON_NAME, People
 from latentarm.web.server.pins import OPEN_S, TRIES, WAIT_S, Pins, cookie_of
 
@@ -24,7 +25,7 @@ class Time:
 
 @pytest.fixture
 def people(tmp_path):
-    return People(tmp_path)
+    return People(tmp_path, SYSTEM_CALENDAR)
 
 
 @pytest.fixture
@@ -53,7 +54,7 @@ def test_the_file_holds_no_pin_and_two_people_with_the_same_one_have_different_h
     assert PIN not in (people.folder_of(ada.id) / PERSON_NAME).read_text()
     assert ada.pin.salt != bea.pin.salt
     assert ada.pin.hash != bea.pin.hash
-    again = People(people.folder_of(ada.id).parent)
+    again = People(people.folder_of(ada.id).parent, SYSTEM_CALENDAR)
     assert again.find(ada.id).pin == ada.pin
 
 

@@ -5,6 +5,7 @@ import json
 import shutil
 import zipfile
 from dataclasses import replace
+from datetime import datetime, timedelta, timezone
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.report import Report, TaskState
 from latentarm.web.protocol.scene import drawable
+from latentarm.web.records.calendar import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.drive_log import LATE, MOST_VALUES, About, DriveLog
 from latentarm.web.records.drive_record import checked_trace, packed
 from latentarm.web.records.drives import Drives, Wanted
@@ -29,7 +31,7 @@ LETTERS = st.characters(categories=("L", "N", "M", "S", "P", "Zs"))
 
 @pytest.fixture
 def records(tmp_path):
-    return Records(tmp_path, dict, lambda: None)
+    return Records(tmp_path, dict, lambda: None, SYSTEM_CALENDAR)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +46,7 @@ def test_any_name_is_kept_or_refused_in_a_sentence(tmp_path, name):
     folder = tmp_path / "people"
     shutil.rmtree(folder, ignore_errors=True)
     try:
-        person = People(folder).add(name)
+        person = People(folder, SYSTEM_CALENDAR).add(name)
     except UserError:
         with pytest.raises(UserError, match="name"):
             clean_name(name)
@@ -53,7 +55,7 @@ def test_any_name_is_kept_or_refused_in_a_sentence(tmp_path, name):
     assert len(person.name) <= MOST_CHARACTERS
     (path,) = folder.iterdir()
     assert path.name == person.id
-    assert People(folder).find(person.id) == person
+    assert People(folder, SYSTEM_CALENDAR).find(person.id) == person
 
 
 @pytest.mark.parametrize("name", ["Zoë Müller", "李雷", "محمد", "नेहा", "O’Brien-Łukasz", "👩‍🦽", "佐藤 花子"])
@@ -74,8 +76,8 @@ def report(tick, phase, tool, code=None, **changes):
     )  # fmt: skip
 
 
-def logged(about, reports):
-    log = DriveLog()
+def logged(about, reports, calendar=SYSTEM_CALENDAR):
+    log = DriveLog(calendar)
     for one in reports:
         if log.begins(one):
             log.begin(one, about)
@@ -101,6 +103,16 @@ def test_the_figures_of_a_drive_are_those_of_its_reports(about):
     assert (record.stops, record.late_stops, record.reasons) == (1, 1, {LATE: 1})
     assert record.help == 0.5
     assert (record.ended, record.outcome, record.steps_done) == ("reset", None, 0)
+
+
+def test_records_are_dated_by_the_calendar_that_they_were_given_whatever_its_zone(about, tmp_path):
+    evening = datetime(2026, 3, 1, 19, 30, tzinfo=timezone(timedelta(hours=-5)))
+    calendar = Calendar(lambda: evening)
+    enabled = [report(k, "ready", 0.0) for k in range(3)]
+    done = logged(about, enabled, calendar)
+    assert done.record.started == "2026-03-02T00:30:00+00:00"
+    records = Records(tmp_path, dict, lambda: None, calendar)
+    assert records.people.add("Ada").added == done.record.started
 
 
 def test_a_trace_is_thin_and_comes_back(about):
@@ -132,7 +144,7 @@ def kept(records, about):
 
 def test_what_was_kept_is_there_for_the_next_server(records, about, tmp_path):
     person, record = kept(records, about)
-    again = Records(tmp_path, dict, lambda: None)
+    again = Records(tmp_path, dict, lambda: None, SYSTEM_CALENDAR)
     assert again.drives.wanted(Wanted(person=person.id)) == [record]
     assert again.people.problems + again.drives.problems == []
 
@@ -161,7 +173,7 @@ def test_a_damaged_record_is_named_and_the_rest_is_there(records, about, tmp_pat
     bea = records.people.add("Bea")
     path = tmp_path / FOLDER / "people" / bea.id / "person.json"
     path.write_bytes(damage)
-    again = Records(tmp_path, dict, lambda: None)
+    again = Records(tmp_path, dict, lambda: None, SYSTEM_CALENDAR)
     assert [person.name for person in again.people.all()] == ["Ada"]
     assert again.drives.find(record.id) == record
     assert str(path) in again.people.problems[0].text

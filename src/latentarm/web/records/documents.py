@@ -2,7 +2,6 @@
 
 import re
 import secrets
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final, TypeVar
 
@@ -27,11 +26,6 @@ Record = TypeVar("Record", bound=BaseModel)
 def new_id() -> str:
     """A random id, 64 bits."""
     return secrets.token_hex(8)
-
-
-def now() -> str:
-    """The time as records keep it: ISO 8601 in UTC, to the second."""
-    return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 def read_record(kind: type[Record], path: Path) -> Record:

@@ -14,7 +14,8 @@ from latentarm.kinematics.chain import Chain
 from latentarm.web.arm_process.task_run import Todo
 from latentarm.web.protocol.report import Report, Things
 from latentarm.web.protocol.scene import Drawable, pose_of
-from latentarm.web.records.documents import new_id, now
+from latentarm.web.records.calendar import Calendar
+from latentarm.web.records.documents import new_id
 from latentarm.web.records.drive_record import DriveRecord, Ending, Mark, Trace, TracedThings
 
 PERIOD_S: Final = 0.1
@@ -111,7 +112,7 @@ class _Open:
 
     about: About
     first: Report
-    started: str = field(default_factory=now)
+    started: str
     last: Report | None = None
     enabled_s: float = 0.0
     moving_s: float = 0.0
@@ -131,9 +132,14 @@ class _Open:
 
 @final
 class DriveLog:
-    """Logs one drive after the other."""
+    """Logs one drive after the other.
 
-    def __init__(self) -> None:
+    Args:
+        calendar: dates them.
+    """
+
+    def __init__(self, calendar: Calendar) -> None:
+        self._calendar = calendar
         self._open: _Open | None = None
         self._u: tuple[float, ...] = ()
         self._standing: Things | None = None
@@ -150,7 +156,7 @@ class DriveLog:
 
     def begin(self, report: Report, about: About) -> None:
         """Begin with a report of an enabled arm."""
-        self._open = _Open(about, report)
+        self._open = _Open(about, report, self._calendar.stamp())
         self._note_things(self._open, self._standing, 0.0)
         self.take(report)
 

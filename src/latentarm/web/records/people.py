@@ -11,7 +11,8 @@ from pydantic import Field
 from latentarm.errors import UserError
 from latentarm.untrusted.names import MOST_CHARACTERS, clean_name, same_name
 from latentarm.web.protocol.notice import Message, Notice, NoticeError
-from latentarm.web.records.documents import ID, new_id, now, read_record, unreadable, write_record
+from latentarm.web.records.calendar import Calendar
+from latentarm.web.records.documents import ID, new_id, read_record, unreadable, write_record
 from latentarm.web.records.pin import PinHash, hash_of
 
 VERSION: Final = 1
@@ -69,13 +70,15 @@ class People:
 
     Args:
         folder: has a folder for each person; need not be there yet.
+        calendar: dates their records.
 
     Attributes:
         problems: of records that cannot be read, one each.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, calendar: Calendar) -> None:
         self._folder = folder
+        self._calendar = calendar
         self._lock = threading.Lock()
         self._people: dict[str, PersonRecord] = {}
         self.problems: list[Notice] = []
@@ -113,7 +116,10 @@ class People:
             if len(self._people) >= MOST_PEOPLE:
                 raise NoticeError("too_many_people", count=MOST_PEOPLE)
             person = PersonRecord(
-                id=new_id(), name=self._free_name(name, None), added=now(), settings=settings or {}
+                id=new_id(),
+                name=self._free_name(name, None),
+                added=self._calendar.stamp(),
+                settings=settings or {},
             )
             return self._keep(person)
 

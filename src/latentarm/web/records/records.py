@@ -12,6 +12,7 @@ from latentarm.errors import UserError
 from latentarm.models.saving import WEIGHTS_LIMIT
 from latentarm.untrusted.opening import read_bytes
 from latentarm.web.protocol.notice import Message, NoticeError
+from latentarm.web.records.calendar import Calendar
 from latentarm.web.records.documents import new_id
 from latentarm.web.records.drives import TRACE, Drives, Wanted
 from latentarm.web.records.exchange import (
@@ -61,13 +62,18 @@ class Records:
         out: where the server records to.
         runs: folders of runs by name.
         in_use: path of the journal that is written now, or None.
+        calendar: dates them.
     """
 
     def __init__(
-        self, out: Path, runs: Callable[[], Mapping[str, Path]], in_use: Callable[[], Path | None]
+        self,
+        out: Path,
+        runs: Callable[[], Mapping[str, Path]],
+        in_use: Callable[[], Path | None],
+        calendar: Calendar,
     ) -> None:
         folder = out / FOLDER
-        self.people = People(folder / "people")
+        self.people = People(folder / "people", calendar)
         self.drives = Drives(folder, folder / "people")
         self.scenes = Scenes(folder / "scenes")
         self.recordings = Recordings(out, folder, in_use)

@@ -22,6 +22,7 @@ from latentarm.web.jobs.training import model_names
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import ChooseProfile
 from latentarm.web.protocol.page_messages import FRAME_LIMIT
+from latentarm.web.records.calendar import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.exchange import IMPORT_LIMIT
 from latentarm.web.records.people import PersonRecord
 from latentarm.web.records.records import Records
@@ -53,6 +54,7 @@ def serve(
     ready: Callable[[str], None] = lambda address: None,
     *,
     draws: bool = False,
+    calendar: Calendar = SYSTEM_CALENDAR,
 ) -> None:
     """Serve the page until Ctrl-C, then say how to use what was recorded.
 
@@ -61,6 +63,7 @@ def serve(
         say: tells the person who started it.
         ready: called once with the address to open first: the page's, or a link that works once.
         draws: whether the terminal can show a QR code.
+        calendar: dates what is kept of people and drives.
 
     Raises:
         UserError: the run or profile cannot be loaded, the address is taken, or a file for TLS is broken.
@@ -79,7 +82,7 @@ def serve(
     before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     control = ControlProcess(config.spec)
     try:
-        app = build_app(setup, control, config)
+        app = build_app(setup, control, config, calendar)
         gate = gated(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
         )
@@ -108,21 +111,24 @@ def serve(
         say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
 
 
-def build_app(setup: DriveSetup, control: ControlProcess, config: TeleopConfig) -> FastAPI:
+def build_app(
+    setup: DriveSetup, control: ControlProcess, config: TeleopConfig, calendar: Calendar
+) -> FastAPI:
     """The application: the pages and what they load, the scene, and the socket that drives.
 
     Args:
         setup: what is driven.
         control: drives it.
         config: says whether people may have PINs.
+        calendar: dates what is kept of people and drives.
     """
     sessions = Sessions()
     spec = setup.spec
     run_list = RunList(spec.out, spec.run)
     states = States(LoadedRun(setup, run_list.name_of(spec.run)), control, sessions, run_list)
-    records = Records(spec.out, run_list.runs, states.journal)
+    records = Records(spec.out, run_list.runs, states.journal, calendar)
     learning = Learning(control, states, run_list, spec.out)
-    history = History(states, sessions, records)
+    history = History(states, sessions, records, calendar)
     pins = Pins(records.people, wanted=config.pins)
     drive = DriveSocket(control, states, sessions, learning, records.people, pins, history)
 

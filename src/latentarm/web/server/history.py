@@ -8,6 +8,7 @@ from typing import Final, final
 from latentarm.errors import UserError
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Report
+from latentarm.web.records.calendar import Calendar
 from latentarm.web.records.drive_log import About, DriveLog, Logged
 from latentarm.web.records.drive_record import Ending
 from latentarm.web.records.records import Records
@@ -26,16 +27,17 @@ class History:
         states: tells every report.
         sessions: says who drives.
         records: where they are kept.
+        calendar: dates them.
 
     Attributes:
         problem: why the last drive was not kept; None if it was.
     """
 
-    def __init__(self, states: States, sessions: Sessions, records: Records) -> None:
+    def __init__(self, states: States, sessions: Sessions, records: Records, calendar: Calendar) -> None:
         self._states = states
         self._sessions = sessions
         self._records = records
-        self._log = DriveLog()
+        self._log = DriveLog(calendar)
         self._keeping: set[asyncio.Task[None]] = set()
         self.problem: Notice | None = None
         states.heard.append(self._hear)
