@@ -112,6 +112,13 @@ class Drives:
             write_record(drive, path)
             self._drives[drive.id] = drive
 
+    @property
+    def scenes(self) -> set[str]:
+        """Ids of all that is shown with a drive, also with those that can be restored."""
+        with self._lock:
+            known = [*self._drives.values(), *(record for _, record in self._deleted.values())]
+        return {drive.scene for drive in known if drive.scene is not None}
+
     def trace(self, drive: str) -> bytes:
         """A drive's trace, compressed with gzip, after it was checked.
 

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Final, final
@@ -14,6 +15,7 @@ from latentarm.untrusted.opening import read_bytes
 from latentarm.web.protocol.notice import Message, NoticeError
 from latentarm.web.records.calendar import Calendar
 from latentarm.web.records.documents import new_id
+from latentarm.web.records.drive_log import Logged
 from latentarm.web.records.drives import TRACE, Drives, Wanted
 from latentarm.web.records.exchange import (
     PROFILES,
@@ -78,7 +80,18 @@ class Records:
         self.scenes = Scenes(folder / "scenes")
         self.recordings = Recordings(out, folder, in_use)
         self._folder = folder
+        self._scenes_lock = threading.Lock()
         self._runs = runs
+
+    def keep(self, logged: Logged) -> None:
+        """Keep a drive that has ended, with what stood about the arm.
+
+        Raises:
+            UserError: it cannot be written.
+        """
+        with self._scenes_lock:
+            scene = self.scenes.keep(logged.scene)
+            self.drives.keep(logged.record.model_copy(update={"scene": scene}), logged.trace())
 
     def contents(self, person: str) -> Contents:
         """How much is kept of a person.
@@ -120,13 +133,14 @@ class Records:
         files = read_zip(content)
         brought, drives = person_of(files), drives_of(files)
         profiles = brought.profiles
-        for place, scene in scenes_of(files).items():
-            self.scenes.take(place, scene)
-        person = self.people.adopt(
-            brought.model_copy(update={"profiles": ()}),
-            lambda folder, person: write_drives(drives, folder, person),
-        )
-        self.drives.adopt(person.id)
+        with self._scenes_lock:
+            for place, scene in scenes_of(files).items():
+                self.scenes.take(place, scene)
+            person = self.people.adopt(
+                brought.model_copy(update={"profiles": ()}),
+                lambda folder, person: write_drives(drives, folder, person),
+            )
+            self.drives.adopt(person.id)
         taken = [
             self._take_profile(person.id, profile, profile_of(files, index))
             for index, profile in enumerate(profiles)
@@ -154,6 +168,7 @@ class Records:
         self.recordings.forget(person, known.name)
         self.people.remove(person)
         self.drives.forget(person)
+        self._tidy_scenes()
 
     def purge(self) -> None:
         """Remove for good what can no longer be restored.
@@ -163,6 +178,13 @@ class Records:
         """
         self.drives.purge()
         self.recordings.purge()
+        self._tidy_scenes()
+
+    def _tidy_scenes(self) -> None:
+        """Delete scenes of which no drive is left; none while there are drives that cannot be read."""
+        with self._scenes_lock:
+            if not self.drives.problems:
+                self.scenes.keep_only(self.drives.scenes)
 
     def _known(self, person: str) -> PersonRecord:
         found = self.people.find(person)

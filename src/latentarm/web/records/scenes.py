@@ -4,9 +4,11 @@ import hashlib
 import json
 import re
 import threading
+from collections.abc import Container
 from pathlib import Path
 from typing import Final, final
 
+from latentarm.errors import UserError
 from latentarm.files import written_whole
 from latentarm.models.reading import Section
 from latentarm.untrusted.opening import is_missing, read_bytes
@@ -56,7 +58,7 @@ class Scenes:
         Raises:
             UserError: it is not there, or damaged.
         """
-        digests = [str(digest) for digest in self._read(key).section("meshes").values.values()]
+        digests = map(str, self._read(key).section("meshes").values.values())
         places = [f"{key}.json", *(f"{_MESHES}/{one}" for one in digests if _DIGEST.fullmatch(one))]
         return {place: read_bytes(self._folder / place, _MESH_LIMIT) for place in dict.fromkeys(places)}
 
@@ -70,6 +72,26 @@ class Scenes:
         if place in (f"{digest[:32]}.json", f"{_MESHES}/{digest}"):
             with self._lock:
                 self._write(self._folder / place, content)
+
+    def keep_only(self, keys: Container[str]) -> None:
+        """Delete every other scene, and meshes of which no scene is left that can be read.
+
+        Args:
+            keys: ids of scenes.
+
+        Raises:
+            UserError: files cannot be deleted.
+        """
+        with self._lock:
+            found = sorted(self._folder.glob("*.json"))
+            gone = [path for path in found if path.stem not in keys]
+            meshes = {digest for path in found if path.stem in keys for digest in self._digests(path.stem)}
+            gone += [path for path in self._folder.glob(f"{_MESHES}/*") if path.name not in meshes]
+            for path in gone:
+                try:
+                    path.unlink(missing_ok=True)
+                except OSError as error:
+                    raise UserError(f"{path} cannot be deleted: {error.strerror or error}.") from error
 
     def description(self, key: str) -> bytes:
         """A scene as ``/scene.json`` has it.
@@ -89,6 +111,13 @@ class Scenes:
         if not isinstance(digest, str) or not _DIGEST.fullmatch(digest):
             return None
         return read_bytes(self._folder / _MESHES / digest, _MESH_LIMIT)
+
+    def _digests(self, key: str) -> list[str]:
+        """Digests of a scene's meshes; none where it cannot be read, and so cannot be shown."""
+        try:
+            return [str(digest) for digest in self._read(key).section("meshes").values.values()]
+        except UserError:
+            return []
 
     def _read(self, key: str) -> Section:
         scene = Section.of_file(self._folder / f"{key}.json", _SCENE_LIMIT)

@@ -121,5 +121,4 @@ class History:
     def _write(self, logged: Logged) -> None:
         if logged.record.person is not None and self._gone(logged.record.person):
             return
-        scene = self._records.scenes.keep(logged.scene)
-        self._records.drives.keep(logged.record.model_copy(update={"scene": scene}), logged.trace())
+        self._records.keep(logged)
