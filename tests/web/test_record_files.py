@@ -115,6 +115,25 @@ def test_records_are_dated_by_the_calendar_that_they_were_given_whatever_its_zon
     assert records.people.add("Ada").added == done.record.started
 
 
+def test_nothing_is_counted_after_the_task_has_ended_but_all_of_it_is_shown_again(about):
+    end = TaskState(choice=0, done=2, outcome="success", why=None, time_s=1.0, to_go=None)
+    before = [report(k, "moving", 0.001 * k) for k in range(100)]
+    after = [report(k, "moving", 0.001 * k).model_copy(update={"task": end}) for k in range(100, 300)]
+    stopped = report(300, "disengaged", 0.3, "stop_pressed").model_copy(update={"task": end})
+    log = DriveLog(SYSTEM_CALENDAR)
+    log.begin(before[0], about)
+    log.given((1.0, 0.0), "keyboard", gripper=False)
+    for one in [*before[1:], *after, stopped]:
+        log.take(one)
+    log.given((0.0, 0.0), "keyboard", gripper=False)
+    log.given((1.0, 0.0), "keyboard", gripper=False)
+    done = log.end("next")
+    record = done.record
+    assert (record.time_s, record.moving_s, record.way_m) == pytest.approx((1.0, 1.0, 0.1), abs=0.02)
+    assert (record.outcome, record.stops, record.presses) == ("success", 0, 1)
+    assert done.trace().t[-1] == pytest.approx(3.0, abs=0.02)
+
+
 def test_a_trace_is_thin_and_comes_back(about):
     trace = drive(about).trace()
     assert 20 <= len(trace.t) <= 24
@@ -147,6 +166,23 @@ def test_what_was_kept_is_there_for_the_next_server(records, about, tmp_path):
     again = Records(tmp_path, dict, lambda: None, SYSTEM_CALENDAR)
     assert again.drives.wanted(Wanted(person=person.id)) == [record]
     assert again.people.problems + again.drives.problems == []
+
+
+def test_a_scene_stays_as_long_as_a_drive_is_left_that_is_shown_with_it(records, about, tmp_path):
+    scenes = tmp_path / FOLDER / "scenes"
+    people = [records.people.add(name) for name in ("Ada", "Bea")]
+    other = replace(about, scene=replace(about.scene, description={**about.scene.description, "things": []}))
+    for person, of in ((people[0], about), (people[1], about), (people[1], other)):
+        records.keep(drive(replace(of, person=person.id)))
+    of_ada, *_ = records.drives.wanted(Wanted(person=people[0].id))
+    records.erase(people[1].id)
+    assert [path.stem for path in scenes.glob("*.json")] == [of_ada.scene]
+    records.drives.delete(of_ada.id)
+    records.purge()
+    assert records.scenes.description(of_ada.scene)
+    records.drives.restore(of_ada.id)
+    records.erase(people[0].id)
+    assert [path for path in (tmp_path / FOLDER).rglob("*") if path.is_file()] == []
 
 
 def test_a_deletion_can_be_undone_until_its_time_is_over(records, about, tmp_path):

@@ -129,6 +129,11 @@ class _Open:
     grains_s: float = -GRAINS_S
     values: int = 0
 
+    @property
+    def over(self) -> bool:
+        """Whether the task has ended: what is driven after that is shown again, but not counted."""
+        return self.last is not None and self.last.task.outcome is not None
+
 
 @final
 class DriveLog:
@@ -168,7 +173,8 @@ class DriveLog:
         t = round(report.time_s - drive.first.time_s, 2)
         before = drive.last
         enabled, was = report.phase in _ENABLED, before is not None and before.phase in _ENABLED
-        if before is not None:
+        going = not drive.over
+        if before is not None and going:
             span_s = min(max(report.time_s - before.time_s, 0.0), _LONGEST_TICK_S)
             drive.way_m += dist(report.tool, before.tool)
             if was and before.phase == "moving":
@@ -179,7 +185,7 @@ class DriveLog:
                 drive.modes[before.mode] += 1
         if was and not enabled:
             code = "stop_pressed" if report.reason is None else report.reason.code
-            drive.reasons[code] += 1
+            drive.reasons[code] += going
             drive.marks.append(Mark(t=t, code=code))
         elif enabled and not was:
             drive.marks.append(Mark(t=t, code="enabled"))
@@ -198,7 +204,7 @@ class DriveLog:
         """
         pressed = (any(u) and not any(self._u)) + gripper
         self._u = tuple(round(value, 2) for value in u)
-        if self._open is not None and pressed:
+        if self._open is not None and pressed and not self._open.over:
             self._open.presses += pressed
             self._open.inputs[source] += pressed
 

@@ -30,13 +30,15 @@ Ending = Literal["reset", "again", "next", "driver_changed", "run_changed", "ser
 class DriveRecord(Message):
     """One drive: a run of a task, from when the arm is first enabled until the person ends it or leaves.
 
+    Nothing is counted after the task has succeeded or failed.
+
     Attributes:
         version: of this record.
         id: random.
         person: who drove; None for a guest.
         title: given by people; "" for none.
         started: when the arm was first enabled, ISO 8601 in UTC.
-        time_s: from then until the arm was last enabled.
+        time_s: from then until the task ended, or else until the arm was last enabled.
         moving_s: for how long of that the arm moved.
         robot: its name.
         task: its name.
