@@ -133,6 +133,7 @@ def test_every_step_of_every_task_and_all_that_goes_wrong_has_words(name):
     for thing in things:
         key = f"thing.{thing.replace(' ', '_')}"
         assert {key, f"{key}.the"} <= set(ENGLISH), thing
+    assert f"task.name.{name}" in ENGLISH
     for step in setup.todo.steps:
         if step.kind == "placed":
             assert f"thing.{step.thing.replace(' ', '_')}.into" in ENGLISH

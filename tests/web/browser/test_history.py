@@ -57,8 +57,11 @@ def driven(page, served, watch, press_enable, press_until_moving):
         page.keyboard.press("Escape")
         arm.comes_to_rest()
         tool = arm.tool
+    # The bar of the switches is on every page then; it is not printed.
+    page.get_by_role("radio", name="Switch").check()
     page.goto(f"{served}/history")
-    page.get_by_role("button", name="Show: entree").first.wait_for()
+    page.locator("#page-switch").wait_for()
+    page.get_by_role("button", name="Show: Tofu").first.wait_for()
     return tool
 
 
@@ -72,7 +75,7 @@ def test_a_drive_is_listed_replayed_printed_and_deleted(
     )
 
     page.evaluate("document.addEventListener('arm-drawn', (e) => { window.drawn = e.detail; })")
-    page.get_by_role("button", name="Show: entree").first.click()
+    page.get_by_role("button", name="Show: Tofu").first.click()
     wait_in_page(page, "window.drawn")
     page.locator("#seek").fill(page.locator("#seek").get_attribute("max"))
     wait_in_page(
@@ -106,8 +109,10 @@ def test_a_drive_is_listed_replayed_printed_and_deleted(
             ["pdftotext", tmp_path / "report.pdf", "-"], capture_output=True, text=True, check=True
         )
         assert "The robot arm is simulated" in words.stdout
+        assert "Next choice" not in words.stdout
+        assert "press for" not in words.stdout
 
-    page.get_by_role("button", name="Delete: entree").first.click()
+    page.get_by_role("button", name="Delete: Tofu").first.click()
     expect(page.locator("#drives-title")).to_have_text("0 drives")
     page.get_by_role("button", name="Undo").click()
     expect(page.locator("#drives-title")).to_have_text("One drive")

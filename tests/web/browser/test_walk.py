@@ -104,7 +104,7 @@ def open_path(chromium, driven):
         page.goto(f"{driven}/{path}")
         page.locator("#status:not([data-phase=connecting], [data-phase=lost])").wait_for()
         if path == "history":
-            page.get_by_role("button", name="Show: entree").first.wait_for()
+            page.get_by_role("button", name="Show: Tofu").first.wait_for()
         if path == "people":
             page.get_by_role("button", name=f"Choose {NAME}").wait_for()
         page.wait_for_timeout(300)

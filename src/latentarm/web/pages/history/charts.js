@@ -1,58 +1,71 @@
-/** Small charts: a bar for each week, with its value in figures, and all of it in words. */
+/** Small charts: a bar for each day or week, with its value in figures, and all of it in words. */
 
 import { create } from "../layout/dom.js";
-import { say, sayNumber, sayPercent } from "../layout/words.js";
+import { say, sayNumber } from "../layout/words.js";
 import { sayTime } from "../records/ask.js";
-import { byWeek } from "./weeks.js";
+import { byDay, byWeek, inDays } from "./weeks.js";
 
-/** @import {Drive, Week} from "./weeks.js" */
+/** @import {Drive, Period} from "./weeks.js" */
 
 const SVG = "http://www.w3.org/2000/svg";
-const [WIDTH, HEIGHT, TOP, FOOT] = [300, 120, 18, 18];
+const [WIDTH, HEIGHT, TOP, FOOT] = [300, 124, 20, 24];
+/** Values and days that there is room for, one next to the other. */
+const [MOST_VALUES, MOST_DATES] = [8, 4];
 
-/** @type {[import("../layout/words.js").WordKey, (week: Week) => number | null, (value: number) => string][]} */
+/** @type {[import("../layout/words.js").WordKey, (period: Period) => number | null, (value: number) => string][]} */
 const CHARTS = [
-  ["history.chart_success", ({ success }) => success, (value) => sayPercent(value)],
+  ["history.chart_success", ({ success }) => success, (value) => sayNumber(100 * value)],
   ["history.chart_time", ({ timeS }) => timeS, (value) => sayNumber(value, value < 10 ? 1 : 0)],
   ["history.chart_stops", ({ stops }) => stops, (value) => sayNumber(value, 1)],
 ];
 
-/** Success, time and stops over the weeks. @param {Drive[]} drives @returns {HTMLElement[]} */
+/** What the charts compare. @param {Drive[]} drives */
+export function chartsTitle(drives) {
+  return say(inDays(drives) ? "history.days" : "history.weeks");
+}
+
+/** Success, time and stops over the days or weeks. @param {Drive[]} drives @returns {HTMLElement[]} */
 export function charts(drives) {
-  const weeks = byWeek(drives);
-  return CHARTS.map(([title, value, words]) => chart(say(title), weeks, value, words));
+  const daily = inDays(drives);
+  const periods = daily ? byDay(drives) : byWeek(drives);
+  const told = (/** @type {string} */ day, /** @type {string} */ value) =>
+    daily ? say("history.chart_day", { day, value }) : say("history.chart_week", { week: day, value });
+  return CHARTS.map(([title, value, words]) => chart(say(title), periods, value, words, told));
 }
 
 /**
  * @param {string} title
- * @param {Week[]} weeks
- * @param {(week: Week) => number | null} value
+ * @param {Period[]} periods
+ * @param {(period: Period) => number | null} value
  * @param {(value: number) => string} words
+ * @param {(day: string, value: string) => string} told a period in a sentence
  */
-function chart(title, weeks, value, words) {
+function chart(title, periods, value, words, told) {
   const figure = create("figure", { className: "chart" });
   figure.append(create("figcaption", { textContent: title }));
-  const known = weeks.filter((week) => value(week) !== null);
+  const known = periods.filter((period) => value(period) !== null);
   if (!known.length) {
     figure.append(create("p", { className: "muted small", textContent: say("history.chart_nothing") }));
     return figure;
   }
   const svg = element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img" });
-  const told = known.map((week) => say("history.chart_week", { week: day(week.monday), value: words(Number(value(week))) }));
-  svg.setAttribute("aria-label", `${title}. ${told.join(" ")}`);
-  const most = Math.max(...known.map((week) => Number(value(week))), 1e-9);
-  const step = WIDTH / weeks.length;
+  const sentences = known.map((period) => told(date(period.first), words(Number(value(period)))));
+  svg.setAttribute("aria-label", `${title}. ${sentences.join(" ")}`);
+  const most = Math.max(...known.map((period) => Number(value(period))), 1e-9);
+  const step = WIDTH / periods.length;
+  const [everyValue, everyDate] = [MOST_VALUES, MOST_DATES].map((room) => Math.ceil(periods.length / room));
   const wide = Math.min(0.7 * step, 36);
-  weeks.forEach((week, index) => {
+  periods.forEach((period, index) => {
     const middle = (index + 0.5) * step;
-    const height = ((HEIGHT - TOP - FOOT) * Number(value(week) ?? 0)) / most;
-    const y = HEIGHT - FOOT - height;
-    if (value(week) !== null) {
-      svg.append(element("rect", { class: "bar-week", x: middle - wide / 2, y, width: wide, height: Math.max(height, 1) }));
-      svg.append(element("text", { x: middle, y: y - 4, "text-anchor": "middle" }, words(Number(value(week)))));
+    const amount = value(period);
+    if (amount !== null) {
+      const height = ((HEIGHT - TOP - FOOT) * amount) / most;
+      const y = HEIGHT - FOOT - height;
+      if (amount > 0) svg.append(element("rect", { class: "bar-period", x: middle - wide / 2, y, width: wide, height }));
+      if (index % everyValue === 0) svg.append(element("text", { x: middle, y: y - 4, "text-anchor": "middle" }, words(amount)));
     }
-    if (weeks.length <= 6 || index % 2 === 0) {
-      svg.append(element("text", { class: "axis-text", x: middle, y: HEIGHT - 4, "text-anchor": "middle" }, day(week.monday)));
+    if (index % everyDate === 0) {
+      svg.append(element("text", { class: "axis-text", x: middle, y: HEIGHT - 5, "text-anchor": "middle" }, date(period.first)));
     }
   });
   svg.append(element("line", { class: "base", x1: 0, x2: WIDTH, y1: HEIGHT - FOOT, y2: HEIGHT - FOOT }));
@@ -60,9 +73,9 @@ function chart(title, weeks, value, words) {
   return figure;
 }
 
-/** @param {string} monday */
-function day(monday) {
-  return sayTime(`${monday}T12:00:00Z`, { day: "numeric", month: "numeric" });
+/** @param {string} day `YYYY-MM-DD` */
+function date(day) {
+  return sayTime(`${day}T00:00:00`, { day: "numeric", month: "numeric" });
 }
 
 /** @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */

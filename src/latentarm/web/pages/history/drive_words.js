@@ -1,5 +1,6 @@
 /** A drive in words. */
 
+import { taskTitle, thingWords } from "../layout/thing_words.js";
 import { say, sayNumber } from "../layout/words.js";
 
 /** @import {WordKey} from "../layout/words.js" */
@@ -18,8 +19,7 @@ export function inputWords(input) {
 
 /** @param {Pick<Drive, "task" | "choice">} drive */
 export function taskWords({ task, choice }) {
-  const name = task.replaceAll("_", " ");
-  return choice ? `${name}: ${choice}` : name;
+  return choice ? say("history.task_choice", { task: taskTitle(task), choice: thingWords(choice) }) : taskTitle(task);
 }
 
 /** @param {Drive} drive */
@@ -33,6 +33,11 @@ export function timeWords(seconds) {
   return say("history.minutes", { minutes: Math.floor(seconds / 60), seconds: Math.round(seconds % 60) });
 }
 
+/** One that stays on one line. @param {string} text */
+function unbroken(text) {
+  return text.replaceAll(" ", "\u00a0");
+}
+
 /** @param {Drive} drive */
 export function figureWords(drive) {
   const steps = drive.steps === null ? "" : say("history.steps", { done: drive.steps_done ?? 0, all: drive.steps });
@@ -43,5 +48,5 @@ export function figureWords(drive) {
     say("history.stops", { count: drive.stops }),
     say("history.presses", { count: drive.presses }),
     steps,
-  ].filter(Boolean).join(" · ");
+  ].filter(Boolean).map(unbroken).join(" · ");
 }

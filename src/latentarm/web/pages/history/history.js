@@ -5,7 +5,7 @@ import { byId, create, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice, sayNumber } from "../layout/words.js";
 import { ask, sayTime } from "../records/ask.js";
-import { charts } from "./charts.js";
+import { charts, chartsTitle } from "./charts.js";
 import { figureWords, inputWords, outcomeWords, taskWords } from "./drive_words.js";
 import { attachReplay } from "./replay_panel.js";
 import { report } from "./report.js";
@@ -72,6 +72,7 @@ async function refresh() {
   const found = await ask("GET", `/records/drives?${query()}`);
   ({ drives, people } = found);
   byId("csv", HTMLAnchorElement).href = `/records/drives.csv?${query()}`;
+  setText(byId("weeks-title"), chartsTitle(drives));
   byId("charts").replaceChildren(...charts(drives));
   byId("report").replaceChildren(...report(drives, whose()));
   setText(byId("drives-title"), say("history.drives", { count: drives.length }));

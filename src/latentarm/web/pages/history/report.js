@@ -3,7 +3,7 @@
 import { create } from "../layout/dom.js";
 import { say, sayNumber, sayPercent } from "../layout/words.js";
 import { sayTime } from "../records/ask.js";
-import { charts } from "./charts.js";
+import { charts, chartsTitle } from "./charts.js";
 import { inputWords, outcomeWords, taskWords, timeWords } from "./drive_words.js";
 import { counted, figures, sum } from "./weeks.js";
 
@@ -29,8 +29,8 @@ export function report(drives, name) {
   if (!drives.length) return parts;
   const weekly = create("div", { className: "charts" });
   weekly.append(...charts(drives));
-  parts.push(summary(drives), titled("report.weeks", weekly), titled("report.tasks", taskTable(drives)));
-  parts.push(titled("report.latest", driveTable(drives)));
+  parts.push(summary(drives), titled(chartsTitle(drives), weekly), titled(say("report.tasks"), taskTable(drives)));
+  parts.push(titled(say("report.latest"), driveTable(drives)));
   parts.push(create("p", { className: "small", textContent: say("report.words") }));
   parts.push(create("p", { className: "small", textContent: say("report.made", { when: sayTime(new Date().toISOString()) }) }));
   return parts;
@@ -97,9 +97,9 @@ function table(heads, rows) {
   return made;
 }
 
-/** @param {import("../layout/words.js").WordKey} word @param {HTMLElement} content */
-function titled(word, content) {
+/** @param {string} title @param {HTMLElement} content */
+function titled(title, content) {
   const section = create("section");
-  section.append(create("h3", { textContent: say(word) }), content);
+  section.append(create("h3", { textContent: title }), content);
   return section;
 }

@@ -1,4 +1,4 @@
-/** Drives week by week, and in all: the figures behind the charts and the report. */
+/** Drives day by day or week by week, and in all: the figures behind the charts and the report. */
 
 /**
  * @typedef {object} Drive as `DriveRecord` of the server has it
@@ -26,8 +26,8 @@
  */
 
 /**
- * @typedef {object} Week
- * @property {string} monday `YYYY-MM-DD`
+ * @typedef {object} Period a day, or a week from Monday on
+ * @property {string} first its first day, `YYYY-MM-DD`
  * @property {number} drives how many
  * @property {number | null} success share of those that ended well or badly; null where none did either
  * @property {number | null} timeS median, s; null without drives
@@ -37,24 +37,51 @@
 const DAY_MS = 24 * 3600 * 1000;
 /** Weeks in a chart: the last ones. */
 export const MOST_WEEKS = 12;
+/** Drives of no more days than these are compared day by day. */
+export const MOST_DAYS = 14;
+
+/** The day of a moment where the page is read. @param {string} iso */
+export function dayOf(iso) {
+  const at = new Date(iso);
+  return written(Date.UTC(at.getFullYear(), at.getMonth(), at.getDate()));
+}
 
 /** The Monday of a moment's week. @param {string} iso */
 export function mondayOf(iso) {
-  const day = new Date(`${iso.slice(0, 10)}T00:00:00Z`);
-  return dayOf(day.getTime() - ((day.getUTCDay() + 6) % 7) * DAY_MS);
+  const day = dayOf(iso);
+  return later(day, -((new Date(day).getUTCDay() + 6) % 7));
 }
 
-/** Every week from the first drive to the last, without gaps. @param {Drive[]} drives @returns {Week[]} */
+/** Whether drives are few days apart: days then say more than weeks. @param {Drive[]} drives */
+export function inDays(drives) {
+  const days = drives.map(({ started }) => dayOf(started)).sort();
+  return !days.length || days[days.length - 1] < later(days[0], MOST_DAYS);
+}
+
+/** Every day from the first drive to the last, without gaps. @param {Drive[]} drives */
+export function byDay(drives) {
+  return compared(drives, dayOf, 1);
+}
+
+/** Every week from the first drive to the last, without gaps; the last ones. @param {Drive[]} drives */
 export function byWeek(drives) {
-  if (!drives.length) return [];
-  const mondays = drives.map(({ started }) => mondayOf(started)).sort();
-  const last = mondays[mondays.length - 1];
-  const weeks = [];
-  for (let monday = mondays[0]; monday <= last; monday = dayOf(Date.parse(`${monday}T00:00:00Z`) + 7 * DAY_MS)) {
-    const here = drives.filter(({ started }) => mondayOf(started) === monday);
-    weeks.push({ monday, drives: here.length, ...figures(here) });
+  return compared(drives, mondayOf, 7).slice(-MOST_WEEKS);
+}
+
+/**
+ * @param {Drive[]} drives
+ * @param {(iso: string) => string} firstDay of the period of a moment
+ * @param {number} days in a period
+ * @returns {Period[]}
+ */
+function compared(drives, firstDay, days) {
+  const firsts = drives.map(({ started }) => firstDay(started)).sort();
+  const periods = [];
+  for (let first = firsts[0]; first <= firsts[firsts.length - 1]; first = later(first, days)) {
+    const here = drives.filter(({ started }) => firstDay(started) === first);
+    periods.push({ first, drives: here.length, ...figures(here) });
   }
-  return weeks.slice(-MOST_WEEKS);
+  return periods;
 }
 
 /** @param {Drive[]} drives @returns {{success: number | null, timeS: number | null, stops: number | null}} */
@@ -89,7 +116,12 @@ export function counted(values) {
   return [...counts].sort(([, one], [, other]) => other - one);
 }
 
+/** @param {string} day @param {number} days */
+function later(day, days) {
+  return written(Date.parse(day) + days * DAY_MS);
+}
+
 /** @param {number} ms */
-function dayOf(ms) {
+function written(ms) {
   return new Date(ms).toISOString().slice(0, 10);
 }

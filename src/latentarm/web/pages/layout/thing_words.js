@@ -1,4 +1,4 @@
-/** Things, goals and robots in words. What no catalogue knows, such as a plug-in's things, is called by its own name. */
+/** Things, goals, robots and tasks in words. What no catalogue knows, such as a plug-in's things, is called by its own name. */
 
 import { knows, say } from "./words.js";
 
@@ -23,6 +23,12 @@ export function intoThing(name) {
 export function robotWords(name) {
   const key = `robot.${name}`;
   return knows(key) ? say(/** @type {WordKey} */ (key)) : name;
+}
+
+/** What a task is called. @param {string} name as the catalogue of tasks has it */
+export function taskTitle(name) {
+  const key = `task.name.${name}`;
+  return knows(key) ? say(/** @type {WordKey} */ (key)) : name.replaceAll("_", " ");
 }
 
 /** @param {string} name @param {string} form */

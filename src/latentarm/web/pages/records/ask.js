@@ -25,5 +25,11 @@ export async function ask(method, path, body) {
 
 /** A moment as people write it. @param {string} iso @param {Intl.DateTimeFormatOptions} [style] */
 export function sayTime(iso, style = { dateStyle: "medium", timeStyle: "short" }) {
-  return new Date(iso).toLocaleString(document.documentElement.lang, style);
+  return new Date(iso).toLocaleString(locale(), style);
+}
+
+/** The page's language as it is written where the browser is from: `en-GB` writes dates otherwise than `en`. */
+function locale() {
+  const { lang } = document.documentElement;
+  return navigator.languages.find((one) => one.startsWith(`${lang}-`)) ?? lang;
 }
