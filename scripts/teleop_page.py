@@ -20,6 +20,9 @@ from playwright.sync_api import Browser, Page, sync_playwright
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 USUAL_GL = ()
+TELEOP = ("-m", "latentarm", "teleop")
+"""What Python is told to serve the page."""
+
 NO_GL = ("--disable-3d-apis",)
 """The page then says that it cannot draw the views, and everything else works."""
 START_S = 60.0
@@ -40,29 +43,21 @@ class Site:
 
 
 @contextmanager
-def served(run: Path | None, out: Path | None = None, options: Sequence[str] = ()) -> Iterator[Site]:
+def served(
+    run: Path | None, out: Path | None = None, options: Sequence[str] = (), program: Sequence[str] = TELEOP
+) -> Iterator[Site]:
     """`latentarm teleop RUN` as long as the block lasts.
 
     Args:
         run: a trained run.
         out: keeps what is recorded.
         options: further words of the command.
+        program: what Python is told to serve the page.
     """
     with tempfile.TemporaryDirectory() as folder:
         said = Path(folder) / "said"
         words = [] if run is None else [str(run)]
-        command = [
-            sys.executable,
-            "-m",
-            "latentarm",
-            "teleop",
-            *words,
-            *options,
-            "--port",
-            "0",
-            "--out",
-            str(out or folder),
-        ]
+        command = [sys.executable, *program, *words, *options, "--port", "0", "--out", str(out or folder)]
         with said.open("w") as file:
             server = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT)
         try:
