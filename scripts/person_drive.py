@@ -34,6 +34,9 @@ LONG_CM: Final = 3.0
 POUR_AT_LEAST: Final = 12.0
 """Degrees; who pours tips the cup a little at a time, and looks."""
 
+SHARE_AT_LEAST: Final = 4.0
+"""Degrees; who must keep some of it in the cup tips it by less."""
+
 TIPPED: Final = 20.0
 """Degrees; a cup that leans so far is set upright before it is carried elsewhere."""
 
@@ -101,6 +104,9 @@ class Person:
                 drive.first_step_s = time.monotonic() - began_s
             if seen.outcome is not None:
                 drive.success, drive.said = seen.outcome == "success", seen.said
+                break
+            if seen.said.startswith("Too little is left"):
+                drive.said = seen.said
                 break
             if not seen.enabled:
                 if was_enabled:
@@ -171,7 +177,7 @@ class Person:
         if unit == "°":
             far = min(far, TURN_AT_ONCE)
             if "pour" in seen.step.lower():
-                far = min(far, max(POUR_AT_LEAST, far / 2))
+                far = min(far, SHARE_AT_LEAST if _shares(seen) else max(POUR_AT_LEAST, far / 2))
         speed = self._rate[unit]
         hold_s = max(far / speed - self._more_s[unit], SHORTEST_S)
         _log.info("push %s %.2f s for %.1f %s", wanted.direction, hold_s, far, unit)
@@ -199,7 +205,8 @@ _OTHER: Final = {"Up": "Down", "Down": "Up", "Left": "Right", "Right": "Left"}
 
 def _brief(seen: Look) -> str:
     left = ", ".join(f"{one.pair} {one.direction} {one.amount:g}{one.unit}" for one in seen.left)
-    return f"{seen.enabled} | {seen.step} | {seen.pair} | {left} | {seen.gripper} | {seen.said}"
+    full = ", ".join(f"{one.thing} {one.percent}%" for one in seen.fills)
+    return f"{seen.enabled} | {seen.step} | {seen.pair} | {left} | {seen.gripper} | {full} | {seen.said}"
 
 
 def _next(seen: Look) -> Left | None:
@@ -222,6 +229,12 @@ def _next(seen: Look) -> Left | None:
             return max(aside, key=lambda one: one.amount) if aside else first
         return first
     return None
+
+
+def _shares(seen: Look) -> bool:
+    """Whether something must stay in the cup: another bowl needs some of it as well."""
+    needy = [one for one in seen.fills if one.enough is not None and one.percent < one.enough]
+    return len(needy) > 1
 
 
 _DOWN: Final = 3

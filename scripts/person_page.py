@@ -18,6 +18,7 @@ LOOK: Final = """() => {
     mark: document.querySelector("#status").dataset.phase,
     steps: seen("#task-steps li").map(words),
     said: text("#task-said"),
+    fills: seen("#task-fills li").map(words),
     pairs: seen("#to-go li").map((item) => [...item.children].map(words)),
     pair: seen("#axes input").findIndex((input) => input.checked),
     gripper: text("#gripper-state"),
@@ -51,6 +52,21 @@ class Left:
 
 
 @dataclass(frozen=True)
+class Fill:
+    """How full a cup or a bowl is, as the page tells it.
+
+    Attributes:
+        thing: its name.
+        percent: of what is poured.
+        enough: percent that must be in it; None for what is poured from.
+    """
+
+    thing: str
+    percent: int
+    enough: int | None
+
+
+@dataclass(frozen=True)
 class Look:
     """What a person sees at one moment.
 
@@ -65,6 +81,7 @@ class Look:
         pair: which pair of directions is chosen.
         gripper: its state in words.
         speed_cm_s: of the tool along each direction, as the arrows tell it.
+        fills: how full cups and bowls are; empty where nothing is poured.
     """
 
     status: str
@@ -77,6 +94,7 @@ class Look:
     pair: int
     gripper: str
     speed_cm_s: dict[str, float]
+    fills: tuple[Fill, ...]
 
 
 def look(page: Page) -> Look:
@@ -96,6 +114,7 @@ def look(page: Page) -> Look:
         pair=seen["pair"],
         gripper=seen["gripper"],
         speed_cm_s=_speeds(seen["arrows"]),
+        fills=tuple(_fill(one) for one in seen["fills"]),
     )
 
 
@@ -117,6 +136,14 @@ def _left(pair: int, parts: list[str]) -> list[Left]:
             direction, amount, unit = match.groups()
             found.append(Left(pair, direction, float(amount), unit.strip()))  # type: ignore[arg-type]
     return found
+
+
+def _fill(told: str) -> Fill:
+    match = re.fullmatch(r"(.+): (\d+) % (?:left|in, (\d+) % is enough)", told)
+    if match is None:
+        raise ValueError(f"The page tells in a way unknown to this person how full something is: {told}")
+    thing, percent, enough = match.groups()
+    return Fill(thing, int(percent), None if enough is None else int(enough))
 
 
 def _speeds(arrows: list[str]) -> dict[str, float]:

@@ -63,12 +63,17 @@ def test_names_of_people_are_names(name):
     assert clean_name(f"  {name} ") == clean_name(name)
 
 
+BEGUN = TaskState(
+    choice=0, done=0, outcome=None, why=None, time_s=0.0, to_go=None, lost=None, fills=(), short=False
+)
+
+
 def report(tick, phase, tool, code=None, **changes):
     return Report(
         nonce="", tick=tick, time_s=100.0 + 0.01 * tick, driver=1, phase=phase, note=None,
         reason=None if code is None else Notice(code=code), held_back=None, mode="assisted", axes=0, run=None,
         returning=False, at_start=False, let_go_first=False, late_stops=0, help="medium", seed=0,
-        task=TaskState(choice=0, done=0, outcome=None, why=None, time_s=0.0, to_go=None),
+        task=BEGUN,
         profile=None, loading=False,
         q=(0.0, *[0.1 * tool] * 6), speed=0.0, tool=(tool, 0.0, 0.0), gripper=None,
         things=None, ghosts=None, belief=(), alpha=0.5, bound_rad=None, recording=None, late_share=0.0,
@@ -116,7 +121,7 @@ def test_records_are_dated_by_the_calendar_that_they_were_given_whatever_its_zon
 
 
 def test_nothing_is_counted_after_the_task_has_ended_but_all_of_it_is_shown_again(about):
-    end = TaskState(choice=0, done=2, outcome="success", why=None, time_s=1.0, to_go=None)
+    end = BEGUN.model_copy(update={"done": 2, "outcome": "success", "time_s": 1.0})
     before = [report(k, "moving", 0.001 * k) for k in range(100)]
     after = [report(k, "moving", 0.001 * k).model_copy(update={"task": end}) for k in range(100, 300)]
     stopped = report(300, "disengaged", 0.3, "stop_pressed").model_copy(update={"task": end})

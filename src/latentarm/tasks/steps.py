@@ -86,6 +86,8 @@ class TaskStep:
         name: both in words.
         done: whether it has been done.
         waypoints: how a person does it; tried again from the first if it is not done after the last.
+        holds: name of what must be in the hand or on the fork until it is done, which an earlier step took;
+            None for nothing.
     """
 
     kind: StepKind
@@ -93,6 +95,7 @@ class TaskStep:
     name: str
     done: Predicate
     waypoints: tuple[Waypoint, ...]
+    holds: str | None = None
 
 
 RETRY_S: Final = 1.0

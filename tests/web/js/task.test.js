@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { attachTask } from "#pages/drive/task_panel.js";
-import { blockedWords, outcomeWords, stepWords } from "#pages/drive/task_words.js";
+import { blockedWords, fillWords, outcomeWords, stepWords } from "#pages/drive/task_words.js";
 import { theThing, thingWords } from "#pages/layout/thing_words.js";
 import { useWords } from "#pages/layout/words.js";
 import { Settings } from "#pages/settings/settings.js";
@@ -15,7 +15,7 @@ import { event, FakeElement, newBrowser, pass, stateOf, welcomeOf } from "./brow
 
 const MARSHMALLOWS = ["left marshmallow", "middle marshmallow", "right marshmallow"];
 const STEPS = [{ kind: "above", thing: MARSHMALLOWS[0] }, { kind: "stabbed", thing: MARSHMALLOWS[0] }];
-const RUN = { choice: 0, done: 0, outcome: null, why: null, time_s: 0 };
+const RUN = { choice: 0, done: 0, outcome: null, why: null, time_s: 0, to_go: null, lost: null, fills: [], short: false };
 
 let fakes;
 let parts;
@@ -40,7 +40,7 @@ function hears(run = {}, fields = {}) {
 
 beforeEach(() => {
   fakes = newBrowser();
-  const names = ["panel", "steps", "said", "time", "why", "chooser", "choice", "next", "again"];
+  const names = ["panel", "steps", "fills", "said", "time", "why", "chooser", "choice", "next", "again"];
   parts = Object.fromEntries(names.map((name) => [name, new FakeElement()]));
   parts.panel.hidden = true;
   sent = [];
@@ -106,6 +106,44 @@ test("failure says what happened", () => {
   assert.deepEqual(heard, ["failure"]);
   hears();
   assert.equal(parts.said.textContent, "");
+});
+
+test("what slipped is said with what to do, its step is to be done again, and then the steps go on", () => {
+  welcomes();
+  hears({ done: 1 });
+  hears({ done: 2, lost: { thing: MARSHMALLOWS[0], step: 0 } });
+  assert.equal(parts.said.textContent, "The arm no longer holds the left marshmallow. Take it again, or press Again.");
+  assert.equal(marks(), "▸✓");
+  assert.equal(parts.panel.dataset.outcome, "stuck");
+  assert.deepEqual(parts.steps.children.map((item) => item.children[3].textContent), ["20 cm to go", ""]);
+  assert.deepEqual(task.choices().map(({ id }) => id), ["next", "again"]);
+  assert.deepEqual(heard, []);
+  hears({ done: 1 });
+  assert.equal(marks(), "✓▸");
+  assert.equal(parts.said.textContent, "Step 1 of 2 is done. Now: Stab the left marshmallow and lift it.");
+});
+
+test("too little to pour is said with what to do", () => {
+  welcomes();
+  hears({ done: 1, short: true });
+  assert.equal(parts.said.textContent, "Too little is left to pour. Press Again to start over.");
+  assert.deepEqual(task.choices().map(({ id }) => id), ["next", "again"]);
+});
+
+test("how full things are is told where something is poured, in every language", () => {
+  welcomes();
+  hears();
+  assert.ok(parts.fills.hidden);
+  const fills = [{ thing: "cup", share: 0.4, enough: null }, { thing: "left bowl", share: 0.6, enough: 0.8 }];
+  const told = () => parts.fills.children.map((item) => item.textContent);
+  hears({ fills });
+  assert.ok(!parts.fills.hidden);
+  assert.deepEqual(told(), ["Cup: 40 % left", "Left bowl: 60 % in, 80 % is enough"]);
+  for (const [language, words, bowl] of [["de", german, "Linke Schale"], ["es", spanish, "Cuenco izquierdo"], ["zh", chinese, "左边的碗"]]) {
+    useWords(language, words);
+    assert.ok(fillWords(fills[1]).startsWith(bowl));
+    assert.match(fillWords(fills[1]), /60\s?%.*80\s?%/u);
+  }
 });
 
 for (const [fields, why] of [

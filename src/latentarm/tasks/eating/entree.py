@@ -94,15 +94,14 @@ class Entree(ForkTask):
         low = partial(over, thing="own plate", height_m=HALF_M[2] + 0.006, turn_rad=along)
         down = Waypoint(low, wait_s=0.5, speed=0.5)
         centre = np.array([*OWN_M, STAND_M + HALF_M[2]])
+        carried = CarriedOver("slice", "own plate", 0.03)
         laid = Placed("slice", centre, np.array([*(2 * [0.7 * PLATE_RADIUS_M]), 0.015]), let_go=False)
         return (
             above("slice", along),
             TaskStep("cut", "slice", "a slice cut off", Apart("tofu", "slice"), (ready, through, out)),
             stab("slice", along, HALF_M[2]),
-            TaskStep(
-                "above", "own plate", "above the plate", CarriedOver("slice", "own plate", 0.03), (high,)
-            ),
-            TaskStep("placed", "own plate", "the slice on the plate", laid, (high, down)),
+            TaskStep("above", "own plate", "above the plate", carried, (high,), "slice"),
+            TaskStep("placed", "own plate", "the slice on the plate", laid, (high, down), "slice"),
         )
 
 

@@ -195,16 +195,19 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
     enter = Waypoint(partial(strokes.pose, index=0, up_m=BOWL_HEIGHT_M + 0.03))
     to_and_fro = [Waypoint(partial(strokes.pose, index=index)) for index in range(STIR_STROKES)]
     above = Waypoint(partial(over, thing="bowl", height_m=spoon_up + 0.10))
+    apple_in = Within("apple", "bowl", rooms["bowl"])
     stirred = Stirred("spoon", "bowl", rooms["bowl"], STIR_TURNS)
     return (
         *take("apple", TOP_M + SHELF_M + STAND_M, APPLE_RADIUS_M),
-        TaskStep("above", "bowl", "the apple over the bowl", CarriedOver("apple", "bowl", 0.04), (carry,)),
         TaskStep(
-            "placed", "bowl", "the apple in the bowl", Within("apple", "bowl", rooms["bowl"]), (carry, drop)
+            "above", "bowl", "the apple over the bowl", CarriedOver("apple", "bowl", 0.04), (carry,), "apple"
         ),
+        TaskStep("placed", "bowl", "the apple in the bowl", apple_in, (carry, drop), "apple"),
         *take("spoon", TOP_M, spoon_up),
-        TaskStep("above", "bowl", "the spoon over the bowl", CarriedOver("spoon", "bowl", 0.04), (above,)),
-        TaskStep("stirred", "bowl", "stirred", stirred, (enter, *to_and_fro)),
+        TaskStep(
+            "above", "bowl", "the spoon over the bowl", CarriedOver("spoon", "bowl", 0.04), (above,), "spoon"
+        ),
+        TaskStep("stirred", "bowl", "stirred", stirred, (enter, *to_and_fro), "spoon"),
     )
 
 
@@ -214,7 +217,7 @@ def _away(cup: str, room: Interior) -> TaskStep:
     above = Waypoint(partial(over, thing="bin", height_m=0.22))
     let_go = Waypoint(partial(over, thing="bin", height_m=0.17), gripper="open", wait_s=0.8)
     return TaskStep(
-        "placed", "bin", f"the {cup} in the bin", Within(cup, "bin", room), (upright, above, let_go)
+        "placed", "bin", f"the {cup} in the bin", Within(cup, "bin", room), (upright, above, let_go), cup
     )
 
 
@@ -227,7 +230,8 @@ def _back(cup: str, place: FloatArray) -> TaskStep:
     down = Waypoint(partial(at_place, place=grip), within_m=0.012, gripper="open", wait_s=0.8, speed=0.5)
     clear = Waypoint(partial(at_place, place=grip, back_m=0.08), speed=0.6)
     done = Placed(cup, place, np.array([0.05, 0.05, 0.015]), let_go=True)
-    return TaskStep("placed", "shelf", f"the {cup} back on the shelf", done, (upright, above, down, clear))
+    way = (upright, above, down, clear)
+    return TaskStep("placed", "shelf", f"the {cup} back on the shelf", done, way, cup)
 
 
 @final

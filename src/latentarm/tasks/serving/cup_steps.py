@@ -82,8 +82,8 @@ def pour(
         before = (Waypoint(partial(_over, bowl=leaving[0], tilt_rad=0.05 * leaving[1])),)
     enough = Poured(grains, bowl, interior, share)
     return (
-        TaskStep("above", bowl, f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (*before, upright)),
-        TaskStep("poured", bowl, f"{grains} in the {bowl}", enough, (upright, half, tilted)),
+        TaskStep("above", bowl, f"over the {bowl}", CarriedOver(cup, bowl, 0.10), (*before, upright), cup),
+        TaskStep("poured", bowl, f"{grains} in the {bowl}", enough, (upright, half, tilted), cup),
     )
 
 

@@ -12,14 +12,16 @@ from latentarm.tasks.scene_task import Beginning, SceneTask
 from latentarm.tasks.steps import Failure, Progress, StepKind, TaskStep, Waypoint
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray, Pose
+from latentarm.web.arm_process.fills import Fills, Vessel, vessels
 from latentarm.web.arm_process.guide import Guide
-from latentarm.web.protocol.report import TaskState, ToGo, Why
+from latentarm.web.arm_process.held import Held
+from latentarm.web.protocol.report import Lost, TaskState, ToGo, Why
 
 _FEW: Final = 2
 """Waypoints that a person can be told one by one; of a longer way only the end counts."""
 
 _LOOK_EVERY_S: Final = 0.1
-"""How often is looked what is left of the way: it is told in words."""
+"""How often is looked what is left of the way, and how full things are: it is told in words."""
 
 
 @final
@@ -33,6 +35,7 @@ class Todo:
         choice: index of what is done in this run.
         steps: in order; empty where nothing counts as done.
         failures: what ends the run.
+        vessels: what is poured from and into.
     """
 
     task: str
@@ -40,6 +43,7 @@ class Todo:
     choice: int
     steps: tuple[TaskStep, ...]
     failures: tuple[Failure, ...] = ()
+    vessels: tuple[Vessel, ...] = ()
 
 
 def things_to_do(task: SceneTask, choice: int, begun: Beginning) -> Todo:
@@ -50,7 +54,7 @@ def things_to_do(task: SceneTask, choice: int, begun: Beginning) -> Todo:
         choice: index into its choices.
         begun: how the run begins.
     """
-    return Todo(task.name, task.choices, choice, begun.steps, begun.failures)
+    return Todo(task.name, task.choices, choice, begun.steps, begun.failures, vessels(begun))
 
 
 def goal_to_reach(task: Task, choice: int) -> Todo:
@@ -91,8 +95,11 @@ class TaskRun:
         self._arm = arm if isinstance(arm, SceneArm) else None
         self._chain = chain
         self._progress = Progress(todo.steps, todo.failures)
+        self._held = Held(todo.steps)
         self._guide = Guide()
+        self._lost: Lost | None = None
         self._to_go: ToGo | None = None
+        self._fills = Fills(todo.vessels)
         self._looked_s = -math.inf
         self._began_s: float | None = None
         self._time_s = 0.0
@@ -108,6 +115,9 @@ class TaskRun:
             why=None if failure is None else Why(code=failure.kind, thing=failure.thing),
             time_s=round(self._time_s, 2),
             to_go=self._to_go,
+            lost=self._lost,
+            fills=self._fills.now,
+            short=self._fills.short and not self._over,
         )
 
     def see(self, time_s: float, q: FloatArray, *, enabled: bool) -> None:
@@ -118,7 +128,7 @@ class TaskRun:
             q: (n,), where the joints are, rad.
             enabled: whether the arm may move.
         """
-        if not self._todo.steps or self._progress.failure or self._succeeded:
+        if not self._todo.steps or self._over:
             return
         looks = time_s - self._looked_s >= _LOOK_EVERY_S
         if self._began_s is None and enabled:
@@ -129,10 +139,22 @@ class TaskRun:
         if self._began_s is not None:
             self._time_s = time_s - self._began_s
             self._progress.update(state)
-        if looks or self._progress.failure or self._succeeded:
+            self._lost = None if self._over else self._held.see(self._progress.done, state, time_s)
+        if looks or self._over:
             self._looked_s = time_s
-            step = None if self._progress.failure else self._progress.step
-            self._to_go = self._guide.look(step, replace(state, time_s=time_s))
+            self._to_go = self._guide.look(self._step, replace(state, time_s=time_s))
+            self._fills.see(state, time_s)
+
+    @property
+    def _step(self) -> TaskStep | None:
+        """What is to be done now."""
+        if self._progress.failure is not None:
+            return None
+        return self._progress.step if self._lost is None else self._todo.steps[self._lost.step]
+
+    @property
+    def _over(self) -> bool:
+        return self._succeeded or self._progress.failure is not None
 
     @property
     def _succeeded(self) -> bool:

@@ -101,6 +101,34 @@ class ToGo(Message):
 
 
 @final
+class Lost(Message):
+    """Something that a step needs to be held, and that is not held any more.
+
+    Attributes:
+        thing: its name.
+        step: index of the step in which it is to be taken again.
+    """
+
+    thing: str
+    step: int
+
+
+@final
+class Fill(Message):
+    """How much is in a cup or a bowl.
+
+    Attributes:
+        thing: its name.
+        share: of what is poured, in [0, 1].
+        enough: share that must be in it; null for what is poured from.
+    """
+
+    thing: str
+    share: float
+    enough: float | None
+
+
+@final
 class TaskState(Message):
     """How far a run of the task has come.
 
@@ -111,6 +139,9 @@ class TaskState(Message):
         why: why it has failed.
         time_s: since the arm was first enabled in this run, until its outcome, s.
         to_go: to where the step that is to be done now takes the tool; null where nothing is left to do.
+        lost: what slipped or was let go too early: before the steps go on, it is to be taken again.
+        fills: of the cups and bowls, where something is poured.
+        short: whether too little is left to pour.
     """
 
     choice: int
@@ -119,6 +150,9 @@ class TaskState(Message):
     why: Why | None
     time_s: float
     to_go: ToGo | None
+    lost: Lost | None
+    fills: tuple[Fill, ...]
+    short: bool
 
 
 @final

@@ -69,6 +69,12 @@ export interface EndCopilot {
   type: "end_copilot";
 }
 
+export interface Fill {
+  thing: string;
+  share: number;
+  enough: number | null;
+}
+
 export interface Ghosts {
   up: [number, number, number][];
   down: [number, number, number][];
@@ -121,6 +127,11 @@ export interface Lesson {
 
 export interface Limits {
   latch_max_s: number;
+}
+
+export interface Lost {
+  thing: string;
+  step: number;
 }
 
 export interface Mode {
@@ -286,6 +297,9 @@ export interface TaskState {
   why: Why | null;
   time_s: number;
   to_go: ToGo | null;
+  lost: Lost | null;
+  fills: Fill[];
+  short: boolean;
 }
 
 export interface TaskToDo {

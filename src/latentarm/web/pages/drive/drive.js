@@ -96,7 +96,7 @@ attachRecording({
 }, connection);
 
 const task = attachTask({
-  panel: byId("task"), steps: byId("task-steps"), said: byId("task-said"), time: byId("task-time"), why: byId("task-why"),
+  panel: byId("task"), steps: byId("task-steps"), fills: byId("task-fills"), said: byId("task-said"), time: byId("task-time"), why: byId("task-why"),
   chooser: byId("task-chooser"), choice: byId("task-choice", HTMLSelectElement),
   next: byId("task-next", HTMLButtonElement), again: byId("task-again", HTMLButtonElement),
   then: byId("enable"),

@@ -3,10 +3,10 @@
 import { create, setText } from "../layout/dom.js";
 import { thingWords } from "../layout/thing_words.js";
 import { say } from "../layout/words.js";
-import { awayWords, blockedWords, outcomeWords, stepWords, wholeSeconds } from "./task_words.js";
+import { awayWords, blockedWords, fillWords, outcomeWords, stepNow, stepWords, stuck, stuckWords, wholeSeconds } from "./task_words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
-/** @import {TaskState} from "../connection/messages.js" */
+/** @import {Fill, TaskState} from "../connection/messages.js" */
 /** @import {Choice} from "../inputs/scanner.js" */
 
 /** Words that change all the time change no more often than this, ms. */
@@ -17,7 +17,8 @@ const MARKS = { done: "✓", now: "▸", later: "○" };
  * @typedef {object} Parts
  * @property {HTMLElement} panel
  * @property {HTMLElement} steps
- * @property {HTMLElement} said live: steps as they are done, and the end
+ * @property {HTMLElement} fills how full cups and bowls are
+ * @property {HTMLElement} said live: steps as they are done, why they cannot be done, and the end
  * @property {HTMLElement} time
  * @property {HTMLElement} why why nothing can be begun now
  * @property {HTMLElement} chooser around `choice`
@@ -75,9 +76,10 @@ export function attachTask(parts, connection, ended) {
     setText(parts.said, "");
   });
 
-  const showSteps = (/** @type {TaskState} */ { done, outcome }) => {
+  const showSteps = (/** @type {TaskState} */ task) => {
+    const now = task.outcome === null ? stepNow(task) : -1;
     [...parts.steps.children].forEach((item, index) => {
-      const state = index < done ? "done" : index === done && outcome === null ? "now" : "later";
+      const state = index === now ? "now" : index < task.done ? "done" : "later";
       const step = /** @type {HTMLElement} */ (item);
       if (step.dataset.step === state) return;
       step.dataset.step = state;
@@ -88,6 +90,12 @@ export function attachTask(parts, connection, ended) {
     });
   };
 
+  const showFills = (/** @type {Fill[]} */ fills) => {
+    parts.fills.hidden = fills.length === 0;
+    if (parts.fills.children.length !== fills.length) parts.fills.replaceChildren(...fills.map(() => create("li")));
+    fills.forEach((fill, index) => setText(parts.fills.children[index], fillWords(fill)));
+  };
+
   connection.addEventListener("state", () => {
     const { state, welcome } = connection;
     if (!state || !welcome?.task.steps.length) return;
@@ -95,15 +103,17 @@ export function attachTask(parts, connection, ended) {
     // A new run is told of by a welcome first.
     if (task.choice !== welcome.task.choice) return;
     showSteps(task);
-    parts.panel.dataset.outcome = task.outcome ?? "";
+    parts.panel.dataset.outcome = task.outcome ?? (stuck(task) ? "stuck" : "");
     if (task.outcome !== null) setText(parts.said, outcomeWords(task));
-    else if (before !== null && task.done > before.done) {
+    else if (stuck(task)) setText(parts.said, stuckWords(task));
+    else if (before !== null && (before.lost || task.done > before.done)) {
       const step = stepWords(welcome.task.steps[task.done]);
-      setText(parts.said, say("task.step_done", { number: task.done, all: welcome.task.steps.length, step }));
+      const number = before.lost ? before.lost.step + 1 : task.done;
+      setText(parts.said, say("task.step_done", { number, all: welcome.task.steps.length, step }));
     } else if (task.done === 0) setText(parts.said, "");
     if (before !== null && before.outcome === null && task.outcome !== null) ended(task.outcome);
     // How far to go is told of the step that is done now, at once.
-    if (task.done !== before?.done) wordsAt = -Infinity;
+    if (before === null || stepNow(task) !== stepNow(before)) wordsAt = -Infinity;
     before = task;
     const why = blocked();
     setText(parts.why, why);
@@ -113,7 +123,8 @@ export function attachTask(parts, connection, ended) {
     wordsAt = performance.now();
     setText(parts.time, say("task.time", { seconds: wholeSeconds(task.time_s) }));
     const away = awayWords(welcome, state);
-    [...parts.steps.children].forEach((item, index) => setText(item.children[3], index === task.done ? away : ""));
+    [...parts.steps.children].forEach((item, index) => setText(item.children[3], index === stepNow(task) ? away : ""));
+    showFills(task.fills);
   });
 
   return {
@@ -122,7 +133,7 @@ export function attachTask(parts, connection, ended) {
       const { state, welcome } = connection;
       if (!state || !welcome?.task.steps.length || blocked()) return [];
       const go = { id: "next", label: say("task.next"), act: next };
-      return state.task.outcome === null ? [go] : [go, { id: "again", label: say("task.again"), act: again }];
+      return state.task.outcome === null && !stuck(state.task) ? [go] : [go, { id: "again", label: say("task.again"), act: again }];
     },
   };
 }

@@ -1,10 +1,10 @@
 /** Steps, outcome and time of a task in words, and where the thing of a step is. */
 
-import { capital, intoThing, theThing } from "../layout/thing_words.js";
-import { say } from "../layout/words.js";
+import { capital, intoThing, theThing, thingWords } from "../layout/thing_words.js";
+import { say, sayPercent } from "../layout/words.js";
 import { degreesToGo } from "./to_go.js";
 
-/** @import {State, StepToDo, TaskState, Welcome} from "../connection/messages.js" */
+/** @import {Fill, State, StepToDo, TaskState, Welcome} from "../connection/messages.js" */
 
 /** Steps for which it helps to know how far away the thing is. */
 const FAR = new Set(["approached", "reached", "above", "holding", "stabbed"]);
@@ -20,6 +20,28 @@ export function stepWords({ kind, thing }) {
 /** Whole seconds that are shown. @param {number} time s */
 export function wholeSeconds(time) {
   return Math.round(time);
+}
+
+/** Index of the step that is to be done now. @param {Pick<TaskState, "done" | "lost">} task */
+export function stepNow({ done, lost }) {
+  return lost?.step ?? done;
+}
+
+/** Whether the step under way cannot be done any more. @param {Pick<TaskState, "lost" | "short">} task */
+export function stuck({ lost, short }) {
+  return short || lost !== null;
+}
+
+/** Why, and what to do; empty where all is well. @param {Pick<TaskState, "lost" | "short">} task */
+export function stuckWords({ lost, short }) {
+  if (short) return say("task.short");
+  return lost ? say("task.lost", { thing: theThing(lost.thing) }) : "";
+}
+
+/** How full a cup or a bowl is. @param {Fill} fill */
+export function fillWords({ thing, share, enough }) {
+  const told = { thing: capital(thingWords(thing)), share: sayPercent(share) };
+  return enough === null ? say("task.fill_from", told) : say("task.fill_into", { ...told, enough: sayPercent(enough) });
 }
 
 /** How a run has ended; empty while it goes on. @param {TaskState} task */
@@ -61,7 +83,7 @@ export function placeOf(name, welcome, state) {
  * @param {State} state
  */
 export function wantedThing(welcome, state) {
-  return state.task.outcome === null ? welcome.task.steps[state.task.done]?.thing ?? null : null;
+  return state.task.outcome === null ? welcome.task.steps[stepNow(state.task)]?.thing ?? null : null;
 }
 
 /** From the tool to a place, m. @param {number[]} tool @param {number[]} place */
@@ -76,8 +98,8 @@ export function distance(tool, place) {
  * @param {State} state
  */
 export function awayWords(welcome, state) {
-  const { done, outcome, to_go } = state.task;
-  const step = welcome.task.steps[done];
+  const { outcome, to_go } = state.task;
+  const step = welcome.task.steps[stepNow(state.task)];
   if (!step || outcome !== null) return "";
   if (to_go?.gripper) return say(`to_go.gripper_${to_go.gripper}`);
   const place = FAR.has(step.kind) ? placeOf(step.thing, welcome, state) : null;

@@ -87,7 +87,7 @@ export function attachToGo(list, connection, shaped) {
     list.hidden = toGo === null || state?.mode !== "end_effector";
     if (!state || !welcome || toGo === null || list.hidden) return;
     // Another pair, or another step, is told at once.
-    const now = JSON.stringify([state.task.choice, state.task.done, state.axes]);
+    const now = JSON.stringify([state.task.choice, state.task.done, state.task.lost, state.axes]);
     if (now === begun && performance.now() - wordsAt < WORDS_MS) return;
     begun = now;
     wordsAt = performance.now();
