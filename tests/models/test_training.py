@@ -2,6 +2,7 @@
 
 import json
 import math
+import pickle
 import resource
 import signal
 import subprocess
@@ -102,16 +103,12 @@ def test_a_finished_training_is_not_run_again(demonstrations, tmp_path, monkeypa
 
 
 KILLED_SCRIPT = """
-import sys, time
+import pickle, sys, time
 from pathlib import Path
 import torch
 torch.set_num_threads(1)
-import numpy as np
-from latentarm.testing.models import ring
 from latentarm.models.catalogue import MODELS
-from latentarm.types import Demonstrations
-rng = np.random.default_rng(3)
-demonstrations = Demonstrations(tuple(ring(rng) for _ in range(12)), 20.0, ("a", "b", "c", "d"))
+demonstrations = pickle.load(sys.stdin.buffer)
 # A moment between epochs: it must not be over before it is killed.
 MODELS["cvae"](epochs={epochs}, hidden=(8, 8), window=2, checkpoint_interval_s=0.0, patience=1000).fit(
     demonstrations, report=lambda *_: time.sleep(0.1), checkpoint=Path(sys.argv[1]))
@@ -123,7 +120,9 @@ def test_a_training_killed_outright_goes_on(demonstrations, samples, tmp_path):
     epochs = 8
     path = tmp_path / "checkpoint.safetensors"
     script = KILLED_SCRIPT.format(epochs=epochs)
-    process = subprocess.Popen([sys.executable, "-c", script, str(path)])
+    process = subprocess.Popen([sys.executable, "-c", script, str(path)], stdin=subprocess.PIPE)
+    with process.stdin as given:
+        given.write(pickle.dumps(demonstrations))
     deadline = time.monotonic() + 60
     while not path.exists() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.002)

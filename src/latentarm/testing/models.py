@@ -41,6 +41,9 @@ CONTEXTS: Final[Mapping[tuple[str, ...], int]] = {
 SMALL: Final[dict[str, Any]] = {"seeds": 2, "epochs": 2, "hidden": (8, 8), "window": 2}
 """Parameters of a training that takes a second or less."""
 
+FEW: Final = 16
+"""Samples of a motion where it does not matter how well the model learns."""
+
 
 def ring(rng: np.random.Generator, samples: int = 80, rate_hz: float = 20.0) -> Episode:
     """A motion back and forth around a ring whose radius swells: two-dimensional at every state.
@@ -73,24 +76,24 @@ def _swung(time: FloatArray) -> FloatArray:
 
 
 @cache
-def demonstrations(episodes: int = 12) -> Demonstrations:
-    """So many motions of a planar arm."""
+def demonstrations(samples: int = 80) -> Demonstrations:
+    """Twelve motions of a planar arm, each of so many samples."""
     rng = np.random.default_rng(3)
     names = tuple(f"joint{joint + 1}" for joint in range(JOINTS))
-    return Demonstrations(tuple(ring(rng) for _ in range(episodes)), 20.0, names, objects=OBJECTS)
+    return Demonstrations(tuple(ring(rng, samples) for _ in range(12)), 20.0, names, objects=OBJECTS)
 
 
-def fit(model: LatentActionModel, episodes: int = 12) -> LatentActionModel:
-    """Fit a model to `demonstrations` of a known arm; warnings about collapsed dimensions are ignored."""
+def fit(model: LatentActionModel, shown: Demonstrations) -> LatentActionModel:
+    """Fit a model to demonstrations of a known arm; warnings about collapsed dimensions are ignored."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CollapseWarning)
-        return model.fit(demonstrations(episodes), chain=planar(JOINTS).chain)
+        return model.fit(shown, chain=planar(JOINTS).chain)
 
 
 @cache
 def fitted(estimator: type[LatentActionModel], context: tuple[str, ...]) -> LatentActionModel:
     """A model that all tests of a session share; none may change it."""
-    return fit(estimator(**SMALL, context=context))
+    return fit(estimator(**SMALL, context=context), demonstrations(80 if context == ("joints",) else FEW))
 
 
 class ModelContract:
@@ -170,7 +173,9 @@ class ModelContract:
         assert again.get_params() == model.get_params()
         with pytest.raises(NotFittedError):
             check_is_fitted(again)
-        np.testing.assert_array_equal(fit(again).decode(z, context), model.decode(z, context))
+        np.testing.assert_array_equal(
+            fit(again, demonstrations()).decode(z, context), model.decode(z, context)
+        )
         check_is_fitted(again)
 
     def test_shapes(self, model: LatentActionModel, z: FloatArray, context: FloatArray) -> None:
@@ -199,7 +204,7 @@ class ModelContract:
         self, estimator: type[LatentActionModel], z: FloatArray, context: FloatArray
     ) -> None:
         """What they hold decides when to stop; weights, normalisers and scaling never see it."""
-        data = demonstrations(6)
+        data = demonstrations(FEW)
         altered = list(data.episodes)
         for index in (0, 5):
             altered[index] = replace(altered[index], state=3.0 - 7.0 * altered[index].state[::-1])
@@ -244,12 +249,12 @@ class ModelContract:
                 assert decoder.layout.features == kind
                 assert (decoder.context_dim, decoder.action_dim) == (width, JOINTS)
 
-    @pytest.mark.parametrize(("latent_dim", "hidden"), [(1, (8,)), (3, (6, 5, 4)), (4, ()), (2, (16, 4))])
+    @pytest.mark.parametrize(("latent_dim", "hidden"), [(1, (8,)), (3, (6, 5, 4)), (4, ())])
     def test_the_runtime_in_numpy_equals_the_model_at_any_size(
         self, estimator: type[LatentActionModel], latent_dim: int, hidden: tuple[int, ...]
     ) -> None:
         sizes: dict[str, Any] = {**SMALL, "latent_dim": latent_dim, "hidden": hidden, "epochs": 1}
-        model = fit(estimator(**sizes), episodes=4)
+        model = fit(estimator(**sizes), demonstrations(FEW))
         rng = np.random.default_rng(1)
         z, context = rng.uniform(-1, 1, (20, latent_dim)), rng.uniform(-1, 1, (20, JOINTS))
         expected = model.decode(z, context)
