@@ -37,7 +37,7 @@ def test_a_rotation_and_a_mirror_are_recovered_from_two_answers(
 ):
     axes = [turned(0.7), turned(2.5, mirror=-1.0)]
     answers = [two_answers(circles, columns, one) for one in axes]
-    fitted = fit_alignments(linear_model, slides.chain, answers, states, FitConfig(steps=1500))
+    fitted = fit_alignments(linear_model, slides.chain, answers, states, FitConfig(steps=1000))
     rng = np.random.default_rng(0)
     u, context = rng.uniform(-1, 1, (500, 2)), states[rng.integers(0, len(states), 500)]
     for one, alignment in zip(axes, fitted.alignments, strict=True):

@@ -3,7 +3,7 @@ import pytest
 import torch
 
 from latentarm.robots.planar import planar
-from latentarm.testing.models import JOINTS, ring
+from latentarm.testing.models import FEW, JOINTS, ring
 from latentarm.types import Demonstrations
 
 
@@ -20,15 +20,26 @@ def arm_file(tmp_path_factory):
     return path
 
 
-@pytest.fixture(scope="session")
-def demonstrations(arm_file):
+def rings(arm_file, samples):
+    """Twelve motions, each of so many samples."""
     rng = np.random.default_rng(3)
     return Demonstrations(
-        tuple(ring(rng) for _ in range(12)),
+        tuple(ring(rng, samples) for _ in range(12)),
         20.0,
         tuple(f"joint{i + 1}" for i in range(JOINTS)),
         robot=str(arm_file),
     )
+
+
+@pytest.fixture(scope="session")
+def demonstrations(arm_file):
+    return rings(arm_file, 80)
+
+
+@pytest.fixture(scope="session")
+def few(arm_file):
+    """Short motions, for models of which nobody asks how well they learn."""
+    return rings(arm_file, FEW)
 
 
 @pytest.fixture(scope="session")

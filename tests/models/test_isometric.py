@@ -37,9 +37,9 @@ def model(demonstrations):
 
 
 @pytest.fixture(scope="module", params=[1, 2, 3])
-def rough(request, demonstrations):
+def rough(request, few):
     """Decoders with random weights and a large bend: the promises do not hang on training."""
-    model = Isometric(**SCATTERED, latent_dim=request.param).fit(demonstrations)
+    model = Isometric(**SCATTERED, latent_dim=request.param).fit(few)
     rng = np.random.default_rng(request.param)
     tensors = {
         name: values + rng.normal(0.0, 0.8, values.shape)

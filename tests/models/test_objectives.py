@@ -50,7 +50,7 @@ def test_samples_have_the_mean_and_spread_asked_for():
 
 
 @pytest.mark.parametrize("name", list(MODELS))
-def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
+def test_the_loss_that_is_reported_is_the_models_equation(name, few):
     """The validation loss, computed again from what the model encodes and decodes."""
     unseen = {  # prices of what is not to be seen from outside
         "isometric": {"bend_weight": 0.0},
@@ -62,8 +62,8 @@ def test_the_loss_that_is_reported_is_the_models_equation(name, demonstrations):
             ("smoothness_weight", "turning_weight", "spread_weight", "context_noise"), 0.0
         ),
     }
-    model = MODELS[name](seeds=2, epochs=3, hidden=(8,), window=2, **unseen.get(name, {})).fit(demonstrations)
-    pairs = make_pairs(demonstrations, 2, 0.0, "state", np.random.default_rng(0))
+    model = MODELS[name](seeds=2, epochs=3, hidden=(8,), window=2, **unseen.get(name, {})).fit(few)
+    pairs = make_pairs(few, 2, 0.0, "state", np.random.default_rng(0))
     validation = np.isin(pairs.episode, model.validation_episodes_)
     context, action = pairs.context[validation], pairs.action[validation]
     tensors = model.trained_.tensors

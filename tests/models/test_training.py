@@ -30,14 +30,14 @@ SMALL = {"epochs": 2, "hidden": (8, 8), "window": 2}
 
 @pytest.mark.parametrize("name", NEURAL)
 def test_a_seeds_result_depends_neither_on_the_seeds_beside_it_nor_on_replays(
-    name, demonstrations, samples, monkeypatch
+    name, few, samples, monkeypatch
 ):
     context, z = samples
-    alone = MODELS[name](seeds=1, seed=13, **SMALL).fit(demonstrations)
+    alone = MODELS[name](seeds=1, seed=13, **SMALL).fit(few)
     replayed = []
     monkeypatch.setattr(training, "REPLAYED_STEPS", 0)
     monkeypatch.setattr(Replay, "__call__", lambda self: (replayed.append(self), Replay.run(self)))
-    together = MODELS[name](seeds=5, seed=10, **SMALL).fit(demonstrations)
+    together = MODELS[name](seeds=5, seed=10, **SMALL).fit(few)
     assert len(replayed) > 1, "no step was replayed"
     np.testing.assert_allclose(alone.decode(z, context)[0], together.decode(z, context)[3], rtol=0, atol=1e-9)
     np.testing.assert_allclose(alone.validation_loss_[0], together.validation_loss_[3], rtol=1e-6)
@@ -70,12 +70,10 @@ class KilledError(Exception):
 
 
 @pytest.mark.parametrize("name", ["cvae", "isometric", "homogeneous"])  # noise, a start, a look ahead
-def test_resuming_gives_what_an_uninterrupted_training_gives(
-    name, demonstrations, samples, tmp_path, monkeypatch
-):
+def test_resuming_gives_what_an_uninterrupted_training_gives(name, few, samples, tmp_path, monkeypatch):
     context, z = samples
     settings = {**SMALL, "epochs": 3, "seeds": 2, "checkpoint_interval_s": 0.0}
-    whole = MODELS[name](**settings).fit(demonstrations)
+    whole = MODELS[name](**settings).fit(few)
     path = tmp_path / "checkpoint.safetensors"
     write, calls = training.write_checkpoint, []
 
@@ -88,17 +86,17 @@ def test_resuming_gives_what_an_uninterrupted_training_gives(
     with monkeypatch.context() as patch:
         patch.setattr(training, "write_checkpoint", write_then_die)
         with pytest.raises(KilledError):
-            MODELS[name](**settings).fit(demonstrations, checkpoint=path)
-    resumed = MODELS[name](**settings).fit(demonstrations, checkpoint=path)
+            MODELS[name](**settings).fit(few, checkpoint=path)
+    resumed = MODELS[name](**settings).fit(few, checkpoint=path)
     np.testing.assert_array_equal(resumed.decode(z, context), whole.decode(z, context))
     np.testing.assert_array_equal(resumed.history_, whole.history_)
 
 
-def test_a_finished_training_is_not_run_again(demonstrations, tmp_path, monkeypatch):
+def test_a_finished_training_is_not_run_again(few, tmp_path, monkeypatch):
     path = tmp_path / "checkpoint.safetensors"
-    first = MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    first = MODELS["cae"](**SMALL).fit(few, checkpoint=path)
     monkeypatch.setattr(FlatAdam, "step", lambda *_: pytest.fail("stepped"))
-    again = MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    again = MODELS["cae"](**SMALL).fit(few, checkpoint=path)
     np.testing.assert_array_equal(first.validation_loss_, again.validation_loss_)
 
 
@@ -115,54 +113,54 @@ MODELS["cvae"](epochs={epochs}, hidden=(8, 8), window=2, checkpoint_interval_s=0
 """
 
 
-def test_a_training_killed_outright_goes_on(demonstrations, samples, tmp_path):
+def test_a_training_killed_outright_goes_on(few, samples, tmp_path):
     context, z = samples
     epochs = 8
     path = tmp_path / "checkpoint.safetensors"
     script = KILLED_SCRIPT.format(epochs=epochs)
     process = subprocess.Popen([sys.executable, "-c", script, str(path)], stdin=subprocess.PIPE)
     with process.stdin as given:
-        given.write(pickle.dumps(demonstrations))
+        given.write(pickle.dumps(few))
     deadline = time.monotonic() + 60
     while not path.exists() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.002)
     process.send_signal(signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL, "it was over before it could be killed"
     settings = {"epochs": epochs, "hidden": (8, 8), "window": 2, "patience": 1000}
-    resumed = MODELS["cvae"](**settings).fit(demonstrations, checkpoint=path)
-    whole = MODELS["cvae"](**settings).fit(demonstrations)
+    resumed = MODELS["cvae"](**settings).fit(few, checkpoint=path)
+    whole = MODELS["cvae"](**settings).fit(few)
     np.testing.assert_array_equal(resumed.decode(z, context), whole.decode(z, context))
 
 
 @pytest.mark.parametrize(
     "change", [{"seed": 1}, {"learning_rate": 1e-3}, {"hidden": (8, 7)}, {"data_seed": 1}]
 )
-def test_the_checkpoint_of_another_training_is_refused(demonstrations, tmp_path, change):
+def test_the_checkpoint_of_another_training_is_refused(few, tmp_path, change):
     path = tmp_path / "checkpoint.safetensors"
-    MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    MODELS["cae"](**SMALL).fit(few, checkpoint=path)
     with pytest.raises(UserError, match="checkpoint of another training"):
-        MODELS["cae"](**{**SMALL, **change}).fit(demonstrations, checkpoint=path)
+        MODELS["cae"](**{**SMALL, **change}).fit(few, checkpoint=path)
 
 
 @pytest.mark.parametrize("content", [b"", b"not a checkpoint", b"\xff" * 100])
-def test_a_broken_checkpoint_is_refused(demonstrations, tmp_path, content):
+def test_a_broken_checkpoint_is_refused(few, tmp_path, content):
     path = tmp_path / "checkpoint.safetensors"
     path.write_bytes(content)
     with pytest.raises(UserError, match="not a whole training checkpoint"):
-        MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+        MODELS["cae"](**SMALL).fit(few, checkpoint=path)
 
 
-def test_a_truncated_checkpoint_is_refused(demonstrations, tmp_path):
+def test_a_truncated_checkpoint_is_refused(few, tmp_path):
     path = tmp_path / "checkpoint.safetensors"
-    MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    MODELS["cae"](**SMALL).fit(few, checkpoint=path)
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.raises(UserError, match="not a whole training checkpoint"):
-        MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+        MODELS["cae"](**SMALL).fit(few, checkpoint=path)
 
 
-def test_divergence_is_said(demonstrations):
+def test_divergence_is_said(few):
     with pytest.raises(UserError, match="diverged for seed 0"):
-        MODELS["ae"](**{**SMALL, "learning_rate": 1e30}).fit(demonstrations)
+        MODELS["ae"](**{**SMALL, "learning_rate": 1e30}).fit(few)
 
 
 @pytest.mark.skipif(not torch.cuda.is_available(), reason="this machine has no CUDA")
@@ -177,30 +175,30 @@ def test_on_cuda_the_losses_are_those_of_the_cpu(name, demonstrations):
 
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="this machine has CUDA")
-def test_cuda_without_cuda_is_said_and_auto_takes_the_cpu(demonstrations):
+def test_cuda_without_cuda_is_said_and_auto_takes_the_cpu(few):
     with pytest.raises(UserError, match="no CUDA on this machine"):
-        MODELS["cae"](**SMALL, device="cuda").fit(demonstrations)
-    MODELS["cae"](**SMALL, device="auto").fit(demonstrations)
+        MODELS["cae"](**SMALL, device="cuda").fit(few)
+    MODELS["cae"](**SMALL, device="auto").fit(few)
 
 
-def test_the_number_of_threads_is_as_before(demonstrations):
+def test_the_number_of_threads_is_as_before(few):
     torch.set_num_threads(2)
     try:
-        MODELS["cae"](**SMALL).fit(demonstrations)
+        MODELS["cae"](**SMALL).fit(few)
         assert torch.get_num_threads() == 2
     finally:
         torch.set_num_threads(1)
 
 
-def test_the_progress_bar_stays_off_standard_output(demonstrations, capsys):
+def test_the_progress_bar_stays_off_standard_output(few, capsys):
     with epoch_bar(True) as report:
-        MODELS["cae"](**SMALL).fit(demonstrations, report=report)
+        MODELS["cae"](**SMALL).fit(few, report=report)
     assert capsys.readouterr().out == ""
 
 
-def test_every_epoch_is_reported(demonstrations):
+def test_every_epoch_is_reported(few):
     heard = []
-    model = MODELS["cae"](**SMALL).fit(demonstrations, report=lambda *said: heard.append(said))
+    model = MODELS["cae"](**SMALL).fit(few, report=lambda *said: heard.append(said))
     epochs, best = len(model.trained_.summary.history), model.validation_loss_.mean()
     assert [epoch for epoch, _, _ in heard] == list(range(epochs + 1))
     assert {most for _, most, _ in heard} == {model.epochs}
@@ -243,34 +241,34 @@ def test_epochs_of_one_seed_are_shuffled_differently_and_reproducibly():
     assert not torch.equal(order, torch.randperm(100, generator=other))
 
 
-def test_the_checkpoint_holds_no_pickle(demonstrations, tmp_path):
+def test_the_checkpoint_holds_no_pickle(few, tmp_path):
     path = tmp_path / "checkpoint.safetensors"
-    MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+    MODELS["cae"](**SMALL).fit(few, checkpoint=path)
     content = path.read_bytes()
     header = json.loads(content[8 : 8 + int.from_bytes(content[:8], "little")])
     assert set(header) == {"__metadata__", "values", "first", "second", "best"}
     assert [entry.name for entry in tmp_path.iterdir()] == ["checkpoint.safetensors"]
 
 
-def test_a_full_disk_under_a_checkpoint_is_said_in_one_sentence(demonstrations, tmp_path):
+def test_a_full_disk_under_a_checkpoint_is_said_in_one_sentence(few, tmp_path):
     path = tmp_path / "checkpoint.safetensors"
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1024, limits[1]))
     try:
         with pytest.raises(UserError, match=r"checkpoint\.safetensors cannot be written: File too large"):
-            MODELS["cae"](**SMALL).fit(demonstrations, checkpoint=path)
+            MODELS["cae"](**SMALL).fit(few, checkpoint=path)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert not list(tmp_path.iterdir())
 
 
-def test_seeds_that_could_not_be_loaded_or_held_in_memory_are_refused(demonstrations):
+def test_seeds_that_could_not_be_loaded_or_held_in_memory_are_refused(few):
     last = 2**31 - 1
-    assert MODELS["pca"](seed=last, seeds=1).fit(demonstrations).seed_numbers == (last,)
+    assert MODELS["pca"](seed=last, seeds=1).fit(few).seed_numbers == (last,)
     with pytest.raises(UserError, match="2 seeds from 2147483647 on end beyond"):
-        MODELS["pca"](seed=last, seeds=2).fit(demonstrations)
+        MODELS["pca"](seed=last, seeds=2).fit(few)
     with pytest.raises(UserError, match="seeds is 1001; it must be a whole number from 1 to 1000"):
-        MODELS["pca"](seeds=1001).fit(demonstrations)
+        MODELS["pca"](seeds=1001).fit(few)
 
 
 def test_pairs_that_cannot_span_the_latent_space_are_refused(demonstrations):
@@ -280,10 +278,10 @@ def test_pairs_that_cannot_span_the_latent_space_are_refused(demonstrations):
         MODELS["pca"](latent_dim=3, window=1).fit(few)
 
 
-def test_recorded_actions_that_are_all_zero_are_refused(demonstrations):
-    still = tuple(replace(one, action=np.zeros_like(one.state)) for one in demonstrations.episodes)
+def test_recorded_actions_that_are_all_zero_are_refused(few):
+    still = tuple(replace(one, action=np.zeros_like(one.state)) for one in few.episodes)
     with pytest.raises(UserError, match="Every recorded action is zero"):
-        MODELS["pca"](actions="recorded").fit(replace(demonstrations, episodes=still))
+        MODELS["pca"](actions="recorded").fit(replace(few, episodes=still))
 
 
 def test_a_seed_stops_after_exactly_so_many_epochs_without_improvement(demonstrations):
@@ -306,7 +304,7 @@ def test_a_stalled_seed_takes_no_later_improvement():
     assert state.best.ravel().tolist() == [10.0, 40.0]
 
 
-def test_the_learning_rate_falls_along_half_a_cosine(demonstrations, monkeypatch):
+def test_the_learning_rate_falls_along_half_a_cosine(few, monkeypatch):
     rates = []
     step = FlatAdam.step
 
@@ -315,7 +313,7 @@ def test_the_learning_rate_falls_along_half_a_cosine(demonstrations, monkeypatch
         step(self, values, gradient, learning_rate)
 
     monkeypatch.setattr(FlatAdam, "step", watched)
-    MODELS["cae"](epochs=4, hidden=(8,), window=1, learning_rate=0.01).fit(demonstrations)
+    MODELS["cae"](epochs=4, hidden=(8,), window=1, learning_rate=0.01).fit(few)
     per_epoch = list(dict.fromkeys(rates))
     share = (1 + np.cos(np.pi * np.arange(4) / 4)) / 2
     np.testing.assert_allclose(per_epoch, 0.01 * (0.01 + 0.99 * share))
@@ -331,9 +329,9 @@ def _first(episode, samples):
 
 
 @pytest.mark.parametrize("name", ["cvae", "homogeneous"])  # noise; a start and a look ahead
-def test_seeds_with_demonstrations_of_their_own_learn_what_each_learns_alone(name, demonstrations, samples):
+def test_seeds_with_demonstrations_of_their_own_learn_what_each_learns_alone(name, few, samples):
     context, z = samples
-    shown = [demonstrations, replace(demonstrations, episodes=demonstrations.episodes[::-1])]
+    shown = [few, replace(few, episodes=few.episodes[::-1])]
     together = MODELS[name](seeds=2, seed=7, **SMALL).fit_each(shown, validation=[0])
     for seed, (one, own) in enumerate(zip(together, shown, strict=True), 7):
         alone = MODELS[name](seeds=1, seed=seed, **SMALL).fit(own, validation=[0])

@@ -17,7 +17,11 @@ from latentarm.runs.checks import check_seed
 
 CELLS = [float(number) for number in range(7)]
 ROOTS = [math.sqrt(cell) for cell in CELLS]
-EVERYWHERE = [("joblib", 1), ("joblib", 2), ("dask", 2), pytest.param("ray", 2, marks=pytest.mark.slow)]
+EVERYWHERE = [
+    ("joblib", 1),
+    ("joblib", 2),
+    *(pytest.param(name, 2, marks=pytest.mark.slow) for name in ("dask", "ray")),
+]
 
 
 def grid(function, cells, backend="joblib", jobs=1, bars=False):
@@ -116,12 +120,16 @@ def test_a_dask_cluster_that_does_not_answer(monkeypatch):
 def test_a_dask_cluster_that_is_there_already_is_joined_and_left_alone():
     from dask.distributed import LocalCluster
 
+    # Workers in this process: in processes of their own they would take seconds to start.
+    how = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "protocol": "tcp"}
     with (
-        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        LocalCluster(**how, dashboard_address=None) as cluster,
         dask.config.set({"scheduler-address": cluster.scheduler_address}),
     ):
         assert grid(math.sqrt, [4.0, 9.0], "dask", jobs=1) == [2.0, 3.0]
         assert grid(math.sqrt, [4.0, 9.0], "dask", jobs=-1) == [2.0, 3.0]
+        with pytest.raises(CellError, match=r"cell -1\.0 failed[\s\S]*ValueError: math domain error"):
+            grid(math.sqrt, [4.0, -1.0, 9.0], "dask", jobs=2)
 
 
 def test_a_dask_cluster_without_workers(monkeypatch):
@@ -136,12 +144,15 @@ def test_a_dask_cluster_without_workers(monkeypatch):
         grid(math.sqrt, [4.0], "dask")
 
 
-def test_every_backend_keeps_the_order_and_leaves_nothing_running():
+@pytest.mark.parametrize(
+    "backend",
+    [pytest.param(name, marks=pytest.mark.slow) if name == "ray" else name for name in BACKENDS],
+)
+def test_a_backend_keeps_the_order_and_leaves_nothing_running(backend):
     import ray
     from dask.distributed import get_client
 
-    for backend in BACKENDS:
-        assert grid(math.sqrt, CELLS, backend, jobs=2) == ROOTS
+    assert grid(math.sqrt, CELLS, backend, jobs=2) == ROOTS
     assert not ray.is_initialized()
     with pytest.raises(ValueError, match="client"):
         get_client()
