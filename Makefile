@@ -55,7 +55,7 @@ message-types: $(VENV)/installed-dev ## Write the types of the page's messages f
 test: check ## Everything that must hold, in minutes.
 	$(BIN)/node --test 'tests/web/js/*.test.js'
 	$(PYTEST) -m "not slow and not clock" $(PARALLEL)
-	$(PYTEST) -m "not slow and clock"
+	$(PYTEST) -m "not slow and clock" tests/web
 
 test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of approaches.
 	$(PYTEST) -m "not clock and not browser" $(PARALLEL)

@@ -91,10 +91,19 @@ class PointerHand(Hand):
         bring(self.page, "#stick")
         x, y, reach = middle_of(self.page, "#stick")
         across, along = WAYS[direction]
+        self._put_down(x, y)
+        self._drag(x + across * reach, y - along * reach)
+        time.sleep(hold_s)
+        self._lift()
+
+    def _put_down(self, x: float, y: float) -> None:
         self.page.mouse.move(x, y)
         self.page.mouse.down()
-        self.page.mouse.move(x + across * reach, y - along * reach)
-        time.sleep(hold_s)
+
+    def _drag(self, x: float, y: float) -> None:
+        self.page.mouse.move(x, y)
+
+    def _lift(self) -> None:
         self.page.mouse.up()
 
     def enable(self) -> None:
@@ -195,7 +204,7 @@ class GamepadHand(Hand):
         self.page.evaluate("(number) => { window.pad.buttons[number].pressed = false; }", button)
 
 
-class TouchHand(Hand):
+class TouchHand(PointerHand):
     """A finger on a phone."""
 
     def __init__(self, page: Page) -> None:
@@ -203,36 +212,20 @@ class TouchHand(Hand):
         super().__init__(page)
         self._session = page.context.new_cdp_session(page)
 
-    def sit_down(self) -> None:
-        """See the base class. The page begins with the stick."""
-
-    def push(self, direction: Direction, hold_s: float) -> None:
-        """See the base class."""
-        self.presses += 1
-        bring(self.page, "#stick")
-        x, y, reach = middle_of(self.page, "#stick")
-        across, along = WAYS[direction]
-        self._touch("touchStart", x, y)
-        self._touch("touchMove", x + across * reach, y - along * reach)
-        time.sleep(hold_s)
-        self._session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-
-    def enable(self) -> None:
-        """See the base class."""
-        self._tap("#enable")
-
-    def choose(self, pair: int, now: int) -> None:
-        """See the base class."""
-        self._tap(f"#axes label:nth-child({pair + 1})")
-
-    def grip(self, close: bool) -> None:
-        """See the base class."""
-        self._tap("#gripper-close" if close else "#gripper-open")
-
-    def _tap(self, selector: str) -> None:
+    def click(self, selector: str) -> None:
+        """Tap on something."""
         self.presses += 1
         bring(self.page, selector)
         self.page.locator(selector).tap(force=True)
+
+    def _put_down(self, x: float, y: float) -> None:
+        self._touch("touchStart", x, y)
+
+    def _drag(self, x: float, y: float) -> None:
+        self._touch("touchMove", x, y)
+
+    def _lift(self) -> None:
+        self._session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
     def _touch(self, kind: str, x: float, y: float) -> None:
         self._session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y}]})

@@ -9,14 +9,12 @@ the browser takes to put it on a screen is not in there. For example:
 """
 
 import argparse
-import json
-import os
 from pathlib import Path
 
 import numpy as np
 from playwright.sync_api import Page
 
-from teleop_page import SOFTWARE_GL, USUAL_GL, chromium, enable, served
+from teleop_page import SOFTWARE_GL, USUAL_GL, VIEWPORT, chromium, enable, served, tell
 
 KEYS = ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown")
 HELD_MS = 250
@@ -110,7 +108,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path)
     given = parser.parse_args()
     with served(given.run) as site, chromium(USUAL_GL if given.hardware else SOFTWARE_GL) as browser:
-        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page = browser.new_page(viewport=VIEWPORT)
         page.add_init_script(WATCH)
         page.goto(site.address)
         page.locator(".label").first.wait_for(state="attached")
@@ -127,13 +125,8 @@ def main() -> None:
         },
         "enabled_again": max(enables - 1, 0),
         "software_drawing": not given.hardware,
-        "cores": os.cpu_count(),
-        "load_average": os.getloadavg()[0],
     }
-    text = json.dumps(figures, indent=2)
-    print(text)
-    if given.out:
-        given.out.write_text(text + "\n", encoding="utf-8")
+    tell(figures, given.out)
 
 
 if __name__ == "__main__":

@@ -9,17 +9,18 @@ this machine. For example:
 """
 
 import argparse
-import json
-import os
+import time
 from pathlib import Path
 
 import numpy as np
 from playwright.sync_api import Browser
 
-from teleop_page import chromium, served
+from teleop_page import VIEWPORT, chromium, served, tell
 
-VIEWPORT = {"width": 1280, "height": 800}
 LOOK_MS = 100
+PATIENCE_S = 60.0
+"""For so long a computer may take until the arm moves: a busy one stops it again and again."""
+
 STEPS = ("connected", "enabled", "moved", "views drawn")
 
 PRESS = """{
@@ -62,7 +63,11 @@ def opened(browser: Browser, address: str) -> tuple[list[float], int]:
     page.add_init_script(PRESS)
     page.goto(address, wait_until="commit")
     times: dict[str, float] = {}
-    while not times.keys() >= set(STEPS):
+    end_s = time.monotonic() + PATIENCE_S
+    while missing := [step for step in STEPS if step not in times]:
+        if time.monotonic() > end_s:
+            said = page.locator("#status-text").inner_text()
+            raise SystemExit(f"Not {', '.join(missing)} within {PATIENCE_S:g} s; the page says: {said}")
         page.wait_for_timeout(LOOK_MS)
         times = page.evaluate("times")
     presses = page.evaluate("presses")
@@ -89,13 +94,8 @@ def main() -> None:
             for step, column in zip(STEPS, times.T, strict=True)
         },
         "presses_of_enable": sum(presses for _, presses in tries),
-        "cores": os.cpu_count(),
-        "load_average": os.getloadavg()[0],
     }
-    text = json.dumps(figures, indent=2)
-    print(text)
-    if given.out:
-        given.out.write_text(text + "\n", encoding="utf-8")
+    tell(figures, given.out)
 
 
 if __name__ == "__main__":

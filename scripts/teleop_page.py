@@ -25,6 +25,7 @@ TELEOP = ("-m", "latentarm", "teleop")
 
 NO_GL = ("--disable-3d-apis",)
 """The page then says that it cannot draw the views, and everything else works."""
+VIEWPORT = {"width": 1280, "height": 800}
 START_S = 60.0
 AT_START = "way_back.at_start"
 
@@ -114,6 +115,15 @@ def find_chromium() -> str:
 def sandboxed() -> tuple[str, ...]:
     """Arguments without which Chromium does not run here: as root, as in containers, it has no sandbox."""
     return ("--no-sandbox",) if os.getuid() == 0 else ()
+
+
+def tell(figures: dict[str, object], out: Path | None) -> None:
+    """Print figures, with how busy this machine is, and write them to a file if there is to be one."""
+    load = {"cores": os.cpu_count(), "load_average": os.getloadavg()[0]}
+    text = json.dumps(figures | load, indent=2)
+    print(text)
+    if out:
+        out.write_text(text + "\n", encoding="utf-8")
 
 
 def drive_back(page: Page) -> None:

@@ -21,6 +21,9 @@ LONGEST_FIRST = ("plugins", "studies", "models", "parallel", "cli", "docs", "sim
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if item.get_closest_marker("clock") and HERE / "web" not in item.path.parents:
+            raise pytest.UsageError(f"{item.nodeid}: make test looks for `clock` only in tests/web.")
     rank = {name: index for index, name in enumerate(LONGEST_FIRST)}
     items.sort(key=lambda item: rank.get(item.path.relative_to(HERE).parts[0], len(rank)))
 
