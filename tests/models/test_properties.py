@@ -17,7 +17,7 @@ from latentarm.models.scaling import CollapseWarning, action_normaliser, context
 from latentarm.types import Demonstrations, Episode
 
 TRAINED = {"seeds": 2, "epochs": 12, "hidden": (24, 24), "window": 2}
-SEES_TOOLS = dict.fromkeys(("isometric", "homogeneous", "low_turning"), {"epochs": 8})
+SEES_TOOLS = {name: {"epochs": 8} for name in ("isometric", "homogeneous", "low_turning")}
 """These take five times as long for an epoch, and need fewer."""
 VALIDATION = [1, 6, 9]
 

@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -83,6 +84,25 @@ def address(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
 def start_server() -> Callable[..., AbstractContextManager[str]]:
     """A server of its own for a test that changes what is driven."""
     return _started
+
+
+@pytest.fixture(scope="session")
+def serve_task(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., AbstractContextManager[str]]:
+    """A server with a task of this folder that another distribution registers."""
+
+    @contextmanager
+    def serve_task(name: str, place: str, *arguments: str) -> Iterator[str]:
+        folder = tmp_path_factory.mktemp(name)
+        (info := folder / f"{name}-1.0.dist-info").mkdir()
+        (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+        (info / "entry_points.txt").write_text(f"[latentarm.scene_tasks]\n{name} = {place}\n")
+        path = [str(folder), str(HERE), os.environ.get("PYTHONPATH", "")]
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("PYTHONPATH", os.pathsep.join(path))
+            with _started(folder, "--task", name, *arguments) as address:
+                yield address
+
+    return serve_task
 
 
 @pytest.fixture(scope="session")
@@ -347,6 +367,32 @@ def drag_stick() -> Callable[[Page, float, float], None]:
 @pytest.fixture
 def press_until_moving() -> Callable[[Page, Arm, Callable[[], Any], Callable[[], Any]], None]:
     return move
+
+
+@pytest.fixture
+def hold_key(arm: Arm) -> Callable[[Page], None]:
+    """Hold an arrow key until the arm moves."""
+
+    def press(page: Page) -> None:
+        page.locator("#stick").focus()
+        page.keyboard.down("ArrowLeft")
+
+    return lambda page: move(page, arm, partial(press, page), partial(page.keyboard.up, "ArrowLeft"))
+
+
+@pytest.fixture(scope="session")
+def add_person() -> Callable[[Page, str, str], None]:
+    return add
+
+
+def add(page: Page, address: str, name: str) -> None:
+    """Add a person on their page, and go to the one with the arm as that person."""
+    page.goto(f"{address}/people")
+    page.locator("#add input").fill(name)
+    page.get_by_role("button", name="Add a person").click()
+    page.get_by_role("button", name=f"Choose {name}").wait_for()
+    page.goto(address)
+    page.locator(".label").first.wait_for(state="attached")
 
 
 @pytest.fixture(scope="session")

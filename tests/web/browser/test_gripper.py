@@ -5,10 +5,8 @@ comes from the server, as every page is told. On a busy computer the arm stops n
 stays held, and a person enables it again.
 """
 
-import os
 import time
 from contextlib import suppress
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,18 +25,9 @@ TRIES = 8
 
 
 @pytest.fixture(scope="module")
-def address(start_server, tmp_path_factory):
-    """Where a server with the cup, registered by another distribution, serves its page."""
-    folder = tmp_path_factory.mktemp("cup")
-    info = folder / "cup_task-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: cup-task\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[latentarm.scene_tasks]\ncup_at_hand = cup_task:CupAtHand\n")
-    path = [str(folder), str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", os.pathsep.join(path))
-        with start_server(folder, "--arm", "mujoco", "--task", "cup_at_hand") as address:
-            yield address
+def address(serve_task):
+    with serve_task("cup_at_hand", "cup_task:CupAtHand", "--arm", "mujoco") as address:
+        yield address
 
 
 @pytest.fixture(scope="module")

@@ -33,14 +33,9 @@ def page(chromium, served, watch):
     assert errors == []
 
 
-def driven(page, served, watch, press_enable, press_until_moving):
+def driven(page, served, watch, press_enable, press_until_moving, add_person):
     """A person drives for a moment, stops, and goes on to the history."""
-    page.goto(f"{served}/people")
-    page.locator("#add input").fill(NAME)
-    page.get_by_role("button", name="Add a person").click()
-    page.get_by_role("button", name=f"Choose {NAME}").wait_for()
-    page.goto(served)
-    page.locator(".label").first.wait_for(state="attached")
+    add_person(page, served, NAME)
     with watch(served) as arm:
         page.get_by_text("You are driving").or_(
             page.get_by_role("button", name="Ask to drive")
@@ -66,9 +61,9 @@ def driven(page, served, watch, press_enable, press_until_moving):
 
 
 def test_a_drive_is_listed_replayed_printed_and_deleted(
-    page, served, watch, place, press_enable, press_until_moving, wait_in_page, tmp_path
+    page, served, watch, place, press_enable, press_until_moving, add_person, wait_in_page, tmp_path
 ):
-    tool = driven(page, served, watch, press_enable, press_until_moving)
+    tool = driven(page, served, watch, press_enable, press_until_moving, add_person)
     expect(page.locator("#drives")).to_contain_text("Keyboard")
     expect(page.locator("select[name=person]")).to_have_value(
         page.evaluate("JSON.parse(localStorage['latentarm.person']).id")

@@ -29,20 +29,6 @@ navigator.getGamepads = () => [window.pad];
 
 
 @pytest.fixture
-def hold(arm, press_until_moving):
-    """Hold an arrow key until the arm moves."""
-
-    def hold(page):
-        def press():
-            page.locator("#stick").focus()
-            page.keyboard.down("ArrowLeft")
-
-        press_until_moving(page, arm, press, lambda: page.keyboard.up("ArrowLeft"))
-
-    return hold
-
-
-@pytest.fixture
 def stop_for(arm, press_enable):
     """Stop an enabled arm for a reason, again where a busy computer has stopped it for another one."""
 
@@ -63,9 +49,9 @@ def reads(page, words):
 
 
 class TestCutOff:
-    def test_a_watcher_is_not_told_that_the_arm_stops(self, enabled, arm, open_page, hold):
+    def test_a_watcher_is_not_told_that_the_arm_stops(self, enabled, arm, open_page, hold_key):
         watcher = open_page(CUT)
-        hold(enabled)
+        hold_key(enabled)
         watcher.evaluate("cutOff()")
         reads(watcher, "^The connection is lost. What you see is old: the arm may be moving")
         assert arm.state["phase"] == "moving" or "input_late" in str(arm.state["reason"])
@@ -217,9 +203,9 @@ def test_nothing_is_enabled_behind_a_dialog(open_page, seat, arm):
 
 
 @pytest.mark.parametrize("how", ["key", "choice"])
-def test_a_held_stick_does_nothing_in_a_new_mode_before_it_is_let_go(enabled, arm, hold, how):
+def test_a_held_stick_does_nothing_in_a_new_mode_before_it_is_let_go(enabled, arm, hold_key, how):
     for _ in range(5):
-        hold(enabled)
+        hold_key(enabled)
         if how == "key":
             enabled.keyboard.press("m")
         else:
@@ -234,7 +220,7 @@ def test_a_held_stick_does_nothing_in_a_new_mode_before_it_is_let_go(enabled, ar
     arm.stays()
     enabled.keyboard.up("ArrowLeft")
     arm.wait(lambda: not arm.state["let_go_first"])
-    hold(enabled)
+    hold_key(enabled)
     enabled.keyboard.up("ArrowLeft")
 
 

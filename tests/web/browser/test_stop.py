@@ -4,20 +4,6 @@ import pytest
 
 
 @pytest.fixture
-def hold_key(arm, press_until_moving):
-    """Hold an arrow key until the arm moves."""
-
-    def hold_key(page):
-        def press():
-            page.locator("#stick").focus()
-            page.keyboard.down("ArrowLeft")
-
-        press_until_moving(page, arm, press, lambda: page.keyboard.up("ArrowLeft"))
-
-    return hold_key
-
-
-@pytest.fixture
 def moving(enabled, hold_key):
     """A page that holds a key, and so moves the arm."""
     hold_key(enabled)

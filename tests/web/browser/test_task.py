@@ -4,10 +4,8 @@ On a busy computer the arm stops now and then, and a person enables it again.
 """
 
 import io
-import os
 import re
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -32,18 +30,9 @@ FOOD_PX = 30
 
 
 @pytest.fixture(scope="module")
-def stabbing(start_server, tmp_path_factory):
-    """Where a server with the marshmallow, registered by another distribution, serves its page."""
-    folder = tmp_path_factory.mktemp("stab")
-    info = folder / "stab_task-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: stab-task\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[latentarm.scene_tasks]\nstab_below = stab_task:StabBelow\n")
-    path = [str(folder), str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", os.pathsep.join(path))
-        with start_server(folder, "--task", "stab_below") as address:
-            yield address
+def stabbing(serve_task):
+    with serve_task("stab_below", "stab_task:StabBelow") as address:
+        yield address
 
 
 def outcome(arm):

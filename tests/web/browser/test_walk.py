@@ -59,16 +59,11 @@ def served(start_server, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def driven(chromium, served, watch, press_enable):
+def driven(chromium, served, watch, press_enable, add_person):
     """A server on which Ada has driven and recorded for a moment: every page has something to show."""
     context = chromium.new_context(viewport={"width": 1280, "height": 720})
     page = context.new_page()
-    page.goto(f"{served}/people")
-    page.locator("#add input").fill(NAME)
-    page.get_by_role("button", name="Add a person").click()
-    page.get_by_role("button", name=f"Choose {NAME}").wait_for()
-    page.goto(served)
-    page.locator(".label").first.wait_for(state="attached")
+    add_person(page, served, NAME)
     with watch(served) as arm:
         arm.wait(lambda: arm.state["driver_name"] == NAME)
         page.locator("#record").click()
