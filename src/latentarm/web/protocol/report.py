@@ -155,15 +155,12 @@ class TaskState(Message):
     short: bool
 
 
-@final
-class Report(Message):
-    """Report of the control process in every tick.
+class ArmState(Message):
+    """What the arm does: what a `Report` and a `State` have in common.
 
     Attributes:
-        nonce: for the driver to echo.
+        nonce: for the driver to echo in the next input.
         tick: grows.
-        time_s: the control process's clock.
-        driver: whose inputs it takes.
         phase: ``disengaged``, ``neutral_needed`` (the stick must be let go), ``ready`` (enabled and standing
             still), ``moving``, ``stopping``.
         note: shown for a while instead of what the arm does; None for nothing.
@@ -177,29 +174,18 @@ class Report(Message):
         mode: how the arm is steered.
         axes: which pair of the end-effector's axes.
         help: how much the robot helps with learned motions; None where it cannot.
-        run: path of the run that is driven, as it was named; None without one.
-        seed: says where things were placed and where the arm started.
         profile: whose alignment.
-        loading: whether something else is being loaded; there are no further reports until it is.
-        q: (n,), joint positions as they were last read, rad.
-        speed: the fastest joint's, rad/s.
         tool: the tool's position, m.
-        gripper: as it was last read; None without one.
+        gripper: as it was last read; None where there is none, or before it was read.
         task: how far it has come.
-        things: where they are, sent in every few reports; None in the others and in an empty scene.
-        ghosts: what each direction would do now.
-        belief: over the goals; empty for a task without goals.
-        alpha: how much the robot helps.
-        bound_rad: the radius of equation 14, where there is help.
-        recording: where something is recorded.
-        late_share: share of the loop's deadlines that were missed.
-        late_p99_ms: 99th percentile of the time from a tick's due time until its command was sent.
+        things: where they are; None in an empty scene, and where they are not told again.
+        ghosts: where each direction would take the tool now; a `State` has None while the last ones hold.
+        alpha: how much the robot helps, in [0, 1].
+        late_share: share of the control loop's deadlines that were missed.
     """
 
     nonce: str
     tick: int
-    time_s: float
-    driver: int
     phase: Phase
     note: Notice | None
     reason: Notice | None
@@ -211,22 +197,44 @@ class Report(Message):
     mode: ModeName
     axes: int
     help: HelpLevel | None
-    run: str | None
-    seed: int
     profile: str | None
-    loading: bool
-    q: tuple[float, ...]
-    speed: float
     tool: Point
     gripper: GripperState | None
     task: TaskState
     things: Things | None
     ghosts: Ghosts | None
-    belief: tuple[float, ...]
     alpha: float
+    late_share: float
+
+
+@final
+class Report(ArmState):
+    """Report of the control process in every tick.
+
+    Attributes:
+        time_s: the control process's clock.
+        driver: whose inputs it takes.
+        run: path of the run that is driven, as it was named; None without one.
+        seed: says where things were placed and where the arm started.
+        loading: whether something else is being loaded; there are no further reports until it is.
+        q: (n,), joint positions as they were last read, rad.
+        speed: the fastest joint's, rad/s.
+        belief: over the goals; empty for a task without goals.
+        bound_rad: the radius of equation 14, where there is help.
+        recording: where something is recorded.
+        late_p99_ms: 99th percentile of the time from a tick's due time until its command was sent.
+    """
+
+    time_s: float
+    driver: int
+    run: str | None
+    seed: int
+    loading: bool
+    q: tuple[float, ...]
+    speed: float
+    belief: tuple[float, ...]
     bound_rad: float | None
     recording: Recording | None
-    late_share: float
     late_p99_ms: float
 
 

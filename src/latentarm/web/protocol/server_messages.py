@@ -9,8 +9,8 @@ from typing import Literal, final
 from latentarm.tasks.steps import StepKind
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.notice import Message, Notice, PersonName
-from latentarm.web.protocol.orders import HelpLevel, ModeName
-from latentarm.web.protocol.report import Ghosts, GripperState, HeldBack, Phase, Point, TaskState, Things
+from latentarm.web.protocol.orders import ModeName
+from latentarm.web.protocol.report import ArmState, Point
 
 
 @final
@@ -116,32 +116,12 @@ class RecordingState(Message):
 
 
 @final
-class State(Message):
-    """What the arm does now.
+class State(ArmState):
+    """What the arm does now, and who drives it.
 
     Attributes:
-        nonce: to be echoed by the next input.
-        tick: grows.
-        phase: see `latentarm.web.protocol.report.Report`.
-        note: shown instead of the arm's state, or null.
-        reason: why the arm may not move, or null if it may.
-        held_back: why it moves slower than asked, or null.
-        returning: whether it moves back to its start.
-        at_start: whether it is there.
-        let_go_first: whether the stick does something else by now: it must be let go before it moves the arm.
-        late_stops: how often the arm has stopped in this drive because no input came in time.
-        mode: how the arm is steered.
-        axes: which pair of the end-effector's.
-        help: how much the robot helps with learned motions, or null where it cannot.
-        profile: whose alignment.
         bodies: x, y, z, qw, qx, qy, qz in the order of ``/scene.json``, m.
-        tool: m.
-        gripper: null where it has none, or before it was read.
-        task: how far it has come.
-        things: where they are; null if the scene has no things, or nothing has moved since the last.
-        ghosts: where each direction would take the tool; null if nothing has moved by 1 mm since the last.
         belief: over the goals; null for a task without goals.
-        alpha: how much the robot helps, in [0, 1].
         bound_m: how far from the likeliest goal help lets the tool be, m, to first order; or null.
         driver: id of the page that drives, or null.
         driver_name: what its person is called.
@@ -152,33 +132,12 @@ class State(Message):
         copilot_asking: who asks to be that, or null.
         recording: null where nothing was ever recorded.
         trail: counts how often the trail was emptied.
-        late_share: share of the control loop's deadlines that were missed.
         you: whether this page drives.
     """
 
     type: Literal["state"] = "state"
-    nonce: str
-    tick: int
-    phase: Phase
-    note: Notice | None
-    reason: Notice | None
-    held_back: HeldBack | None
-    returning: bool
-    at_start: bool
-    let_go_first: bool
-    late_stops: int
-    mode: ModeName
-    axes: int
-    help: HelpLevel | None
-    profile: str | None
     bodies: tuple[tuple[float, ...], ...]
-    tool: Point
-    gripper: GripperState | None
-    task: TaskState
-    things: Things | None
-    ghosts: Ghosts | None
     belief: tuple[float, ...] | None
-    alpha: float
     bound_m: float | None
     driver: str | None
     driver_name: PersonName | None
@@ -189,7 +148,6 @@ class State(Message):
     copilot_asking: Person | None
     recording: RecordingState | None
     trail: int
-    late_share: float
     you: bool
 
 

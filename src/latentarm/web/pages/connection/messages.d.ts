@@ -248,7 +248,6 @@ export interface SkipQuestion {
 }
 
 export interface State {
-  type: "state";
   nonce: string;
   tick: number;
   phase: "disengaged" | "neutral_needed" | "ready" | "moving" | "stopping";
@@ -263,14 +262,16 @@ export interface State {
   axes: number;
   help: "off" | "low" | "medium" | "high" | null;
   profile: string | null;
-  bodies: number[][];
   tool: [number, number, number];
   gripper: GripperState | null;
   task: TaskState;
   things: Things | null;
   ghosts: Ghosts | null;
-  belief: number[] | null;
   alpha: number;
+  late_share: number;
+  type: "state";
+  bodies: number[][];
+  belief: number[] | null;
   bound_m: number | null;
   driver: string | null;
   driver_name: string | number | null;
@@ -281,7 +282,6 @@ export interface State {
   copilot_asking: Person | null;
   recording: RecordingState | null;
   trail: number;
-  late_share: number;
   you: boolean;
 }
 
