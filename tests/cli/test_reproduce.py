@@ -15,6 +15,7 @@ Run = Callable[..., tuple[int, str, str]]
 
 TINY = Preset(
     "smoke",
+    models=("pca", "vae", "cvae"),
     episodes=4,
     test_episodes=2,
     seeds=2,

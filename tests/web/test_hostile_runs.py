@@ -56,19 +56,23 @@ HOSTILE = {
 }
 
 
-def make_runs(trained: Path, out: Path, kinds: list[str]) -> dict[str, str]:
-    """Runs by name in a server's folder, one of each kind."""
-    names = {kind.replace(" ", "-"): kind for kind in kinds}
-    for name, kind in names.items():
-        run = Path(shutil.copytree(trained, out / "runs" / name))
-        HOSTILE[kind](run)
-    return names
+@pytest.fixture(scope="module")
+def among_hostile(serve, trained, tmp_path_factory):
+    """A server that lists a run of each kind, and drives one that has a hostile profile."""
+    folder = tmp_path_factory.mktemp("hostile")
+    run = Path(shutil.copytree(trained, folder / "mine"))
+    (run / "profiles" / "ada").mkdir(parents=True)
+    os.mkfifo(run / "profiles" / "ada" / "config.json")
+    for kind, spoil in HOSTILE.items():
+        spoil(Path(shutil.copytree(trained, folder / "runs" / kind.replace(" ", "-"))))
+    with serve(Spec(run, out=folder)) as site:
+        yield site
 
 
 @pytest.mark.parametrize("kinds", [["deep"], pytest.param(list(HOSTILE), marks=pytest.mark.slow)])
-def test_a_hostile_run_is_refused_and_driving_goes_on(tmp_path, serve, trained, kinds):
-    names = make_runs(trained, tmp_path, kinds)
-    with serve(Spec(trained, out=tmp_path)) as site, site.page() as page:
+def test_a_hostile_run_is_refused_and_driving_goes_on(among_hostile, kinds):
+    names = [kind.replace(" ", "-") for kind in kinds]
+    with among_hostile.page() as page:
         # A pipe named config.json is listed by name alone: nothing is opened before somebody picks it.
         assert set(names) <= set(page.learning["runs"])
         for name in names:
@@ -81,17 +85,16 @@ def test_a_hostile_run_is_refused_and_driving_goes_on(tmp_path, serve, trained, 
             assert any(
                 word in why for word in ("config.json", "model.safetensors", "dataset", "info.json")
             ), (name, why)
-        assert site.control.alive
-        assert page.welcome["run"] == "run"
+        assert among_hostile.control.alive
+        assert page.welcome["run"] == "mine"
         before = np.array(page.state["tool"])
         page.enable()
         page.u = [1.0, 0.0]
         page.wait(lambda state: np.linalg.norm(np.array(state["tool"]) - before) > 0.02, within_s=20.0)
 
 
-def test_while_the_arm_moves_no_run_is_tried(tmp_path, serve, trained):
-    make_runs(trained, tmp_path, ["deep"])
-    with serve(Spec(trained, out=tmp_path)) as site, site.page() as page:
+def test_while_the_arm_moves_no_run_is_tried(among_hostile):
+    with among_hostile.page() as page:
         page.enable()
         page.send(type="run", run="deep")
         page.wait(lambda state: "Stop the arm first" in said(state))
@@ -110,11 +113,8 @@ def test_a_run_that_loads_for_ever_is_given_up(tmp_path, trained, monkeypatch):
         tried.end()
 
 
-def test_a_hostile_profile_is_refused(tmp_path, serve, trained):
-    run = Path(shutil.copytree(trained, tmp_path / "mine"))
-    (run / "profiles" / "ada").mkdir(parents=True)
-    os.mkfifo(run / "profiles" / "ada" / "config.json")
-    with serve(Spec(run, out=tmp_path)) as site, site.page() as page:
+def test_a_hostile_profile_is_refused(among_hostile):
+    with among_hostile.page() as page:
         page.send(type="profile", name="ada")
         page.wait(lambda state: "is a named pipe" in said(state), within_s=20.0)
         assert page.state["profile"] is None

@@ -24,8 +24,7 @@ def assert_well_drawn(figure):
     assert any("simulated" in word for word in words_of(figure))
 
 
-@pytest.mark.parametrize("models", [["cae"], ["scl", "isometric"]])
-@pytest.mark.parametrize("spread", [0.02, 0.9])
+@pytest.mark.parametrize(("models", "spread"), [(["cae"], 0.02), (["scl", "isometric"], 0.9)])
 def test_every_condition_has_points_with_intervals_in_every_panel(result, models, spread):
     results = [
         result(task=task, model=model, noise=noise, spread=spread)
