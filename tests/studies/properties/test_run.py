@@ -12,6 +12,7 @@ from latentarm.studies.study import ALWAYS_MADE, Request, run_study
 
 TINY = Preset(
     "tiny",
+    models=("pca", "vae", "cvae", "isometric"),
     episodes=4,
     test_episodes=2,
     seeds=2,
