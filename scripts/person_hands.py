@@ -79,8 +79,8 @@ class Hand(ABC):
         self.page.locator(selector).click(force=True)
 
 
-class PointerHand(Hand):
-    """The mouse, on the stick and on everything else."""
+class ScreenHand(Hand):
+    """On the stick and the buttons that the page shows."""
 
     def sit_down(self) -> None:
         """See the base class. The page begins with the stick."""
@@ -96,6 +96,37 @@ class PointerHand(Hand):
         time.sleep(hold_s)
         self._lift()
 
+    def enable(self) -> None:
+        """See the base class."""
+        self._press("#enable")
+
+    def choose(self, pair: int, now: int) -> None:
+        """See the base class."""
+        self._press(f"#axes label:nth-child({pair + 1})")
+
+    def grip(self, close: bool) -> None:
+        """See the base class."""
+        self._press("#gripper-close" if close else "#gripper-open")
+
+    @abstractmethod
+    def _press(self, selector: str) -> None: ...
+
+    @abstractmethod
+    def _put_down(self, x: float, y: float) -> None: ...
+
+    @abstractmethod
+    def _drag(self, x: float, y: float) -> None: ...
+
+    @abstractmethod
+    def _lift(self) -> None: ...
+
+
+class PointerHand(ScreenHand):
+    """The mouse."""
+
+    def _press(self, selector: str) -> None:
+        self.click(selector)
+
     def _put_down(self, x: float, y: float) -> None:
         self.page.mouse.move(x, y)
         self.page.mouse.down()
@@ -105,18 +136,6 @@ class PointerHand(Hand):
 
     def _lift(self) -> None:
         self.page.mouse.up()
-
-    def enable(self) -> None:
-        """See the base class."""
-        self.click("#enable")
-
-    def choose(self, pair: int, now: int) -> None:
-        """See the base class."""
-        self.click(f"#axes label:nth-child({pair + 1})")
-
-    def grip(self, close: bool) -> None:
-        """See the base class."""
-        self.click("#gripper-close" if close else "#gripper-open")
 
 
 class DpadHand(PointerHand):
@@ -204,7 +223,7 @@ class GamepadHand(Hand):
         self.page.evaluate("(number) => { window.pad.buttons[number].pressed = false; }", button)
 
 
-class TouchHand(PointerHand):
+class TouchHand(ScreenHand):
     """A finger on a phone."""
 
     def __init__(self, page: Page) -> None:
@@ -212,8 +231,7 @@ class TouchHand(PointerHand):
         super().__init__(page)
         self._session = page.context.new_cdp_session(page)
 
-    def click(self, selector: str) -> None:
-        """Tap on something."""
+    def _press(self, selector: str) -> None:
         self.presses += 1
         bring(self.page, selector)
         self.page.locator(selector).tap(force=True)

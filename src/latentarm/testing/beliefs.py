@@ -72,14 +72,11 @@ class BeliefContract:
         assert belief.sum() == pytest.approx(1.0)
         assert (belief >= 0.02).all()
 
-    @settings(law, max_examples=2)
-    @given(seeds, st.integers(1, 3), st.floats(0, 0.3))
-    def test_ten_thousand_steps_leave_it_sound(
-        self, rule: MakeBelief, seed: int, axes: int, floor: float
-    ) -> None:
-        rng = np.random.default_rng(seed)
-        model = rule(GOALS, floor=floor)
-        people = 4
+    def test_ten_thousand_steps_leave_it_sound(self, rule: MakeBelief) -> None:
+        """Without a floor, where rounding could take a goal's probability below zero or lose it for ever."""
+        rng = np.random.default_rng(0)
+        model = rule(GOALS, floor=0.0)
+        people, axes = 4, 2
         belief = np.tile(model.initial(), (people, 1))
         inputs = rng.uniform(-1, 1, (10_000, people, axes))
         inputs[rng.random((10_000, people)) < 0.1] = 0.0
@@ -87,7 +84,7 @@ class BeliefContract:
         matrix, state = rng.normal(size=(axes, DOF)), rng.normal(size=(people, DOF))
         for u in inputs:
             belief = model.update(belief, u, state, linear(matrix))
-            assert (belief >= floor).all()
+            assert (belief >= 0.0).all()
             assert abs(belief.sum(axis=-1) - 1).max() < 1e-12
 
     @law
