@@ -59,7 +59,7 @@ test: check ## Everything that must hold, in minutes.
 
 test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of approaches.
 	$(PYTEST) -m "not clock and not browser" $(PARALLEL)
-	$(PYTEST) -m "clock or browser"
+	$(PYTEST) -m "clock or browser" tests/web
 
 test-thorough: $(VENV)/installed-dev ## 10,000 Hypothesis examples for motion and geometry, 2,000 drives (hours; nightly).
 	$(BIN)/python -m pytest --hypothesis-profile=thorough tests/control tests/kinematics tests/robots
