@@ -9,7 +9,7 @@ import time
 from dataclasses import asdict, dataclass, field
 from typing import Any, Final
 
-from person_hands import Hand
+from person_hands import Hand, stopped
 from person_page import Left, Look, Unit, look
 
 READS_S: Final = 0.3
@@ -42,6 +42,10 @@ TIPPED: Final = 20.0
 
 GIVES_UP_S: Final = 600.0
 STUCK_LOOKS: Final = 25
+MOST_GRIPS: Final = 3
+"""Grips in vain after which they have the task begin again, where the page offers that."""
+
+MOST_RESTARTS: Final = 2
 
 
 @dataclass
@@ -58,6 +62,7 @@ class Drive:
         said: what the page said at the end, or why the person gave up.
         reasons: why the arm stopped, as the page said it.
         pushes: how often the arm was pushed.
+        restarts: how often Again was pressed because the task could not be done any more.
     """
 
     success: bool = False
@@ -69,6 +74,7 @@ class Drive:
     said: str = ""
     reasons: list[str] = field(default_factory=list)
     pushes: int = 0
+    restarts: int = 0
 
     def as_json(self) -> dict[str, Any]:
         """For a file."""
@@ -90,10 +96,12 @@ class Person:
         self.hand = hand
         self._rate = dict(FIRST_GUESS)
         self._more_s: dict[Unit, float] = {"cm": 0.02, "°": 0.02}
+        self._in_vain = 0
 
     def drive(self) -> Drive:
         """Do the task that the page shows, from its start on."""
         drive = Drive()
+        self._in_vain = 0
         began_s, before = time.monotonic(), self.hand.presses
         was_enabled, quiet = False, 0
         while time.monotonic() - began_s < GIVES_UP_S:
@@ -102,12 +110,17 @@ class Person:
             drive.steps = seen.done
             if drive.first_step_s is None and (seen.done or seen.outcome == "success"):
                 drive.first_step_s = time.monotonic() - began_s
-            if seen.outcome is not None:
-                drive.success, drive.said = seen.outcome == "success", seen.said
+            if seen.outcome == "success":
+                drive.success, drive.said = True, seen.said
                 break
-            if seen.said.startswith("Too little is left"):
+            if seen.outcome == "failure" or self._cannot_go_on(seen):
                 drive.said = seen.said
-                break
+                if drive.restarts == MOST_RESTARTS:
+                    break
+                drive.restarts += 1
+                self._again()
+                was_enabled, quiet = False, 0
+                continue
             if not seen.enabled:
                 if was_enabled:
                     drive.stops += 1
@@ -126,6 +139,25 @@ class Person:
             drive.said = f"gave up after {GIVES_UP_S:.0f} s"
         drive.seconds, drive.presses = time.monotonic() - began_s, self.hand.presses - before
         return drive
+
+    def _cannot_go_on(self, seen: Look) -> bool:
+        """Whether the page offers Again, and taking the thing once more has failed or cannot help."""
+        return seen.said.startswith("Too little is left") or (
+            "press Again" in seen.said and self._in_vain >= MOST_GRIPS
+        )
+
+    def _again(self) -> None:
+        """Have the helper put everything back as it was."""
+        stopped(self.hand)
+        self.hand.page.locator("#task-again").click(timeout=5000)
+        self._in_vain = 0
+        for _ in range(50):
+            now = look(self.hand.page)
+            if now.outcome is None and "press Again" not in now.said:
+                break
+            time.sleep(0.1)
+        # Enter on a button that was pressed last would press it again.
+        self.hand.page.locator(self.hand.at).focus()
 
     def _enable(self) -> bool:
         self.hand.enable()
@@ -166,9 +198,11 @@ class Person:
             time.sleep(0.2)
             now = look(self.hand.page)
             if now.gripper.startswith("Holding") == close and "gripper now" not in now.step:
+                self._in_vain = 0
                 return
             if not now.enabled:
                 return
+        self._in_vain += 1
 
     def _push(self, wanted: Left, seen: Look) -> None:
         unit, far = wanted.unit, wanted.amount

@@ -25,6 +25,7 @@ HEAD: Final = (
     "presses",
     "first step (s)",
     "stops by itself",
+    "begun again",
 )
 
 
@@ -34,7 +35,7 @@ def table(found: Sequence[Try]) -> str:
     Args:
         found: as `page_person.py` writes them.
     """
-    rows = [HEAD, ("---", "---", *(5 * ("---:",)))]
+    rows = [HEAD, ("---", "---", *(6 * ("---:",)))]
     for name in HANDS:
         for kind, ending in KINDS.items():
             some = [one for one in found if one["input"] == name and one["task"].endswith(ending)]
@@ -42,7 +43,7 @@ def table(found: Sequence[Try]) -> str:
                 rows.append(_row(name, kind, some))
         every = [one for one in found if one["input"] == name]
         if every:
-            rows.append((name, "**all**", _share(every), "", "", "", _per_try(every)))
+            rows.append((name, "**all**", _share(every), "", "", "", _per_try(every), _restarts(every)))
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
 
@@ -57,6 +58,7 @@ def _row(name: str, kind: str, some: Sequence[Try]) -> tuple[str, ...]:
         _spread(done, lambda one: one["presses"]),
         _spread(first, lambda one: one["first_step_s"]),
         _per_try(some),
+        _restarts(some),
     )
 
 
@@ -66,6 +68,10 @@ def _share(some: Sequence[Try]) -> str:
 
 def _per_try(some: Sequence[Try]) -> str:
     return f"{sum(one['stops'] for one in some)} in {len(some)} tries"
+
+
+def _restarts(some: Sequence[Try]) -> str:
+    return str(sum(one["restarts"] for one in some))
 
 
 def _spread(some: Sequence[Try], of: Callable[[Try], float]) -> str:
