@@ -80,8 +80,8 @@ def test_a_drive_is_listed_replayed_printed_and_deleted(
     )
     page.locator("#seek").fill("0")
     page.get_by_role("button", name="Play").click()
-    page.get_by_role("button", name="Pause").click()
     expect(page.locator("#replay-time")).not_to_contain_text("0.0 s of")
+    page.get_by_role("button", name="Pause").click()
 
     page.locator("select[name=input]").select_option("Keyboard")
     page.locator("input[name=until]").fill("2001-01-01")
