@@ -95,7 +95,7 @@ def test_a_study_offers_what_there_is(
 
 def test_a_drive_offers_every_belief_and_says_the_usual_alphas(run: Run) -> None:
     _, out, _ = run("drive", "--help")
-    assert "{" + ",".join(BELIEFS) + "}" in out
+    assert ",".join(BELIEFS) in out
     usual = f"By default {FixedAlpha().value:g}, with confidence {ConfidenceAlpha().most:g}."
     assert usual in " ".join(out.replace("│", " ").split())
 

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
 
+from latentarm.assistance.catalogue import AssistanceName
 from latentarm.commands.choices import BeliefName, TaskName
 from latentarm.commands.options import Arm, EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seed
 from latentarm.errors import UserError
@@ -62,9 +63,20 @@ class DriveOptions:
     ] = None
     beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0
     belief: Annotated[
-        BeliefName,
-        arg(help="How inputs change the belief over goals, for help and for models trained on (s, b)."),
-    ] = "boltzmann"
+        BeliefName | None,
+        arg(
+            help="How inputs change the belief over goals, for help and for models trained on (s, b). By"
+            " default boltzmann; with --assistance the belief that it was published with."
+        ),
+    ] = None
+    assistance: Annotated[
+        AssistanceName | None,
+        arg(
+            help="Published help in place of equation 2, with any controller: hindsight optimisation, which"
+            " adds its help and acts at rest (Javdani et al. 2018), HARMONIC's low, high and full assist,"
+            " which interpolate, or policy blending, which helps once it is sure."
+        ),
+    ] = None
     arbitration: Annotated[
         Literal["fixed", "confidence"] | None,
         arg(help="For latent_assist: a constant alpha (the default), or one that grows with confidence."),
@@ -105,12 +117,13 @@ class DriveOptions:
             raise UserError(
                 "A profile aligns latent actions, and mode switching has none: leave one of them out."
             )
-        if self.driver != "latent_assist":
-            for name in ("arbitration", "alpha"):
-                if getattr(self, name) is not None:
-                    raise UserError(
-                        f"Without help there is no {name} to set: use --controller latent_assist."
-                    )
+        for name in ("arbitration", "alpha"):
+            if getattr(self, name) is None:
+                continue
+            if self.assistance is not None:
+                raise UserError(f"The assistance {self.assistance} has no {name}: leave one of them out.")
+            if self.driver != "latent_assist":
+                raise UserError(f"Without help there is no {name} to set: use --controller latent_assist.")
 
     @property
     def driver(self) -> ControllerName:

@@ -1,8 +1,13 @@
 """What steers in `latentarm drive`, who gives inputs, and what the figures depend on."""
 
 from dataclasses import asdict, dataclass, replace
+from typing import Final
 
+from latentarm.assistance.assistance import AssistanceRule
+from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
+from latentarm.assistance.catalogue import BELIEFS, published_assistance, published_belief
+from latentarm.assistance.goal_blending import blending
 from latentarm.commands.drive_options import DriveOptions
 from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
@@ -13,6 +18,9 @@ from latentarm.operators.person import Person
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
+
+USUAL_BELIEF: Final = "boltzmann"
+"""The rule of the belief where none is named."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +33,7 @@ class Steering:
         robot: the arm.
         run: the run that was named, or None.
         controller: what the operator steers with.
-        arbitration: how much the robot helps, if it helps at all.
+        arbitration: how much the robot helps by equation 2, if it does.
     """
 
     config: DriveOptions
@@ -50,6 +58,20 @@ class Steering:
         """The same, as rational as was asked for."""
         person = PEOPLE[self.operator]
         return replace(person, decides=replace(person.decides, beta=self.config.beta))
+
+    @property
+    def assistance(self) -> AssistanceRule | None:
+        """How the robot helps."""
+        if self.config.assistance is not None:
+            return published_assistance(self.config.assistance, self.robot)
+        return None if self.arbitration is None else blending(self.arbitration)
+
+    @property
+    def rule(self) -> Rule:
+        """How inputs change the belief."""
+        if self.config.assistance is not None and self.config.belief is None:
+            return published_belief(self.robot)
+        return BELIEFS.find(self.config.belief or USUAL_BELIEF, "--belief")
 
     @property
     def model(self) -> str | None:
@@ -82,7 +104,8 @@ class Steering:
             "operator": "simulated",
             "operator_name": self.operator,
             "beta": config.beta,
-            "belief": config.belief,
+            "belief": config.belief or (USUAL_BELIEF if config.assistance is None else "hindsight"),
+            "assistance": config.assistance,
             "arbitration": None if self.arbitration is None else config.arbitration or "fixed",
             "alpha": None if self.arbitration is None else asdict(self.arbitration),
             "time_limit_s": time_limit_s,
@@ -106,7 +129,7 @@ def steering_of(config: DriveOptions, run: Run | None, task: str, robot: Robot) 
 
 
 def _arbitration(config: DriveOptions) -> FixedAlpha | ConfidenceAlpha | None:
-    if config.driver != "latent_assist":
+    if config.driver != "latent_assist" or config.assistance is not None:
         return None
     if config.arbitration == "confidence":
         return ConfidenceAlpha() if config.alpha is None else ConfidenceAlpha(config.alpha)
