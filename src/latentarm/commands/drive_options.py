@@ -3,7 +3,7 @@
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from tyro.conf import Positional, arg
 
@@ -16,7 +16,10 @@ from latentarm.parallel.grid import check_processes
 from latentarm.runs.checks import check_count, check_positive, check_seed
 from latentarm.types import Row
 
-ControllerName = Literal["latent", "latent_assist", "end_effector"]
+ControllerName = Literal["latent", "latent_assist", "end_effector", "two_sticks", "retargeting"]
+
+MODE_SWITCHED: Final[tuple[ControllerName, ...]] = ("end_effector", "two_sticks", "retargeting")
+"""Those that move the end-effector a few axes at a time, and need no run."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +34,12 @@ class DriveOptions:
         Positional[Path | None], arg(metavar="RUN", help="A trained run; without one, mode switching drives.")
     ] = None
     controller: Annotated[
-        Literal["latent", "latent_assist", "end_effector"] | None,
-        arg(help="Latent actions, with shared autonomy, or mode switching."),
+        ControllerName | None,
+        arg(
+            help="Latent actions, with shared autonomy, or mode switching: end_effector with one stick,"
+            " two_sticks with three axes and a toggle between linear and angular, retargeting with one stick"
+            " whose motion the arm follows as well as its joints allow."
+        ),
     ] = None
     task: Annotated[
         TaskName | None,
@@ -113,7 +120,7 @@ class DriveOptions:
         check_positive("rationality beta", self.beta)
         if self.time_limit_s is not None:
             check_positive("time limit in s", self.time_limit_s)
-        if self.driver == "end_effector" and self.profile is not None:
+        if self.driver in MODE_SWITCHED and self.profile is not None:
             raise UserError(
                 "A profile aligns latent actions, and mode switching has none: leave one of them out."
             )

@@ -8,10 +8,11 @@ from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.catalogue import BELIEFS, published_assistance, published_belief
 from latentarm.assistance.goal_blending import blending
-from latentarm.commands.drive_options import DriveOptions
+from latentarm.commands.drive_options import MODE_SWITCHED, DriveOptions
 from latentarm.control.controller import Controller
-from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.end_effector import TWO_STICKS, EndEffectorController
 from latentarm.controllers.latent import latent_controller
+from latentarm.controllers.retargeting import RetargetingController
 from latentarm.errors import UserError
 from latentarm.operators.catalogue import PEOPLE, OperatorName, usual_operator
 from latentarm.operators.person import Person
@@ -76,7 +77,7 @@ class Steering:
     @property
     def model(self) -> str | None:
         """The model that steers; None with mode switching."""
-        return None if self.run is None or self.config.driver == "end_effector" else self.run.model
+        return None if self.run is None or self.config.driver in MODE_SWITCHED else self.run.model
 
     def about(self, time_limit_s: float) -> dict[str, object]:
         """What the figures depend on.
@@ -139,6 +140,10 @@ def _arbitration(config: DriveOptions) -> FixedAlpha | ConfidenceAlpha | None:
 def _controller(config: DriveOptions, robot: Robot) -> Controller:
     if config.driver == "end_effector":
         return EndEffectorController(robot)
+    if config.driver == "two_sticks":
+        return EndEffectorController(robot, modes=TWO_STICKS)
+    if config.driver == "retargeting":
+        return RetargetingController(robot)
     if config.run is None:
         raise UserError("Latent actions need a trained run: name one, as in `latentarm drive RUN`.")
     return latent_controller(config.run, config.profile, robot)

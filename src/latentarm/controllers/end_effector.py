@@ -36,6 +36,25 @@ class AxisModes:
         if not self.axes[0] or not {row for one in self.axes for row in one} <= set(range(6)):
             raise UserError("A mode's axes are rows of the twist, 0 to 5.")
 
+    def twists(self, mode: int, scale: FloatArray, rotation: FloatArray) -> FloatArray:
+        """What a full input along each axis asks of the tool.
+
+        Args:
+            mode: index into `names`.
+            scale: (6,), speed along and about each axis, m/s and rad/s.
+            rotation: (..., 3, 3), of the tool.
+
+        Returns:
+            (..., d, 6), m/s and rad/s, in the base frame; turns are asked for in the tool's.
+        """
+        rows = self.axes[mode]
+        directions = np.zeros((len(rows), 6))
+        for direction, row in zip(directions, rows, strict=True):
+            direction[row] = scale[row]
+        turns = directions[:, 3:] @ rotation.mT
+        shifts = np.broadcast_to(directions[:, :3], turns.shape)
+        return np.concatenate([shifts, turns], axis=-1)
+
 
 PAIRS: Final = AxisModes(("x-y", "z-yaw", "roll-pitch"), ((0, 1), (2, 5), (3, 4)))
 """One stick of two axes and three modes, those of HARMONIC (Newman et al.): the paper's first study."""
@@ -98,14 +117,7 @@ class EndEffectorController(Controller):
         """Joint velocities that move the tool along the mode's axes, (..., n), rad/s."""
         transforms = self._chain.link_transforms(context.state)
         pose = self._chain.tool_pose(transforms)
-        rows = self._modes.axes[mode]
-        directions = np.zeros((len(rows), 6))
-        for direction, row in zip(directions, rows, strict=True):
-            direction[row] = self._scale[row]
-        # Turns are asked for in the tool's frame.
-        turns = directions[:, 3:] @ pose.rotation.mT
-        shifts = np.broadcast_to(directions[:, :3], turns.shape)
-        twists = np.concatenate([shifts, turns], axis=-1)
+        twists = self._modes.twists(mode, self._scale, pose.rotation)
         jacobian = self._chain.jacobian_at(transforms, pose)
         return np.vecmat(z, joint_velocities(twists, jacobian, self._damping))
 
