@@ -66,6 +66,11 @@ class Lapsing(Decision):
         self._lapse_calls = 0
         self._attentive_calls: int | None = None
 
+    @property
+    def holding(self) -> bool:
+        """Whether attention has lapsed, or what was decided with attention is held."""
+        return self._lapse_calls > 0 or self._decision.holding
+
     def decide(
         self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
     ) -> Input:

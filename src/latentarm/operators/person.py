@@ -111,8 +111,9 @@ class SimulatedPerson(Operator):
         moment = Moment(context, mode, target, u, within_m)
         seen = self._hand.sees(moment if self._screen is None else self._screen.shown(moment))
         self._imagination.saw(seen)
-        believed = seen if self._anticipation is None else self._anticipation.now(moment, seen, controller)
-        meant = self._decision.decide(believed, controller, self._imagination, rng)
+        if self._anticipation is not None and not self._decision.holding:
+            seen = self._anticipation.now(moment, seen, controller)
+        meant = self._decision.decide(seen, controller, self._imagination, rng)
         meant = replace(meant, u=self._speed.pushed(meant.u, self._limits))
         if self._anticipation is not None:
             self._anticipation.meant(moment, meant.u)
