@@ -42,11 +42,11 @@ def test_people_differ_and_their_medians_are_those_stated():
 
 
 def test_another_calibration_changes_the_fitted_figures_alone():
-    slower = Calibration(2.0 * BEFORE.decision_s, 3.0 * BEFORE.switch_s)
+    slower = Calibration(2.0 * BEFORE.push_variation, 3.0 * BEFORE.switch_s)
     for person, other in zip(draw_people(5, 1, BEFORE), draw_people(5, 1, slower), strict=True):
-        assert other.decision_s == pytest.approx(2.0 * person.decision_s)
+        assert other.push_variation == pytest.approx(2.0 * person.push_variation)
         assert other.switch_s == pytest.approx(3.0 * person.switch_s)
-        assert replace(other, decision_s=person.decision_s, switch_s=person.switch_s) == person
+        assert replace(other, push_variation=person.push_variation, switch_s=person.switch_s) == person
 
 
 @settings(max_examples=20)

@@ -49,7 +49,7 @@ def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
     Args:
         calibration: the fitted figures.
     """
-    pace_s, switch_s = calibration.decision_s, calibration.switch_s
+    variation, switch_s = calibration.push_variation, calibration.switch_s
     return (
         TraitSource(
             "reaction_s",
@@ -66,6 +66,14 @@ def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
             LogNormal(0.02, 0.4, 0.005, 0.06),
             "chosen; its band, 8 to 12 Hz, is that of physiological tremor (Elble and Randall, J."
             " Neurophysiol. 39:370, 1976)",
+        ),
+        TraitSource(
+            "push_variation",
+            "SD of a push, share of its length",
+            "",
+            LogNormal(variation, 0.25, 0.5 * variation, 2.0 * variation),
+            "median calibrated; spread chosen. That it goes with the push: Harris and Wolpert, Nature"
+            " 394:780, 1998",
         ),
         TraitSource(
             "rationality",
@@ -93,9 +101,9 @@ def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
             "decision_s",
             "time between decisions, first trial",
             "s",
-            LogNormal(pace_s, 0.15, 0.5 * pace_s, 2.0 * pace_s),
-            "median calibrated; spread chosen. People correct their course about twice a second (Loram et"
-            " al., J. Physiol. 589:307, 2011)",
+            LogNormal(0.5, 0.15, 0.3, 0.9),
+            "people correct their course twice a second at best (Loram et al., J. Physiol. 589:307, 2011);"
+            " spread chosen",
         ),
         TraitSource(
             "switch_s",

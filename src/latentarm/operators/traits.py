@@ -37,6 +37,7 @@ class Traits:
         number: of the person among those drawn from the same seed, from 0.
         reaction_s: time from what can be seen to the input that answers it, s.
         tremor: RMS of each axis's tremor as a share of full deflection.
+        push_variation: SD of each axis of a push about what was meant, as a share of its length.
         rationality: beta of equation 24, 1/m².
         look_ahead_s: how far ahead they imagine an input, the dt of equation 24, s.
         plan_s: how far ahead they plan where one input leads no nearer, s.
@@ -55,6 +56,7 @@ class Traits:
     number: int
     reaction_s: float
     tremor: float
+    push_variation: float
     rationality: float
     look_ahead_s: float
     plan_s: float
@@ -132,7 +134,7 @@ class Traits:
 
     @property
     def _hand(self) -> HandConfig:
-        return HandConfig(self.reaction_s, self.tremor, *TREMOR_HZ)
+        return HandConfig(self.reaction_s, self.tremor, *TREMOR_HZ, self.push_variation)
 
     @property
     def _lapses(self) -> LapseConfig:
