@@ -19,8 +19,8 @@ from latentarm.robots.robot import Robot
 from latentarm.simulation.drive import RATE_HZ
 from latentarm.types import Context, FloatArray, Input, Pose
 
-REST_S: Final = 0.2
-"""A movement is over when the stick has been let go for so long with the tool in the target, s."""
+DWELL_S: Final = 0.3
+"""A movement is over when the tool has come into the target and stays there for so long, s."""
 
 GIVES_UP_S: Final = 15.0
 """A movement that takes longer has failed, s."""
@@ -96,8 +96,8 @@ def point(
         rng: of the person.
 
     Returns:
-        Time from the start until the tool was in the target to stay and the stick let go, s; infinity where
-        that took too long.
+        Time from the start until the tool came into the target to stay for `DWELL_S`, s; infinity where that
+        took too long.
 
     Raises:
         UserError: the arm cannot be used.
@@ -108,7 +108,7 @@ def point(
     operator = SimulatedPerson(robot, person, dt_s, LoopLimits(step.dead_zone, step.joint_speed))
     home = robot.chain.forward(robot.home)
     target = Pose(home.position + pointing.distance_m * np.eye(3)[pointing.axis], home.rotation)
-    rested = 0
+    dwelt = 0
     with make_simulated_arm(PHYSICAL_ARM, robot, robot.home, clock.now_s) as arm:
         check_arm(arm.spec, robot)
         reading = arm.read()
@@ -119,14 +119,13 @@ def point(
         for tick in range(1, round(GIVES_UP_S * RATE_HZ) + 1):
             clock.wait_until(tick * dt_s)
             reading = arm.read()
+            missed = (robot.chain.forward(reading.q).position - target.position)[pointing.axis]
+            dwelt = dwelt + 1 if abs(missed) <= pointing.width_m / 2.0 else 0
+            if dwelt >= round(DWELL_S * RATE_HZ):
+                return (tick - dwelt + 1) * dt_s
             given = operator.act(
                 step.context(reading.q), controller, step.mode, target, rng, pointing.width_m / 2.0
             )
-            missed = (robot.chain.forward(reading.q).position - target.position)[pointing.axis]
-            inside = abs(missed) <= pointing.width_m / 2.0
-            rested = rested + 1 if inside and np.linalg.norm(given.u) <= step.dead_zone else 0
-            if rested >= round(REST_S * RATE_HZ):
-                return (tick - rested + 1) * dt_s
             arm.send(step(given, 0.0, reading, clock.now_s()).command)
     return math.inf
 
