@@ -1,7 +1,10 @@
 """What was fitted of the simulated people, to mode switching and to movements along one axis alone."""
 
+import json
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final, final
+from importlib.resources import files
+from typing import Any, Final, final
 
 from latentarm.errors import UserError
 
@@ -30,5 +33,12 @@ class Calibration:
 BEFORE: Final = Calibration(push_variation=0.1, switch_s=0.8)
 """Before anything was fitted: chosen, and the time of a switch is that of the other simulated people."""
 
-CALIBRATED: Final = BEFORE
-"""Not fitted yet."""
+_FROZEN: Final[dict[str, Any]] = json.loads(
+    (files("latentarm.operators") / "calibration.json").read_text(encoding="utf-8")
+)
+
+PROVENANCE: Final[Mapping[str, Any]] = _FROZEN.pop("provenance")
+"""How `CALIBRATED` was fitted: the command, the seed, what was aimed at, and all figures before and after."""
+
+CALIBRATED: Final = Calibration(**_FROZEN)
+"""Frozen before any latent action was driven by these people; see `scripts/calibrate_population.py`."""
