@@ -67,7 +67,7 @@ class Normal(Spread):
     @property
     def shape(self) -> str:
         """See the base class."""
-        return f"normal, {self.middle:g} ± {self.width:g}"
+        return f"normal, {self.middle:.3g} ± {self.width:.3g}"
 
     def _standard(self, value: float) -> float:
         return (value - self.middle) / self.width
