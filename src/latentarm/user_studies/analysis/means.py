@@ -79,9 +79,5 @@ def sides(trials: Sequence[Trial], claim: Claim) -> Sides:
             for person in people
         ]
     ).reshape(-1, 2)
-    whole = np.isfinite(both).all(axis=1)
-    return Sides(
-        tuple(person for person, has in zip(people, whole, strict=True) if has),
-        both[whole, 0],
-        both[whole, 1],
-    )
+    whole = np.flatnonzero(np.isfinite(both).all(axis=1))
+    return Sides(tuple(people[row] for row in whole), both[whole, 0], both[whole, 1])
