@@ -121,7 +121,7 @@ def learn_alignments(
     candidates = motions[np.arange(min(CANDIDATES, len(motions)))]
     asked = candidates[np.array(order_of_questions(chain, candidates, min(queries, len(candidates))))]
     answers = [_answers(meaning, one, asked, rng) for one in people]
-    learned = {
+    learned: dict[Aligns, tuple[Alignment, ...]] = {
         way: fit_alignments(model, chain, answers, unlabelled, FitConfig(PRIORS[way], steps=steps)).alignments
         for way in aligns
     }

@@ -1,7 +1,7 @@
 """What figures show of a trial: the tool's way, how far it was from the plates, and the stick."""
 
 from dataclasses import asdict, dataclass
-from typing import Final, final
+from typing import Any, Final, final
 
 import numpy as np
 
@@ -91,5 +91,5 @@ def _stick(driven: TaskTrace) -> FloatArray:
     return counts.T * period_s
 
 
-def _rounded(values: FloatArray) -> list:  # pyright: ignore[reportMissingTypeArgument]
+def _rounded(values: FloatArray) -> list[Any]:
     return np.round(values, DECIMALS).tolist()

@@ -19,8 +19,8 @@ from latentarm.studies.streams import generator, integer, sequence
 from latentarm.tasks.catalogue import make_scene_task
 from latentarm.tasks.scene_task import SceneTask
 from latentarm.types import Demonstrations, Episode, Goal
-from latentarm.user_studies.alignments import Aligned, learn_alignments
-from latentarm.user_studies.definition import Condition, Definition, StudyTask
+from latentarm.user_studies.alignments import PRIORS, Aligned, learn_alignments
+from latentarm.user_studies.definition import Aligns, Condition, Definition, StudyTask
 from latentarm.user_studies.limited_time import LimitedTime
 from latentarm.user_studies.sizes import LEAST_DEMONSTRATIONS, Sizes, Stream
 
@@ -83,7 +83,7 @@ def train(cell: TrainingCell) -> Trained:
     """
     latent = [condition for condition in cell.definition.conditions if condition.model]
     keys = list(dict.fromkeys((condition.model, condition.context) for condition in latent))
-    aligns = list(dict.fromkeys(condition.aligns for condition in latent if condition.aligns != "none"))
+    aligns: list[Aligns] = [way for way in PRIORS if any(condition.aligns == way for condition in latent)]
     with threadpool_limits(limits=1):
         task = LimitedTime(make_scene_task(cell.task.scene), cell.sizes.demonstration_s)
         belief = any(BELIEF in context for _, context in keys)

@@ -37,7 +37,7 @@ def mixed_model(table: LongTable) -> Mixed | None:
     `latentarm.user_studies.analysis.randomisation`.
 
     Returns:
-        None for fewer than two people, or where the measure does not vary.
+        None for fewer than two people, or where the measure varies too little for a fit.
     """
     from statsmodels.regression.mixed_linear_model import MixedLM  # takes a second
 
@@ -52,11 +52,14 @@ def mixed_model(table: LongTable) -> Mixed | None:
         warnings.simplefilter("ignore")
         try:
             fitted: Any = MixedLM(table.value / scale, design, groups=table.person).fit(reml=True)
+            se = float(fitted.bse_fe[1])
         except np.linalg.LinAlgError:
             return None
+    if not np.isfinite(se):
+        return None
     return Mixed(
         estimate=scale * float(fitted.fe_params[1]),
-        se=scale * float(fitted.bse_fe[1]),
+        se=scale * se,
         person_sd=scale * float(np.sqrt(max(float(np.asarray(fitted.cov_re).ravel()[0]), 0.0))),
         residual_sd=scale * float(np.sqrt(fitted.scale)),
         converged=bool(fitted.converged),
