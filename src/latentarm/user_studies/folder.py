@@ -15,10 +15,12 @@ from latentarm.untrusted.documents import read_object
 from latentarm.user_studies.analysis.means import person_mean
 from latentarm.user_studies.catalogue import load_definition
 from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.power import Power
 from latentarm.user_studies.record import Trial, read_trial
 from latentarm.user_studies.run import Ran, Request, folder_name
 
 TRIALS: Final = "trials.json"
+POWER: Final = "power.json"
 DOCUMENTS: Final = ("definition.json", TRIALS, "traces.json", "people.json", "analysis.json", "results.json")
 """What follows from definition, sizes, people and seed alone: the same bytes wherever it is computed."""
 
@@ -58,6 +60,21 @@ def write_documents(request: Request, ran: Ran) -> list[Row]:
     write_json(out / "timings.json", timings)
     write_results(out / "results.json", rows, about)
     return rows
+
+
+def write_power(out: Path, definition: Definition, power: Power) -> None:
+    """Write ``power.json``, whole or not at all.
+
+    Args:
+        out: the folder; it is made if needed.
+        definition: of the study.
+        power: as found.
+
+    Raises:
+        UserError: the file cannot be written.
+    """
+    about = {"study": folder_name(definition), "definition": definition.digest}
+    write_json(out / POWER, {**about, **power.as_json()})
 
 
 def rows_of(definition: Definition, trials: Sequence[Trial]) -> list[Row]:

@@ -87,5 +87,7 @@ def _analysed(
     effects: list[Effect] = []
     for name, (_, row) in zip(names, fitted.anova_table.iterrows(), strict=True):
         f, dof, error, p = (float(row[key]) for key in ("F Value", "Num DF", "Den DF", "Pr > F"))
-        effects.append(Effect(name, f, int(dof), int(error), p, f * dof / (f * dof + error)))
+        # An effect of exactly nothing comes out as the rounding of zero, of either sign, or as 0 / 0.
+        if np.isfinite(f) and f >= 0.0:
+            effects.append(Effect(name, f, int(dof), int(error), p, f * dof / (f * dof + error)))
     return effects

@@ -85,18 +85,25 @@ class Verdict:
     why: str
 
 
-def test_claims(definition: Definition, trials: Sequence[Trial]) -> list[Tested]:
-    """Test all claims of a study.
+def sides_of(definition: Definition, trials: Sequence[Trial]) -> list[Sides]:
+    """Both sides of every claim of a study, in order.
 
     Args:
         definition: of the study.
         trials: that count.
     """
-    found = [
-        _tested(hypothesis.name, claim, sides(trials, claim))
-        for hypothesis in definition.hypotheses
-        for claim in hypothesis.claims
-    ]
+    return [sides(trials, claim) for claim in definition.claims]
+
+
+def tested_claims(definition: Definition, both: Sequence[Sides]) -> list[Tested]:
+    """Test all claims of a study, and correct them together.
+
+    Args:
+        definition: of the study.
+        both: sides of every claim, as `sides_of` gives them.
+    """
+    owners = [hypothesis.name for hypothesis in definition.hypotheses for _ in hypothesis.claims]
+    found = [_tested(*one) for one in zip(owners, definition.claims, both, strict=True)]
     corrected = holm([one.p for one in found])
     return [replace(one, p_holm=p) for one, p in zip(found, corrected, strict=True)]
 
