@@ -34,7 +34,7 @@ Preset = Annotated[
 
 
 def list_studies(json: Json = False) -> int:
-    """List the studies.
+    """List the paper's user studies.
 
     For example: latentarm study list
     """

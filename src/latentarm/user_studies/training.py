@@ -8,6 +8,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.annotation import annotate
+from latentarm.assistance.catalogue import published_belief
 from latentarm.context import BELIEF
 from latentarm.errors import UserError
 from latentarm.models.kind import Decoder, TrainedModel
@@ -18,7 +19,7 @@ from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.streams import generator, integer, sequence
 from latentarm.tasks.catalogue import make_scene_task
 from latentarm.tasks.scene_task import SceneTask
-from latentarm.types import Demonstrations, Episode, Goal
+from latentarm.types import Demonstrations, Goal
 from latentarm.user_studies.alignments import PRIORS, Aligned, learn_alignments
 from latentarm.user_studies.definition import Aligns, Condition, Definition, StudyTask
 from latentarm.user_studies.limited_time import LimitedTime
@@ -113,6 +114,8 @@ def train(cell: TrainingCell) -> Trained:
 def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[Demonstrations, float]:
     """Demonstrations of as many minutes as the definition asks for at most, and how long they took, s.
 
+    A belief is that over the goals of each demonstration, which stand elsewhere in every one.
+
     Raises:
         UserError: hardly any succeeds.
     """
@@ -141,18 +144,17 @@ def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[De
         took_s += shown.seconds
     dataset = replace(dataset_of(task, kept), episodes=tuple(one.episode for one in kept))
     if belief:
-        with_belief = [_with_belief(one.episode, dataset, of) for one, of in zip(kept, goals, strict=True)]
+        rule = published_belief(task.robot)
+        with_belief = [
+            annotate(replace(dataset, episodes=(one.episode,), goals=of), rule).episodes[0]
+            for one, of in zip(kept, goals, strict=True)
+        ]
         dataset = replace(dataset, episodes=tuple(with_belief))
     return dataset, took_s
 
 
 def _stream(seed: int, task: str, number: int) -> np.random.Generator:
     return generator(seed, task, Stream.DEMONSTRATIONS, number)
-
-
-def _with_belief(episode: Episode, demonstrations: Demonstrations, goals: tuple[Goal, ...]) -> Episode:
-    """An episode with the belief over its own goals, which stand elsewhere in every run."""
-    return annotate(replace(demonstrations, episodes=(episode,), goals=goals)).episodes[0]
 
 
 def _fitted(
