@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.types import IntArray
-from latentarm.user_studies.analysis.claims import sides_of, tested_claims, verdicts, worded
+from latentarm.user_studies.analysis.claims import claims_tested, sides_of, verdicts, worded
 from latentarm.user_studies.analysis.means import Sides
 from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.exclusion import counted
@@ -115,7 +115,7 @@ def _shares(
     hypotheses = np.zeros(len(definition.hypotheses))
     for _ in range(draws):
         drawn = rng.choice(people, number)
-        tested = tested_claims(definition, [_of_people(one, drawn) for one in both])
+        tested = claims_tested(definition, [_of_people(one, drawn) for one in both])
         claims += [one.says == "held" for one in tested]
         hypotheses += [one.says == "held" for one in verdicts(definition, tested)]
     return (claims / draws).tolist(), (hypotheses / draws).tolist()

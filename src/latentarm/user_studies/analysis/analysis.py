@@ -6,7 +6,7 @@ from typing import final
 
 from latentarm.user_studies.analysis.anova import Effect, repeated_measures
 from latentarm.user_studies.analysis.as_printed import AsPrinted, as_printed
-from latentarm.user_studies.analysis.claims import Tested, Verdict, sides_of, tested_claims, verdicts
+from latentarm.user_studies.analysis.claims import Tested, Verdict, claims_tested, sides_of, verdicts
 from latentarm.user_studies.analysis.long_table import long_table
 from latentarm.user_studies.analysis.means import tasks_of
 from latentarm.user_studies.analysis.mixed import Mixed, mixed_model
@@ -86,7 +86,7 @@ def analyse(definition: Definition, trials: Sequence[Trial]) -> Analysis:
         trials: of all people.
     """
     kept, out = counted(definition.exclusions, trials)
-    tested = tested_claims(definition, sides_of(definition, kept))
+    tested = claims_tested(definition, sides_of(definition, kept))
     return Analysis(
         trials=tuple(kept),
         excluded=out,

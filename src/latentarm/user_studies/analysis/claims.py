@@ -95,7 +95,7 @@ def sides_of(definition: Definition, trials: Sequence[Trial]) -> list[Sides]:
     return [sides(trials, claim) for claim in definition.claims]
 
 
-def tested_claims(definition: Definition, both: Sequence[Sides]) -> list[Tested]:
+def claims_tested(definition: Definition, both: Sequence[Sides]) -> list[Tested]:
     """Test all claims of a study, and correct them together.
 
     Args:
