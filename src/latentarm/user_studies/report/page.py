@@ -1,7 +1,7 @@
 """The report as one HTML page, which holds everything that it shows."""
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -19,12 +19,12 @@ from latentarm.user_studies.analysis.analysis import Analysis
 from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.printed import WRONG
 from latentarm.user_studies.report.figures import Drawn
+from latentarm.user_studies.report.people import HEAD as PEOPLE_HEAD
 from latentarm.user_studies.report.words import (
     CLAIM_HEAD,
     claim_line,
     condition_parts,
     exclusion_words,
-    spans,
     task_words,
     yes_no,
 )
@@ -52,7 +52,7 @@ class Content:
         definition: of the study.
         analysis: of its trials.
         rows: of ``results.json``.
-        people: what each person is like, by trait.
+        people: what the people are like, lines below `latentarm.user_studies.report.people.HEAD`.
         figures: to show.
         who: the people, in words, such as ``12 simulated people``.
         command: that repeats the run.
@@ -61,7 +61,7 @@ class Content:
     definition: Definition
     analysis: Analysis
     rows: Sequence[Row]
-    people: Sequence[Mapping[str, object]]
+    people: Sequence[tuple[str, ...]]
     figures: Sequence[Drawn]
     who: str
     command: str
@@ -93,7 +93,8 @@ def report_page(content: Content) -> str:
         exclusion_lines=exclusion_words(definition),
         excluded_words=_excluded_words(analysis, content.who),
         departures=definition.departures,
-        people_lines=_people_lines(content.people),
+        people_head=PEOPLE_HEAD,
+        people_lines=content.people,
         result_head=["task", "measure", *(one.name for one in definition.conditions)],
         result_lines=_result_lines(definition, content.rows),
         figures=[{"caption": one.caption, "data": _encoded(one.figure)} for one in content.figures],
@@ -130,16 +131,6 @@ def _order_words(definition: Definition) -> str:
 def _excluded_words(analysis: Analysis, who: str) -> str:
     trials, people = len(analysis.excluded.trials), len(analysis.excluded.people)
     return f"Of {who}, {trials} trials and {people} people are excluded; {len(analysis.trials)} trials count."
-
-
-def _people_lines(people: Sequence[Mapping[str, object]]) -> list[tuple[str, str]]:
-    """Every trait that is a figure, or is there or not."""
-    found: dict[str, list[float]] = {}
-    for one in people:
-        for name, value in one.items():
-            if isinstance(value, float | bool):
-                found.setdefault(name, []).append(float(value))
-    return [(name.replace("_", " "), spans(values)) for name, values in found.items()]
 
 
 def _result_lines(definition: Definition, rows: Sequence[Row]) -> list[list[str]]:

@@ -10,6 +10,7 @@ from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.report.figures import draw, figure_names
 from latentarm.user_studies.report.page import Content, report_page
 from latentarm.user_studies.report.pdf import WITHOUT, find_browser, print_page
+from latentarm.user_studies.report.people import people_lines
 from latentarm.user_studies.run import Ran
 
 PAGE: Final = "report.html"
@@ -42,7 +43,7 @@ def write_report(out: Path, ran: Ran, rows: list[Row], command: str) -> str:
     figures = draw(ran.definition, ran.analysis.trials, ran.traces, who)
     for one in figures:
         save_figure(one.figure, out / f"{one.name}.png")
-    people = [one.as_json() for one in ran.people]
+    people = people_lines(ran.people)
     content = Content(ran.definition, ran.analysis, rows, people, figures, who, command)
     write_text(out / PAGE, report_page(content))
     browser = find_browser()

@@ -5,7 +5,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.style import SMALL_FONT_SIZE, TWO_COLUMNS_MM, legend_below, literal, new_figure, tidy
+from latentarm.style import (
+    FONT_SIZE,
+    SMALL_FONT_SIZE,
+    TWO_COLUMNS_MM,
+    legend_below,
+    literal,
+    new_figure,
+    tidy,
+)
 from latentarm.types import FloatArray
 from latentarm.user_studies.definition import Definition, StudyTask
 from latentarm.user_studies.report.looks import colours
@@ -50,7 +58,7 @@ def way_figure(definition: Definition, task: StudyTask, traces: Sequence[Trace],
                 axes.set_ylabel(f"{view}\n{y_label}")
             if view == VIEWS[0][0]:
                 axes.set_title(literal(condition.name))
-            axes.locator_params(nbins=4)
+            axes.locator_params(nbins=3)
             tidy(axes)
             axes.set_aspect("equal", adjustable="box")
     ends = [Line2D([], [], marker=mark, color="black", linestyle="", markersize=3.0) for mark in "ox"]
@@ -108,8 +116,8 @@ def stick_figure(definition: Definition, task: StudyTask, traces: Sequence[Trace
         here = [one for one in traces if (one.task, one.condition) == (task.name, condition.name)]
         spent = sum((np.array(one.stick) for one in here), np.zeros((BINS, BINS)))
         _heat(axes, spent)
-        axes.set_title(literal(condition.name))
-    panels[0].set_ylabel("second axis")
+        axes.set_title(literal(condition.name), fontsize=FONT_SIZE)
+    panels[0].set_ylabel("second axis", fontsize=SMALL_FONT_SIZE)
     heading = f"{who}: share of the time that the stick is pushed, {task.label}"
     figure.suptitle(heading, fontsize=SMALL_FONT_SIZE)
     return figure
@@ -130,7 +138,6 @@ def _heat(axes: "Axes", spent: FloatArray) -> None:
     axes.set_yticks((-1, 0, 1))
     axes.tick_params(labelsize=SMALL_FONT_SIZE)
     axes.xaxis.label.set_fontsize(SMALL_FONT_SIZE)
-    axes.title.set_fontsize(SMALL_FONT_SIZE + 1.0)
 
 
 def _first(traces: Sequence[Trace], task: StudyTask, condition: str) -> list[Trace]:

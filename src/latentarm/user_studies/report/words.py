@@ -1,6 +1,5 @@
 """What the report says in words: the methods, from the definition, and figures as people read them."""
 
-from collections.abc import Sequence
 from typing import Final
 
 from latentarm.metrics.table import ABSENT, format_figure
@@ -102,12 +101,6 @@ CLAIM_HEAD: Final = (
 def yes_no(value: bool | None) -> str:
     """Yes, no, or a dash."""
     return ABSENT if value is None else "yes" if value else "no"
-
-
-def spans(values: Sequence[float]) -> str:
-    """Mean and range of some figures."""
-    mean = sum(values) / len(values)
-    return f"{mean:.3g} ({min(values):.3g} to {max(values):.3g})"
 
 
 def _two(value: float | None) -> str:
