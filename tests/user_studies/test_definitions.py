@@ -60,7 +60,6 @@ def test_the_digest_changes_with_any_field(field: str) -> None:
     changes: dict[str, Any] = {
         "people": 13,
         "practice_min": 4.0,
-        "design": "between",
         "conditions": (*definition.conditions, Condition("more", "more", "modes")),
         "orders": (("R", "LA"),),
         "tasks": (*definition.tasks, DEFINITIONS["harmonic"].tasks[0]),

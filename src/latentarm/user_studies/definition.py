@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Literal, final
 
 from latentarm.errors import UserError
+from latentarm.metrics.measures import label_of
 from latentarm.user_studies.exclusion import Exclusion
 from latentarm.user_studies.hypothesis import Claim, Hypothesis
 from latentarm.user_studies.printed import Printed
@@ -121,8 +122,7 @@ class Definition:
         about: what is asked, in a sentence.
         people: how many go through it.
         papers_people: who went through the paper's, in words.
-        design: whether each person has all conditions.
-        conditions: in the order of tables.
+        conditions: in the order of tables; each person has all of them.
         tasks: in the order in which people do them.
         orders: of the conditions, person by person, repeated as needed; a seeded Williams design where empty.
         practice_min: minutes of practice at most.
@@ -146,7 +146,6 @@ class Definition:
     about: str
     people: int
     papers_people: str
-    design: Literal["within", "between"]
     conditions: tuple[Condition, ...]
     tasks: tuple[StudyTask, ...]
     orders: tuple[tuple[str, ...], ...]
@@ -198,8 +197,6 @@ class Definition:
 
     def label(self, measure: str) -> str:
         """What tables call a scale of the questionnaire, or the measure's own label."""
-        from latentarm.metrics.measures import label_of
-
         return next((scale.label for scale in self.questionnaire if scale.name == measure), label_of(measure))
 
     def as_json(self) -> dict[str, object]:

@@ -13,11 +13,11 @@ from latentarm.runs.results_folder import CONFIG, ResultsFolder, write_json
 from latentarm.types import Row
 from latentarm.untrusted.documents import read_object
 from latentarm.user_studies.analysis.means import person_mean
-from latentarm.user_studies.catalogue import load_definition
+from latentarm.user_studies.catalogue import NAMES, load_definition
 from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.power import Power
 from latentarm.user_studies.record import Trial, read_trial
-from latentarm.user_studies.run import Ran, Request, folder_name
+from latentarm.user_studies.run import PREFIX, Ran, Request, folder_name
 
 TRIALS: Final = "trials.json"
 POWER: Final = "power.json"
@@ -100,8 +100,12 @@ def read_trials(folder: Path) -> tuple[Definition, list[Trial]]:
     Raises:
         UserError: the folder holds no run of a study, or of a definition that has changed since.
     """
-    config = read_object(folder / CONFIG)
-    name = str(config.get("study", "")).removeprefix("user study ")
+    study = str(read_object(folder / CONFIG).get("study", ""))
+    name = study.removeprefix(PREFIX)
+    if not study.startswith(PREFIX) or name not in NAMES:
+        raise UserError(
+            f"{folder} holds no run of a user study: name a folder that latentarm study run made."
+        )
     definition = load_definition(name)
     document = read_object(folder / TRIALS)
     if document.get("definition") != definition.digest:

@@ -1,8 +1,7 @@
 """A run of a study with simulated people: their trials, and the analysis of these."""
 
-import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import Final, TypeVar, final
@@ -24,6 +23,9 @@ from latentarm.user_studies.trace import Trace
 from latentarm.user_studies.training import Trained, TrainingCell, train
 
 FEWEST_PEOPLE: Final = 2
+
+PREFIX: Final = "user study "
+"""Before a study's name, in what a folder of its results says that it is."""
 
 Cell = TypeVar("Cell")
 Result = TypeVar("Result")
@@ -75,7 +77,7 @@ class Request:
             "definition": self.definition.digest,
             "people": self.people,
             "people_are": "simulated",
-            "sizes": json.loads(json.dumps(asdict(self.sizes)).replace("Infinity", '"the task\'s own"')),
+            "sizes": self.sizes.as_json(),
             "seed": self.seed,
         }
 
@@ -106,7 +108,7 @@ class Ran:
 
 def folder_name(definition: Definition) -> str:
     """What the folder of a study's results says that it is."""
-    return f"user study {definition.name}"
+    return f"{PREFIX}{definition.name}"
 
 
 def send_people(request: Request) -> Ran:

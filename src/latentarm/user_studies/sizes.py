@@ -1,8 +1,9 @@
 """How large a run of a study with simulated people is; none of it belongs to the definition."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import IntEnum
+from math import isinf
 from typing import Final, final
 
 
@@ -34,6 +35,14 @@ class Sizes:
     hidden: tuple[int, ...] = (64, 64)
     state_noise_rad: float = 0.01
     alignment_steps: int = 400
+
+    def as_json(self) -> dict[str, object]:
+        """Plain mapping; None for times that have no limit."""
+        known = {
+            name: None if isinstance(value, float) and isinf(value) else value
+            for name, value in asdict(self).items()
+        }
+        return {**known, "hidden": list(self.hidden)}
 
 
 PRESETS: Final[Mapping[str, Sizes]] = {

@@ -32,7 +32,6 @@ DEFINITION: Final = Definition(
     about="Is an arm easier to control once it has learned, from few answers and priors, what people mean?",
     people=12,
     papers_people="ten people",
-    design="within",
     conditions=(
         _condition("No Align", "the input is the latent action", "none"),
         _condition("No Priors", "an alignment learned from the person's answers alone", "no_priors"),

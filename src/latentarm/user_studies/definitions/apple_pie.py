@@ -57,7 +57,6 @@ DEFINITION: Final = Definition(
     about="Do people cook a pie more quickly and with less effort by latent actions than with two sticks?",
     people=12,
     papers_people="eleven people, four of whom knew the robot",
-    design="within",
     conditions=(
         Condition(
             DIRECT,
@@ -139,6 +138,7 @@ DEFINITION: Final = Definition(
         " three parts"
         " in one arrangement, their figures summed. The paper's whole has no breaks.",
         "Things stand at new places in every trial; the paper moved shelf, bowl and bin now and then.",
+        "The two sticks move three axes at once, linear or angular; the paper's have four axes for three.",
         "The paper's items are not published: all items are ours.",
     ),
 )

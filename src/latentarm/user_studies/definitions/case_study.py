@@ -20,7 +20,6 @@ DEFINITION: Final = Definition(
     people=12,
     papers_people="two men with disabilities, 28 and 42 years old, with three and two years of experience"
     " with such arms",
-    design="within",
     conditions=(
         Condition(DIRECT, "two sticks, one for linear and one for angular motion", "two_sticks"),
         LATENT_HELPED,

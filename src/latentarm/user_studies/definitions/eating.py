@@ -81,7 +81,6 @@ DEFINITION: Final = Definition(
     about="What do latent actions and shared autonomy contribute, alone and together, to two dishes?",
     people=12,
     papers_people="ten people",
-    design="within",
     conditions=(
         Condition(R, "the stick retargeted to the 6-DoF twist of the end-effector", "retargeting"),
         Condition(R_SA, "the same, with shared autonomy", "retargeting", assists="hindsight"),

@@ -27,7 +27,6 @@ DEFINITION: Final = Definition(
     people=12,
     papers_people="ten people drove with cVAE; the four other conditions are those of 24 other people in"
     " HARMONIC",
-    design="within",
     conditions=(
         _assisted("No Assist", 0.0, "no assistance"),
         _assisted("Low Assist", 1 / 3, "assistance has weight 1/3"),

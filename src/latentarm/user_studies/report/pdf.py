@@ -65,4 +65,5 @@ def print_page(browser: str, page: Path, pdf: Path) -> bool:
 
 def _sandboxed() -> Sequence[str]:
     """Arguments without which Chromium does not run as root, as in containers: there it has no sandbox."""
-    return ("--no-sandbox",) if os.getuid() == 0 else ()
+    is_root = hasattr(os, "getuid") and os.getuid() == 0
+    return ("--no-sandbox",) if is_root else ()

@@ -12,7 +12,7 @@ from latentarm.user_studies.definition import Condition, Definition, StudyTask
 CONTROLS: Final = {
     "modes": "two axes of the end-effector at a time; a button switches which",
     "two_sticks": "two sticks for the end-effector; a button toggles linear and angular motion",
-    "retargeting": "one stick retargeted to the twist of the end-effector",
+    "retargeting": "the stick retargeted to the twist of the end-effector; a button switches which two axes",
     "latent": "latent actions",
 }
 ASSISTS: Final = {
