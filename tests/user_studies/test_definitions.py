@@ -8,11 +8,11 @@ import pytest
 from latentarm.errors import UserError
 from latentarm.metrics.measures import MEASURES
 from latentarm.models.catalogue import KINDS
-from latentarm.tasks.catalogue import make_scene_task
 from latentarm.user_studies.catalogue import NAMES, load_definition
 from latentarm.user_studies.definition import Condition, Definition
 from latentarm.user_studies.hypothesis import Claim
 from latentarm.user_studies.questionnaire import Item, Scale
+from latentarm.user_studies.scenes import scene_of
 
 DEFINITIONS = {name: load_definition(name) for name in NAMES}
 
@@ -86,7 +86,7 @@ def test_a_definition_names_only_what_there_is(name: str) -> None:
     assert set(definition.measures) <= set(MEASURES)
     assert {condition.model for condition in definition.conditions if condition.model} <= set(KINDS)
     for task in definition.tasks:
-        assert set(task.choices) <= set(range(len(make_scene_task(task.scene).choices)))
+        assert set(task.choices) <= set(range(len(scene_of(task.scene).choices)))
         assert not task.trained_with or task.trained_with in {one.name for one in definition.tasks}
     conditions = {condition.name for condition in definition.conditions}
     for printed in definition.printed:

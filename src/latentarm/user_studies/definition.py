@@ -16,8 +16,8 @@ Controls = Literal["modes", "two_sticks", "retargeting", "latent"]
 """Two axes of the end-effector at a time; two sticks and a toggle; one stick retargeted to the tool's twist;
 latent actions."""
 
-Assists = Literal["none", "interpolation", "hindsight"]
-"""Nobody; HARMONIC's interpolation with a fixed weight; the optimisation of Javdani et al. 2018."""
+Assists = Literal["none", "interpolation", "blending"]
+"""Nobody; HARMONIC's interpolation with a fixed weight; Algorithm 1 of the paper (equations 2 and 3)."""
 
 Aligns = Literal["none", "no_priors", "all_priors"]
 """z = u; the paper's network f learned from answers alone; and with its three priors."""
@@ -71,7 +71,7 @@ class StudyTask:
     Attributes:
         name: in records.
         label: as tables call it.
-        scene: a name of `latentarm.tasks.catalogue.SCENE_TASKS`.
+        scene: a name that `latentarm.user_studies.scenes.scene_of` knows.
         trials: in each condition.
         choices: of the scene's task, in turn from trial to trial; each is driven in every trial where
             `all_choices` is set, one after the other.

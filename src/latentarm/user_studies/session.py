@@ -12,11 +12,11 @@ from latentarm.operators.person import Person
 from latentarm.operators.traits import Traits
 from latentarm.simulation.task_drive import TaskTrace, drive_task
 from latentarm.studies.streams import generator
-from latentarm.tasks.catalogue import make_scene_task
 from latentarm.user_studies.conditions import setup_of
 from latentarm.user_studies.definition import Condition, Definition, StudyTask
 from latentarm.user_studies.limited_time import LimitedTime
 from latentarm.user_studies.record import Trial
+from latentarm.user_studies.scenes import scene_of
 from latentarm.user_studies.sizes import Sizes, Stream
 from latentarm.user_studies.trace import Trace, trace_of
 from latentarm.user_studies.training import Trained
@@ -131,7 +131,7 @@ def together(measured: Sequence[dict[str, float]], time_s: Sequence[float]) -> d
 
 
 def _drive(cell: SessionCell, number: int, choice: int) -> TaskTrace:
-    task = LimitedTime(make_scene_task(cell.task.scene), cell.sizes.trial_s)
+    task = LimitedTime(scene_of(cell.task.scene), cell.sizes.trial_s)
     setup = setup_of(cell.condition, task, _person(cell, number), cell.trained, cell.traits.number)
     use = (Stream.TRIALS, cell.traits.number, number)
     return drive_task(setup, choice, generator(cell.seed, f"{cell.definition.name} {cell.task.name}", *use))

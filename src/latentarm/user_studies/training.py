@@ -8,7 +8,6 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.annotation import annotate
-from latentarm.assistance.catalogue import published_belief
 from latentarm.context import BELIEF
 from latentarm.errors import UserError
 from latentarm.models.kind import Decoder, TrainedModel
@@ -17,12 +16,12 @@ from latentarm.operators.traits import Traits
 from latentarm.simulation.demonstrate import Demonstration, dataset_of, demonstrate_once
 from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.streams import generator, integer, sequence
-from latentarm.tasks.catalogue import make_scene_task
 from latentarm.tasks.scene_task import SceneTask
 from latentarm.types import Demonstrations, Goal
 from latentarm.user_studies.alignments import PRIORS, Aligned, learn_alignments
 from latentarm.user_studies.definition import Aligns, Condition, Definition, StudyTask
 from latentarm.user_studies.limited_time import LimitedTime
+from latentarm.user_studies.scenes import scene_of
 from latentarm.user_studies.sizes import LEAST_DEMONSTRATIONS, Sizes, Stream
 
 MOST_TRIES: Final = 10
@@ -86,7 +85,7 @@ def train(cell: TrainingCell) -> Trained:
     keys = list(dict.fromkeys((condition.model, condition.context) for condition in latent))
     aligns: list[Aligns] = [way for way in PRIORS if any(condition.aligns == way for condition in latent)]
     with threadpool_limits(limits=1):
-        task = LimitedTime(make_scene_task(cell.task.scene), cell.sizes.demonstration_s)
+        task = LimitedTime(scene_of(cell.task.scene), cell.sizes.demonstration_s)
         belief = any(BELIEF in context for _, context in keys)
         demonstrations, seconds = _demonstrated(cell, task, belief)
         models = {key: _fitted(cell, task, demonstrations, *key) for key in keys}
@@ -144,9 +143,8 @@ def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[De
         took_s += shown.seconds
     dataset = replace(dataset_of(task, kept), episodes=tuple(one.episode for one in kept))
     if belief:
-        rule = published_belief(task.robot)
         with_belief = [
-            annotate(replace(dataset, episodes=(one.episode,), goals=of), rule).episodes[0]
+            annotate(replace(dataset, episodes=(one.episode,), goals=of)).episodes[0]
             for one, of in zip(kept, goals, strict=True)
         ]
         dataset = replace(dataset, episodes=tuple(with_belief))

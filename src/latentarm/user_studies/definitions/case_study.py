@@ -64,6 +64,7 @@ DEFINITION: Final = Definition(
         ),
     ),
     departures=(
+        "The help of LA+SA is that of Algorithm 1, as in section 9.3 here.",
         "The paper's two people are described one by one and nothing is tested. Twelve simulated people"
         " take turns"
         " with the two orders, and are tested; they stand for nobody with a disability.",

@@ -40,7 +40,7 @@ DEFINITION: Final = Definition(
         StudyTask(
             "marshmallows",
             "Marshmallows",
-            "marshmallows",
+            "over_marshmallow",
             trials=5,
             choices=(0, 1, 2),
             demonstrations_min=7.0,
@@ -91,8 +91,8 @@ DEFINITION: Final = Definition(
         " demonstrations"
         " of the same task.",
         "The paper's trials end when the person says that the fork is above the marshmallow. Here they"
-        " end when the"
-        " marshmallow has been stabbed, so success and time include the stab.",
+        " end when it"
+        " is, and fail after the task's limit; the fork is over the right marshmallow or the trial goes on.",
         "Five conditions are balanced over ten orders: with twelve people two orders occur twice.",
     ),
 )

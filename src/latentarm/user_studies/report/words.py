@@ -18,7 +18,7 @@ CONTROLS: Final = {
 ASSISTS: Final = {
     "none": "no assistance",
     "interpolation": "assistance by interpolation",
-    "hindsight": "assistance by hindsight optimisation",
+    "blending": "shared autonomy of Algorithm 1",
 }
 ALIGNS: Final = {
     "none": "z = u",
