@@ -131,20 +131,24 @@ def power_of_study(
 
     For example: latentarm study power harmonic --results studies/harmonic
     """
-    from latentarm.user_studies.folder import read_trials, write_power
+    from latentarm.user_studies.folder import claim_power, read_trials, write_power
     from latentarm.user_studies.power import TARGETS, power_of
     from latentarm.user_studies.run import send_people
 
     definition = load_definition(name)
     folder = Path("studies", f"{name}-power") if out is None else out
+    about: dict[str, object] = {"draws": draws, "seed": options.seed}
     if results is None:
-        trials = send_people(_request(definition, options, simulated, preset, folder)).trials
+        request = _request(definition, options, simulated, preset, folder)
+        claim_power(folder, definition, {**about, "drawn_from": request.about})
+        trials = send_people(request).trials
     else:
         found, trials = read_trials(results)
         if found.name != name:
             raise UserError(f"{results} holds a run of the study {found.name}: name a run of {name}.")
+        claim_power(folder, definition, {**about, "drawn_from": str(results)})
     power = power_of(definition, trials, draws, options.seed)
-    write_power(folder, definition, power)
+    write_power(folder, power)
     if options.json:
         print(json_format.dumps(power.as_json(), indent=2))
         return 0

@@ -62,19 +62,32 @@ def write_documents(request: Request, ran: Ran) -> list[Row]:
     return rows
 
 
-def write_power(out: Path, definition: Definition, power: Power) -> None:
+def claim_power(out: Path, definition: Definition, about: Mapping[str, object]) -> None:
+    """Make room for ``power.json``, see `latentarm.runs.results_folder.ResultsFolder.claim`.
+
+    Args:
+        out: the folder.
+        definition: of the study.
+        about: draws, seed, and whom studies are drawn from.
+
+    Raises:
+        UserError: the folder holds something else.
+    """
+    name = f"power of {folder_name(definition)}"
+    ResultsFolder(name, (POWER,)).claim(out, {"study": name, "definition": definition.digest, **about})
+
+
+def write_power(out: Path, power: Power) -> None:
     """Write ``power.json``, whole or not at all.
 
     Args:
-        out: the folder; it is made if needed.
-        definition: of the study.
+        out: the folder.
         power: as found.
 
     Raises:
         UserError: the file cannot be written.
     """
-    about = {"study": folder_name(definition), "definition": definition.digest}
-    write_json(out / POWER, {**about, **power.as_json()})
+    write_json(out / POWER, power.as_json())
 
 
 def rows_of(definition: Definition, trials: Sequence[Trial]) -> list[Row]:
