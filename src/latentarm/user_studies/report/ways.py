@@ -27,6 +27,9 @@ VIEWS: Final = (("from above", 1, 0, "y (m)", "x (m)"), ("from the side", 0, 2, 
 """Name, axis across, axis up, and their labels."""
 
 ROW_MM: Final = 48.0
+NARROWEST: Final = 0.75
+"""Of a view's shorter side, as a share of the longer one, so that its numbers have room."""
+
 LEGEND_MM: Final = 9.0
 SHARES: Final = 50
 """Points of a drive along which distances are compared."""
@@ -58,9 +61,11 @@ def way_figure(definition: Definition, task: StudyTask, traces: Sequence[Trace],
                 axes.set_ylabel(f"{view}\n{y_label}")
             if view == VIEWS[0][0]:
                 axes.set_title(literal(condition.name))
-            axes.locator_params(nbins=3)
+            axes.locator_params(axis="x", nbins=2)
+            axes.locator_params(axis="y", nbins=4)
             tidy(axes)
             axes.set_aspect("equal", adjustable="box")
+        _widen(row[0])
     ends = [Line2D([], [], marker=mark, color="black", linestyle="", markersize=3.0) for mark in "ox"]
     legend_below(figure, ends, ["start", "end"], heading=f"{who}: first trial of each person, {task.label}")
     return figure
@@ -121,6 +126,15 @@ def stick_figure(definition: Definition, task: StudyTask, traces: Sequence[Trace
     heading = f"{who}: share of the time that the stick is pushed, {task.label}"
     figure.suptitle(heading, fontsize=SMALL_FONT_SIZE)
     return figure
+
+
+def _widen(axes: "Axes") -> None:
+    """Make a panel's view no narrower than `NARROWEST` of its height, and no lower than that of its width."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    width, height = right - left, high - low
+    across, up = max(width, NARROWEST * height), max(height, NARROWEST * width)
+    axes.set_xlim((left + right - across) / 2.0, (left + right + across) / 2.0)
+    axes.set_ylim((low + high - up) / 2.0, (low + high + up) / 2.0)
 
 
 def _heat(axes: "Axes", spent: FloatArray) -> None:
