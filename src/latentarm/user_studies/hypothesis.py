@@ -53,7 +53,7 @@ class Hypothesis:
 
     Attributes:
         name: ``H1``, ``H2``, ...
-        text: in the paper's words.
+        text: in the paper's words, where it is the paper's.
         claims: what is tested.
     """
 
