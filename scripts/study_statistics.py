@@ -19,7 +19,6 @@ from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.report.words import yes_no
 
 PAGE = Path(__file__).parents[1] / "docs" / "studies.md"
-BEGIN, END = "<!-- statistics -->", "<!-- end of statistics -->"
 NOT_RUN = "not run yet"
 HEAD = (
     "section",
@@ -43,11 +42,17 @@ def main(folders: Sequence[str]) -> None:
         for name in NAMES
         if f"user study {name}" in found
     ]
-    text = PAGE.read_text(encoding="utf-8")
-    before, after = text.partition(BEGIN)[0], text.partition(END)[2]
     said = "\n".join(runs) or "None of the studies was run for this table yet."
-    parts = [BEGIN, said, markdown_table(HEAD, lines), "## What differs from the paper", departures()]
-    write_text(PAGE, before + "\n\n".join(parts) + "\n" + END + after)
+    text = PAGE.read_text(encoding="utf-8")
+    text = replaced(text, "statistics", f"{said}\n\n{markdown_table(HEAD, lines)}")
+    write_text(PAGE, replaced(text, "departures", departures()))
+
+
+def replaced(text: str, mark: str, body: str) -> str:
+    """A page with other text between two marks."""
+    begin, end = f"<!-- {mark} -->", f"<!-- end of {mark} -->"
+    before, after = text.partition(begin)[0], text.partition(end)[2]
+    return f"{before}{begin}\n\n{body}\n{end}{after}"
 
 
 def departures() -> str:
