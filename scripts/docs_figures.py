@@ -23,6 +23,7 @@ COMMANDS = {
     "shared-autonomy": ["reproduce", "shared-autonomy", "--preset", "paper", "--seed", "2"],
     "alignment": ["reproduce", "alignment", "--preset", "paper", "--seed", "2"],
     "tasks": ["reproduce", "tasks", "--preset", "paper"],
+    "harmonic": ["study", "run", "harmonic"],
     "compare": ["compare", "--demonstrations", *RECORDED],
 }
 PREFIXES = {
@@ -31,6 +32,7 @@ PREFIXES = {
     "shared-autonomy": "shared_autonomy_",
     "alignment": "alignment_",
     "tasks": "tasks_",
+    "harmonic": "harmonic_",
     "compare": "compare_",
 }
 """What a command's figures are called in ``docs/figures``, before their own name."""

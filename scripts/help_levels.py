@@ -13,6 +13,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
+from latentarm.assistance.goal_blending import blending
 from latentarm.controllers.latent import latent_controller
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.operators.catalogue import PEOPLE, OperatorName
@@ -89,7 +90,8 @@ class Hover(Task):
 def main(run: Path, person: OperatorName) -> None:
     """Drive, and print a line for each arbitration."""
     controller = latent_controller(run, None, TABLE.robot)
-    for name, way in WAYS.items():
+    for name, arbitration in WAYS.items():
+        way = None if arbitration is None else blending(arbitration)
         known = [
             simulate(Setup(Hover(None), controller, way, PEOPLE[person], LIMIT_S), goal, manner, rng)
             for goal, manner, rng in drive_plan(Hover(None), DRIVES, 0)

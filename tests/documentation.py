@@ -22,7 +22,7 @@ PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").r
 BLOCK = re.compile(r'^( *)```([a-z]*)(?: title="([^"]*)")?\n(.*?)^\1```$', re.DOTALL | re.MULTILINE)
 SNIPPET = re.compile(r'^--8<-- "([^"]+)"$')
 
-SLOW = ("bench", "compare", "demo", "reproduce")
+SLOW = ("bench", "compare", "demo", "reproduce", "study")
 """Commands that take minutes even at their smallest."""
 
 QUICKLY = {

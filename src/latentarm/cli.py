@@ -61,6 +61,22 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "List what was recorded, and export it to a native dataset (LeRobotDataset v3.0).",
     ),
     **{f"reproduce {name}": (f"reproduce:{name}", entry.summary) for name, entry in STUDIES.items()},
+    "study list": (
+        "study:list_studies",
+        "List the paper's user studies.",
+    ),
+    "study show": (
+        "study:show_study",
+        "Show a study's definition: conditions, tasks, hypotheses with their tests, and its hash.",
+    ),
+    "study run": (
+        "study:run_study",
+        "Send simulated people through a study, analyse their trials, and write the report.",
+    ),
+    "study power": (
+        "study:power_of_study",
+        "Find how many people a study needs: studies drawn from simulated people, through its own analysis.",
+    ),
     "bench": (
         "bench:bench",
         "Time the online step, and training ten seeds in one fit and one after the other.",
@@ -76,7 +92,10 @@ Its module and function in `latentarm.commands`, or its study, and the first lin
 module of the command that runs is imported.
 """
 
-GROUPS = {"reproduce": "Reproduce a study of the paper; `reproduce --help` lists them."}
+GROUPS = {
+    "reproduce": "Reproduce a study of the paper; `reproduce --help` lists them.",
+    "study": "Send simulated people through the paper's user studies; `study --help` lists how.",
+}
 """Words that have commands under them, and their help."""
 
 

@@ -370,11 +370,15 @@ class StepRecord:
         mode: index of the controller's mode.
         command: what was sent.
         bound_rad: radius ``delta / b(g)`` of the ball about the likeliest goal that help towards the
-            goals constrains the arm to (equation 14), rad; NaN without goals or help.
+            goals constrains the arm to (equation 14), rad; NaN without goals or help, and for help that
+            the equation is not about.
         gripper: what the gripper measured, or None without one.
         things: (K, 7), where the things about the arm stand, in the order of the episode's header: position,
             m, and quaternion (w, x, y, z), in the base frame; empty where nobody looks. `Step` does not.
         pace: share of the asked-for speed that a second person left, see `Input.pace`.
+        added: how much of the assistive action was added to the person's: what the filters were asked for is
+            ``pace ((1 - alpha) a_h + (alpha + added) a_r)``. 0 where help takes the place of the person's
+            action, as in equation 2.
     """
 
     time_s: float
@@ -391,6 +395,7 @@ class StepRecord:
     gripper: GripperReading | None = None
     things: FloatArray = field(default_factory=lambda: NO_THINGS)
     pace: float = 1.0
+    added: float = 0.0
 
 
 @dataclass(frozen=True)

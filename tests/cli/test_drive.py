@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from latentarm.commands.drive import DriveOptions, drive_run
+from latentarm.commands.drive import drive_run
+from latentarm.commands.drive_options import ControllerName, DriveOptions
 from latentarm.errors import UserError
 from latentarm.operators.catalogue import PEOPLE, OperatorName, usual_operator
 from latentarm.simulation.drive_table import COLUMNS, endings_in_words
@@ -44,6 +45,15 @@ def test_another_drive_is_not_overwritten_and_the_same_is_repeated(tmp_path: Pat
         drive_run(config(out, seed=1))
     assert (out / "drives.csv").read_bytes() == before
     assert drive_run(config(out)) == first
+
+
+@pytest.mark.parametrize("controller", ["two_sticks", "retargeting"])
+def test_published_help_goes_with_any_controller(tmp_path: Path, controller: ControllerName) -> None:
+    out = tmp_path / "out"
+    driven = drive_run(config(out, controller=controller, assistance="hindsight", time_limit_s=0.1))
+    assert {entry["controller"] for entry in driven.entries} == {controller}
+    about = json.loads((out / "config.json").read_text())
+    assert (about["assistance"], about["belief"], about["alpha"]) == ("hindsight", "hindsight", None)
 
 
 def test_a_recording_has_the_same_rows(tmp_path: Path) -> None:

@@ -36,6 +36,10 @@ REFUSED = {
     "rationality without measure": (("drive", "--beta", "nan"), "beta"),
     "alpha without help": (("drive", "--alpha", "0.5"), "latent_assist"),
     "arbitration without help": (("drive", "--arbitration", "confidence"), "latent_assist"),
+    "alpha with published help": (
+        ("drive", "--assistance", "hindsight", "--alpha", "0.5"),
+        "hindsight has no alpha",
+    ),
     "more than all help": (("drive", "--controller", "latent_assist", "--alpha", "1.5"), r"in \[0, 1\]"),
     "alpha without measure": (("drive", "--controller", "latent_assist", "--alpha", "nan"), "alpha"),
     "nothing to time": (("bench", "--repeats", "0"), "at least 1"),

@@ -317,7 +317,7 @@ def test_things_that_are_missing_or_not_finite_are_neither_written_nor_read(tmp_
         read_journal(path)
 
 
-@pytest.mark.parametrize("count", [3, 7])
+@pytest.mark.parametrize("count", [3, 8])
 def test_a_sample_of_unknown_make_is_damage(tmp_path, count):
     path = tmp_path / "drive.sqlite"
     write(path, [3])

@@ -14,7 +14,10 @@ from latentarm.assistance.blending import FixedAlpha, Unprompted
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.bound import radius
 from latentarm.assistance.catalogue import BELIEFS
-from latentarm.control.export import export_journal
+from latentarm.assistance.goal_blending import GoalBlending
+from latentarm.assistance.hindsight import HindsightOptimisation
+from latentarm.assistance.hindsight_belief import HindsightBelief
+from latentarm.control.export import demonstrations_of, export_journal
 from latentarm.control.journal import read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.control.safety.config import SafetyConfig
@@ -46,11 +49,11 @@ def make(arm, scripted):
     def make(arbitration=None, period_s=0.05, prior=(0.25, 0.75), rule=BoltzmannBelief, **changes):
         goals = goals_of(arm, 0.3, -0.2)
         controller = changes.pop("controller", scripted(MATRIX))
-        belief = rule(
-            np.stack([goal.configuration for goal in goals]), period_s=period_s, prior=np.array(prior)
-        )
+        configurations = np.stack([goal.configuration for goal in goals])
+        belief = rule(configurations, period_s=period_s, prior=np.array(prior))
+        help_by = None if arbitration is None else GoalBlending(configurations, arbitration)
         step = Step(
-            arm, controller, SafetyConfig(), goals=goals, belief=belief, arbitration=arbitration, **changes
+            arm, controller, SafetyConfig(), goals=goals, belief=belief, assistance=help_by, **changes
         )
         step.reset(arm.home)
         stepped(step, NEUTRAL, 0.0, arm.home, now_s())
@@ -101,6 +104,60 @@ class TestAnyBelief:
 
         records, _ = run(make(rule=Broken), PUSH, arm.home, 10)
         assert "no idea" in records[-1].command.stop.reason
+
+
+class TestAddedHelp:
+    """Hindsight optimisation through the one step and its filters."""
+
+    def step(self, arm, scripted):
+        goals = goals_of(arm, 0.3, -0.2)
+        configurations = np.stack([goal.configuration for goal in goals])
+        step = Step(
+            arm,
+            scripted(MATRIX),
+            SafetyConfig(),
+            goals=goals,
+            belief=HindsightBelief(configurations, arm, prior=np.array([0.01, 0.99])),
+            assistance=HindsightOptimisation(configurations, arm),
+        )
+        step.reset(arm.home)
+        stepped(step, NEUTRAL, 0.0, arm.home, now_s())
+        assert step.enable() is None
+        return step
+
+    def test_it_is_added_to_what_the_person_does(self, arm, scripted):
+        record = run(self.step(arm, scripted), Input(np.array([0.2, 0.0])), arm.home, 60)[0][-1]
+        assert (record.alpha, record.added) == (0.0, 1.0)
+        assert record.action_human == pytest.approx(0.2 * MATRIX[0])
+        wanted = record.action_human + record.action_assist
+        assert record.command.velocity == pytest.approx(wanted, abs=0.01)
+        assert math.isnan(record.bound_rad)
+
+    def test_it_drives_to_the_likeliest_goal_at_rest_and_a_stop_ends_it(self, arm, scripted):
+        step = self.step(arm, scripted)
+        goal = arm.chain.forward(goals_of(arm, 0.3, -0.2)[1].configuration).position
+        away = [np.linalg.norm(arm.chain.forward(arm.home).position - goal)]
+        records, state = run(step, NEUTRAL, arm.home, 100)
+        away.append(np.linalg.norm(arm.chain.forward(state).position - goal))
+        assert away[1] < away[0] - 0.02
+        step.stop("enough")
+        records, _ = run(step, NEUTRAL, state, 60)
+        assert not records[-1].command.velocity.any()
+        assert records[-1].added == 0.0
+
+    def test_it_is_recorded_and_exported(self, arm, scripted, tmp_path):
+        records, _ = run(self.step(arm, scripted), PUSH, arm.home, 30)
+        path = tmp_path / "drive.sqlite"
+        recorder = Recorder(path)
+        recorder.begin_episode(EpisodeHeader("panda", arm.joint_names, 100.0, goals=goals_of(arm, 0.3, -0.2)))
+        for tick, record in enumerate(records):
+            recorder.record(dataclasses.replace(record, time_s=0.01 * tick))
+        recorder.end_episode()
+        recorder.close()
+        (episode,) = read_journal(path)
+        assert [record.added for record in episode.records] == [1.0] * 30
+        (exported,) = demonstrations_of([episode], source="drive.sqlite").episodes
+        np.testing.assert_array_equal(exported.extras["assist.added"], np.ones((30, 1)))
 
 
 class TestHelpAtRest:
@@ -205,7 +262,7 @@ class TestBound:
                 SafetyConfig(),
                 goals=goals,
                 belief=belief,
-                arbitration=FixedAlpha(0.3),
+                assistance=GoalBlending(states, FixedAlpha(0.3)),
             )
             stepped(step, NEUTRAL, 0.0, arm.home, now_s())
             step.enable()
@@ -258,7 +315,8 @@ class TestBound:
 
     def test_help_without_a_belief_has_one_too(self, arm, scripted):
         goals = goals_of(arm, 0.3, -0.2)
-        step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, arbitration=FixedAlpha(0.4))
+        help_by = GoalBlending(np.stack([goal.configuration for goal in goals]), FixedAlpha(0.4))
+        step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, assistance=help_by)
         stepped(step, NEUTRAL, 0.0, arm.home, now_s())
         step.enable()
         record = stepped(step, PUSH, 0.0, arm.home, now_s())

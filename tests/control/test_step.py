@@ -7,6 +7,7 @@ import pytest
 
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.assistance.goal_blending import GoalBlending
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.errors import UserError
@@ -46,6 +47,11 @@ def goals_of(arm, *shifts):
         Goal(f"goal {i}", arm.home + shift, arm.chain.forward(arm.home + shift))
         for i, shift in enumerate(shifts)
     )
+
+
+def blended(goals, alpha):
+    """Help of equation 10."""
+    return GoalBlending(np.stack([goal.configuration for goal in goals]), FixedAlpha(alpha))
 
 
 class TestEngagement:
@@ -158,7 +164,7 @@ class TestZeroInput:
 
     def test_help_ends_with_the_input(self, arm, scripted):
         goals = goals_of(arm, 0.5, -0.5)
-        step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, arbitration=FixedAlpha(1.0))
+        step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, assistance=blended(goals, 1.0))
         engaged(step, arm.home)
         record, state = run(step, PUSH, arm.home, 20)
         assert record.alpha == 1.0
@@ -174,7 +180,7 @@ class TestAlgorithm:
             [goal.configuration for goal in goals], prior=np.array([0.25, 0.75]), period_s=0.01
         )
         step = Step(
-            arm, scripted(MATRIX), SafetyConfig(), goals=goals, belief=belief, arbitration=FixedAlpha(0.4)
+            arm, scripted(MATRIX), SafetyConfig(), goals=goals, belief=belief, assistance=blended(goals, 0.4)
         )
         engaged(step, arm.home)
         time_s = now_s()
@@ -192,7 +198,7 @@ class TestAlgorithm:
 
     def test_an_uneventful_command_is_the_blend(self, arm, scripted):
         goals = goals_of(arm, 0.1)
-        step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, arbitration=FixedAlpha(0.5))
+        step = Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals, assistance=blended(goals, 0.5))
         engaged(step, arm.home)
         record, _ = run(step, PUSH, arm.home, 100)
         wanted = 0.5 * MATRIX[0] + 0.5 * (goals[0].configuration - record.state)
@@ -238,7 +244,7 @@ class TestAlgorithm:
 
     def test_assistance_without_goals_is_refused(self, arm, scripted):
         with pytest.raises(UserError, match="goal"):
-            Step(arm, scripted(MATRIX), SafetyConfig(), arbitration=FixedAlpha())
+            Step(arm, scripted(MATRIX), SafetyConfig(), assistance=blended(goals_of(arm, 0.1), 0.5))
         belief = BoltzmannBelief(np.zeros((2, 7)))
         with pytest.raises(UserError, match="2 goals"):
             Step(arm, scripted(MATRIX), SafetyConfig(), goals=goals_of(arm, 0.1), belief=belief)

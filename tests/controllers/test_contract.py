@@ -4,19 +4,24 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.end_effector import TWO_STICKS, EndEffectorController
 from latentarm.controllers.latent import LatentController
+from latentarm.controllers.retargeting import RetargetingController
 from latentarm.robots.catalogue import load_robot
 from latentarm.types import Context
 
 BELIEF = np.array([0.5, 0.3, 0.2])
 
 
-@pytest.fixture(params=["state_decoder", "belief_decoder", "panda", "planar"])
+@pytest.fixture(params=["state_decoder", "belief_decoder", "panda", "planar", "two_sticks", "retargeting"])
 def steered(request, panda):
     """A controller and its robot."""
     if request.param.endswith("decoder"):
         return LatentController(request.getfixturevalue(request.param)), panda
+    if request.param == "two_sticks":
+        return EndEffectorController(panda, modes=TWO_STICKS), panda
+    if request.param == "retargeting":
+        return RetargetingController(panda), panda
     robot = panda if request.param == "panda" else load_robot("planar")
     return EndEffectorController(robot), robot
 
@@ -48,7 +53,7 @@ def test_the_modes_have_names(steered):
 def test_steering_leaves_the_context_alone(steered):
     controller, robot = steered
     context = Context(robot.home.copy(), BELIEF.copy())
-    controller.action(np.ones(2), context, 0)
+    controller.action(np.ones(controller.input_dim), context, 0)
     assert np.array_equal(context.state, robot.home)
     assert np.array_equal(context.belief, BELIEF)
 

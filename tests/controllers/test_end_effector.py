@@ -4,8 +4,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from latentarm.controllers.end_effector import Damping, EndEffectorController
+from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.errors import UserError
+from latentarm.kinematics.resolved_rates import Damping
 from latentarm.kinematics.rotations import pose_error
 from latentarm.robots.catalogue import load_robot
 from latentarm.types import Context

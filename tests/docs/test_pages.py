@@ -33,6 +33,9 @@ STUDIES = list(
 )
 """Commands that take minutes, each once, on whichever pages they stand."""
 
+USER_STUDIES = [line for page in PAGES for line in commands(page) if line.startswith("latentarm study ")]
+"""The same of the user studies, in their order: a later one reads what an earlier one wrote."""
+
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_links_lead_somewhere(page: Path) -> None:
@@ -79,6 +82,14 @@ def test_commands_of_the_study_run(line: str, tmp_path: Path, monkeypatch: pytes
 
 
 @pytest.mark.slow
+def test_commands_of_the_user_studies_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for line in USER_STUDIES:
+        small = " --simulated 3 --preset smoke" if line.startswith("latentarm study run ") else ""
+        assert main(shlex.split(line + small)[1:]) == 0, line
+
+
+@pytest.mark.slow
 @pytest.mark.skipif(not SHARED.exists(), reason="the recorded demonstrations are not next to this clone")
 @pytest.mark.parametrize("page", ON_RECORDED_DEMONSTRATIONS)
 def test_commands_on_recorded_demonstrations_run(
@@ -96,7 +107,9 @@ def test_slow_commands_stand_only_where_a_slow_test_runs_them() -> None:
     for page in PAGES:
         for line in commands(page):
             if line.startswith("latentarm ") and line.split()[1] in SLOW:
-                assert line in STUDIES or name_of(page) in ON_RECORDED_DEMONSTRATIONS, line
+                assert (
+                    line in STUDIES or line in USER_STUDIES or name_of(page) in ON_RECORDED_DEMONSTRATIONS
+                ), line
 
 
 def test_architecture_names_every_package() -> None:

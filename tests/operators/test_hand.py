@@ -54,6 +54,17 @@ def test_a_trembling_hand_stays_within_the_stick_and_a_hand_that_lets_go_is_stil
     assert not given(hand, [0.0, 0.0], 100).any()
 
 
+def test_a_push_varies_in_proportion_and_is_held_as_long_as_it_is_meant():
+    hand, rng = Hand(HandConfig(variation=0.2), PERIOD_S), np.random.default_rng(0)
+    pushes = np.tile([[0.5, 0.0], [0.0, 0.25]], (1000, 1))
+    given = np.stack([[hand.gives(Input(u), rng).u for _ in range(2)] for u in pushes])
+    np.testing.assert_array_equal(given[:, 0], given[:, 1])
+    wrong = given[:, 0] - pushes
+    assert wrong[::2].std(axis=0) == pytest.approx(0.1, rel=0.1)
+    assert wrong[1::2].std(axis=0) == pytest.approx(0.05, rel=0.1)
+    assert not hand.gives(Input(np.zeros(2)), rng).u.any()
+
+
 def test_a_steady_hand_gives_what_is_meant():
     np.testing.assert_array_equal(given(Hand(HandConfig(), PERIOD_S), [0.3, 0.1], 3), [[0.3, 0.1]] * 3)
 
@@ -72,6 +83,8 @@ def test_a_loop_too_slow_for_a_tremor_is_refused():
         {"tremor": np.nan},
         {"lowest_hz": 0.0},
         {"lowest_hz": 13.0},
+        {"variation": -0.1},
+        {"variation": np.inf},
     ],
 )
 def test_a_hand_that_cannot_be(wrong):

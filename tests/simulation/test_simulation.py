@@ -7,6 +7,7 @@ from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.catalogue import BELIEFS
+from latentarm.assistance.goal_blending import blending
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.controllers.end_effector import EndEffectorController
@@ -28,7 +29,8 @@ def setup(
     rule: Rule = BoltzmannBelief,
 ) -> Setup:
     controller = EndEffectorController(task.robot)
-    return Setup(task, controller, arbitration, Person(), time_limit_s, rule)
+    help_by = None if arbitration is None else blending(arbitration)
+    return Setup(task, controller, help_by, Person(), time_limit_s, rule)
 
 
 def test_mode_switching_reaches_and_stabs() -> None:

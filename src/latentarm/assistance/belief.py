@@ -30,6 +30,7 @@ class BeliefOptions(TypedDict, total=False):
     period_s: float
     prior: FloatArray | None
     floor: float
+    most: float
 
 
 class Belief(ABC):
@@ -48,12 +49,15 @@ class Belief(ABC):
         period_s: time between updates, s.
         prior: (G,), the belief before any input; uniform where None.
         floor: smallest probability of any goal, in [0, 1/G).
+        most: largest probability of any goal, in (1/G, 1]; what is over is shared evenly among the others.
+            A single goal keeps its whole belief.
 
     Attributes:
         goals: (G, n), rad.
         horizon_s: tau, s.
         period_s: s.
         floor: smallest probability of any goal.
+        most: largest probability of any goal.
 
     Raises:
         UserError: a parameter is not finite or out of its range.
@@ -66,6 +70,7 @@ class Belief(ABC):
         period_s: float = 0.05,
         prior: FloatArray | None = None,
         floor: float = 0.01,
+        most: float = 1.0,
     ) -> None:
         self.goals = np.ascontiguousarray(goals, dtype=float)
         if self.goals.ndim != 2 or not self.goals.size or not np.isfinite(self.goals).all():
@@ -75,7 +80,10 @@ class Belief(ABC):
         # A floor within rounding of 1/G would leave no probability to distribute.
         if not 0 <= floor < (1 - 1e-9) / len(self.goals):
             raise UserError(f"The belief's floor must be in [0, 1/{len(self.goals)}), not {floor}.")
+        if not (1 / len(self.goals) < most <= 1 or (len(self.goals) == 1 and 0 < most <= 1)):
+            raise UserError(f"The belief's most must be in (1/{len(self.goals)}, 1], not {most}.")
         self.floor = floor
+        self.most = most
         self._share = period_s / self.horizon_s
         self._above_floors = 1.0 - floor * len(self.goals)
         self._prior = self._checked_prior(prior)
@@ -146,12 +154,21 @@ class Belief(ABC):
         # log(0) for a goal without probability; this substitute leaves it without.
         score = np.log(np.maximum(belief, _LEAST)) + self._share * self.log_likelihood(state, actions)
         weight = np.exp(score - np.maximum.reduce(score, axis=-1, keepdims=True))
-        after = self._kept_above_floor(weight / np.add.reduce(weight, axis=-1, keepdims=True))
+        after = self._kept_within(weight / np.add.reduce(weight, axis=-1, keepdims=True))
         sound_actions, sound_score = np.isfinite(actions), np.isfinite(score)
         if np.count_nonzero(sound_actions) == actions.size and np.count_nonzero(sound_score) == score.size:
             return after
         sound = np.all(sound_actions, axis=(-2, -1)) & np.all(sound_score, axis=-1)
         return np.where(sound[..., None], after, belief)
+
+    def _kept_within(self, belief: FloatArray) -> FloatArray:
+        """The belief with every goal at ``floor`` or above, and none above ``most``."""
+        floored = self._kept_above_floor(belief)
+        if self.most == 1.0 or len(self.goals) == 1:
+            return floored
+        over = np.maximum(np.maximum.reduce(floored, axis=-1, keepdims=True) - self.most, 0.0)
+        shared = floored + over / (len(self.goals) - 1)
+        return np.where(floored > self.most, self.most, shared)
 
     def _kept_above_floor(self, belief: FloatArray) -> FloatArray:
         """The belief with every goal at ``floor`` or above; unchanged if it already is."""
@@ -165,7 +182,7 @@ class Belief(ABC):
         given = np.asarray(prior, dtype=float)
         if given.shape != (count,) or not (given > 0).all() or not np.isfinite(given).all():
             raise UserError(f"The belief's prior must be {count} positive finite weights, one per goal.")
-        return self._kept_above_floor(given / given.sum())
+        return self._kept_within(given / given.sum())
 
 
 def log_choice(better: FloatArray) -> FloatArray:

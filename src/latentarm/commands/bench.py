@@ -14,6 +14,7 @@ from tyro.conf import arg
 from latentarm.arms.catalogue import DEFAULT_ARM, make_simulated_arm
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.assistance.goal_blending import GoalBlending
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import show
 from latentarm.control.clock import SimulatedClock
@@ -113,6 +114,7 @@ class _TimedStep:
 
     def __init__(self, task: TableTop, model: CVAE, goals: Sequence[Goal]) -> None:
         dt_s = 1.0 / RATE_HZ
+        configurations = np.stack([goal.configuration for goal in goals])
         obstacle = Sphere("cup", np.array([0.35, 0.45, 0.2]), 0.06)
         self._step = Step(
             task.robot,
@@ -120,8 +122,8 @@ class _TimedStep:
             SafetyConfig(obstacles=(*task.obstacles, obstacle)),
             goals=goals,
             # The belief updates in every step; the bound, computed 20 times a second, shows in p99.
-            belief=BoltzmannBelief([goal.configuration for goal in goals], period_s=dt_s),
-            arbitration=FixedAlpha(),
+            belief=BoltzmannBelief(configurations, period_s=dt_s),
+            assistance=GoalBlending(configurations, FixedAlpha()),
             dt_s=dt_s,
         )
         self._clock = SimulatedClock()

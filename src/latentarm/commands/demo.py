@@ -13,7 +13,9 @@ from threadpoolctl import threadpool_limits
 from tyro.conf import arg
 
 from latentarm.alignment.profile import profile_names
-from latentarm.assistance.blending import Arbitration, FixedAlpha
+from latentarm.assistance.assistance import AssistanceRule
+from latentarm.assistance.blending import FixedAlpha
+from latentarm.assistance.goal_blending import blending
 from latentarm.commands.configuration import write_options
 from latentarm.commands.demo_page import FILM, film, held_in_words, page
 from latentarm.commands.options import Json, Seed
@@ -285,12 +287,12 @@ class _Condition:
 
 def _conditions(task: Marshmallows, config: DemoOptions, seeds: int) -> list[_Condition]:
     """The shown person with everything, the others without help, with the default model or mode switching."""
-    steered: list[tuple[str | None, str, Sequence[Controller], Arbitration | None]] = []
+    steered: list[tuple[str | None, str, Sequence[Controller], AssistanceRule | None]] = []
     for model in MODELS:
         run = config.out / "runs" / model
         controllers = [LatentController(load_decoder(run, seed)) for seed in range(seeds)]
         steered.append((model, "latent", controllers, None))
-        steered.append((model, "latent_assist", controllers, FixedAlpha()))
+        steered.append((model, "latent_assist", controllers, blending(FixedAlpha())))
     steered.append((None, "end_effector", [EndEffectorController(task.robot)], None))
     return [
         _Condition(

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
-from latentarm.assistance.catalogue import BELIEFS
 from latentarm.commands.configuration import write_options
 from latentarm.commands.drive_options import Driven, DriveOptions
 from latentarm.commands.drive_recording import check_recordable, counted, recording
@@ -57,10 +56,10 @@ def drive_run(config: DriveOptions, tell: Callable[[Sequence[str]], None] = lamb
     setup = Setup(
         task=task,
         controller=steering.controller,
-        arbitration=steering.arbitration,
+        assistance=steering.assistance,
         person=steering.person,
         time_limit_s=config.time_limit_s or (HELD_OUT_LIMIT_S if task.name == HELD_OUT else TIME_LIMIT_S),
-        rule=BELIEFS.find(config.belief, "--belief"),
+        rule=steering.rule,
         arm=steering.arm,
     )
     about = steering.about(setup.time_limit_s)

@@ -3,10 +3,11 @@
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from tyro.conf import Positional, arg
 
+from latentarm.assistance.catalogue import AssistanceName
 from latentarm.commands.choices import BeliefName, TaskName
 from latentarm.commands.options import Arm, EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seed
 from latentarm.errors import UserError
@@ -15,7 +16,10 @@ from latentarm.parallel.grid import check_processes
 from latentarm.runs.checks import check_count, check_positive, check_seed
 from latentarm.types import Row
 
-ControllerName = Literal["latent", "latent_assist", "end_effector"]
+ControllerName = Literal["latent", "latent_assist", "end_effector", "two_sticks", "retargeting"]
+
+MODE_SWITCHED: Final[tuple[ControllerName, ...]] = ("end_effector", "two_sticks", "retargeting")
+"""Those that move the end-effector a few axes at a time, and need no run."""
 
 
 @dataclass(frozen=True)
@@ -30,8 +34,12 @@ class DriveOptions:
         Positional[Path | None], arg(metavar="RUN", help="A trained run; without one, mode switching drives.")
     ] = None
     controller: Annotated[
-        Literal["latent", "latent_assist", "end_effector"] | None,
-        arg(help="Latent actions, with shared autonomy, or mode switching."),
+        ControllerName | None,
+        arg(
+            help="Latent actions, with shared autonomy, or mode switching: end_effector with one stick,"
+            " two_sticks with three axes and a toggle between linear and angular, retargeting with one stick"
+            " whose motion the arm follows as well as its joints allow."
+        ),
     ] = None
     task: Annotated[
         TaskName | None,
@@ -62,9 +70,20 @@ class DriveOptions:
     ] = None
     beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0
     belief: Annotated[
-        BeliefName,
-        arg(help="How inputs change the belief over goals, for help and for models trained on (s, b)."),
-    ] = "boltzmann"
+        BeliefName | None,
+        arg(
+            help="How inputs change the belief over goals, for help and for models trained on (s, b). By"
+            " default boltzmann; with --assistance the belief that it was published with."
+        ),
+    ] = None
+    assistance: Annotated[
+        AssistanceName | None,
+        arg(
+            help="Published help in place of equation 2, with any controller: hindsight optimisation, which"
+            " adds its help and acts at rest (Javdani et al. 2018), HARMONIC's low, high and full assist,"
+            " which interpolate, or policy blending, which helps once it is sure."
+        ),
+    ] = None
     arbitration: Annotated[
         Literal["fixed", "confidence"] | None,
         arg(help="For latent_assist: a constant alpha (the default), or one that grows with confidence."),
@@ -101,16 +120,17 @@ class DriveOptions:
         check_positive("rationality beta", self.beta)
         if self.time_limit_s is not None:
             check_positive("time limit in s", self.time_limit_s)
-        if self.driver == "end_effector" and self.profile is not None:
+        if self.driver in MODE_SWITCHED and self.profile is not None:
             raise UserError(
                 "A profile aligns latent actions, and mode switching has none: leave one of them out."
             )
-        if self.driver != "latent_assist":
-            for name in ("arbitration", "alpha"):
-                if getattr(self, name) is not None:
-                    raise UserError(
-                        f"Without help there is no {name} to set: use --controller latent_assist."
-                    )
+        for name in ("arbitration", "alpha"):
+            if getattr(self, name) is None:
+                continue
+            if self.assistance is not None:
+                raise UserError(f"The assistance {self.assistance} has no {name}: leave one of them out.")
+            if self.driver != "latent_assist":
+                raise UserError(f"Without help there is no {name} to set: use --controller latent_assist.")
 
     @property
     def driver(self) -> ControllerName:

@@ -1,18 +1,27 @@
 """What steers in `latentarm drive`, who gives inputs, and what the figures depend on."""
 
 from dataclasses import asdict, dataclass, replace
+from typing import Final
 
+from latentarm.assistance.assistance import AssistanceRule
+from latentarm.assistance.belief import Rule
 from latentarm.assistance.blending import ConfidenceAlpha, FixedAlpha
-from latentarm.commands.drive_options import DriveOptions
+from latentarm.assistance.catalogue import BELIEFS, published_assistance, published_belief
+from latentarm.assistance.goal_blending import blending
+from latentarm.commands.drive_options import MODE_SWITCHED, DriveOptions
 from latentarm.control.controller import Controller
-from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.end_effector import TWO_STICKS, EndEffectorController
 from latentarm.controllers.latent import latent_controller
+from latentarm.controllers.retargeting import RetargetingController
 from latentarm.errors import UserError
 from latentarm.operators.catalogue import PEOPLE, OperatorName, usual_operator
 from latentarm.operators.person import Person
 from latentarm.robots.robot import Robot
 from latentarm.runs.folder import Run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
+
+USUAL_BELIEF: Final = "boltzmann"
+"""The rule of the belief where none is named."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +34,7 @@ class Steering:
         robot: the arm.
         run: the run that was named, or None.
         controller: what the operator steers with.
-        arbitration: how much the robot helps, if it helps at all.
+        arbitration: how much the robot helps by equation 2, if it does.
     """
 
     config: DriveOptions
@@ -52,9 +61,23 @@ class Steering:
         return replace(person, decides=replace(person.decides, beta=self.config.beta))
 
     @property
+    def assistance(self) -> AssistanceRule | None:
+        """How the robot helps."""
+        if self.config.assistance is not None:
+            return published_assistance(self.config.assistance, self.robot)
+        return None if self.arbitration is None else blending(self.arbitration)
+
+    @property
+    def rule(self) -> Rule:
+        """How inputs change the belief."""
+        if self.config.assistance is not None and self.config.belief is None:
+            return published_belief(self.robot)
+        return BELIEFS.find(self.config.belief or USUAL_BELIEF, "--belief")
+
+    @property
     def model(self) -> str | None:
         """The model that steers; None with mode switching."""
-        return None if self.run is None or self.config.driver == "end_effector" else self.run.model
+        return None if self.run is None or self.config.driver in MODE_SWITCHED else self.run.model
 
     def about(self, time_limit_s: float) -> dict[str, object]:
         """What the figures depend on.
@@ -82,7 +105,8 @@ class Steering:
             "operator": "simulated",
             "operator_name": self.operator,
             "beta": config.beta,
-            "belief": config.belief,
+            "belief": config.belief or (USUAL_BELIEF if config.assistance is None else "hindsight"),
+            "assistance": config.assistance,
             "arbitration": None if self.arbitration is None else config.arbitration or "fixed",
             "alpha": None if self.arbitration is None else asdict(self.arbitration),
             "time_limit_s": time_limit_s,
@@ -106,7 +130,7 @@ def steering_of(config: DriveOptions, run: Run | None, task: str, robot: Robot) 
 
 
 def _arbitration(config: DriveOptions) -> FixedAlpha | ConfidenceAlpha | None:
-    if config.driver != "latent_assist":
+    if config.driver != "latent_assist" or config.assistance is not None:
         return None
     if config.arbitration == "confidence":
         return ConfidenceAlpha() if config.alpha is None else ConfidenceAlpha(config.alpha)
@@ -116,6 +140,10 @@ def _arbitration(config: DriveOptions) -> FixedAlpha | ConfidenceAlpha | None:
 def _controller(config: DriveOptions, robot: Robot) -> Controller:
     if config.driver == "end_effector":
         return EndEffectorController(robot)
+    if config.driver == "two_sticks":
+        return EndEffectorController(robot, modes=TWO_STICKS)
+    if config.driver == "retargeting":
+        return RetargetingController(robot)
     if config.run is None:
         raise UserError("Latent actions need a trained run: name one, as in `latentarm drive RUN`.")
     return latent_controller(config.run, config.profile, robot)

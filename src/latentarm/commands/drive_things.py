@@ -59,7 +59,14 @@ def drive_with_things(
     about = steering.about(task.time_limit_s)
     check_recordable(config)
     ResultsFolder("drive", MADE).claim(config.out, about)
-    setup = TaskSetup(task, steering.controller, steering.person, steering.arbitration, steering.arm)
+    setup = TaskSetup(
+        task,
+        steering.controller,
+        steering.person,
+        steering.assistance,
+        steering.arm,
+        steering.rule,
+    )
     series = Series([setup], config.drives)
     if config.record is None:
         (traces,) = drive_series([series], config.seed, config.jobs, bars=config.bars)
@@ -86,8 +93,6 @@ def _check(config: DriveOptions, name: str) -> None:
     for option, its_own in OF_THE_TASK.items():
         if getattr(config, option) is not None:
             raise UserError(f"The task {name} has {its_own}: leave --{option.replace('_', '-')} out.")
-    if config.belief != "boltzmann":
-        raise UserError(f"The task {name} is driven with the belief boltzmann: leave --belief out.")
 
 
 def _record_all(

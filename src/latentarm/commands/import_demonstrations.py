@@ -12,7 +12,8 @@ from latentarm.commands.output import note, print_renderables, say, show
 
 def import_demonstrations(
     source: Annotated[
-        Positional[Path], arg(metavar="SRC", help=".npz, .csv, .hdf5, or a LeRobot folder (v2.0 to v3.0).")
+        Positional[Path],
+        arg(metavar="SRC", help=".npz, .csv, .hdf5, or a folder of LeRobot (v2.0 to v3.0) or HARMONIC."),
     ],
     destination: Annotated[Positional[Path], arg(metavar="DST", help="New folder for the dataset.")],
     robot: RobotName = "panda",

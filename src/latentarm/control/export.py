@@ -47,9 +47,11 @@ def demonstrations_of(
     """Recorded episodes as a dataset, with everything that a step decided as further features.
 
     The command is the action. Further features: ``input.u``, ``latent.z``, ``action.human``,
-    ``action.assist``, ``assist.alpha``, ``mode``, and where there are goals ``belief`` and ``assist.bound``
-    (rad; -1 where nothing helps). ``observation.environment_state`` has the poses of the things that matter
-    or, where no things were seen, of the goals; these are the dataset's objects. An arm with a gripper adds
+    ``action.assist``, ``assist.alpha``, ``mode``, where there are goals ``belief`` and ``assist.bound``
+    (rad; -1 where nothing helps or no bound is known), and ``assist.added`` where help was ever added to the
+    person's action (see `StepRecord.added`). ``observation.environment_state`` has the poses of the things
+    that matter or, where no things were seen, of the goals; these are the dataset's objects. An arm with a
+    gripper adds
     ``observation.gripper_width`` (m; a reading below zero counts as zero),
     ``observation.gripper_holding`` (0 or 1) and ``action.gripper`` (m): the width that was commanded last,
     or until something is commanded the one that it has (0 where it holds something).
@@ -88,7 +90,7 @@ def demonstrations_of(
                 f"{source} holds episodes with a gripper and without: export them apart, with --episodes."
             )
     return Demonstrations(
-        episodes=tuple(_episode(episode) for episode in kept),
+        episodes=_with_added(kept, tuple(_episode(episode) for episode in kept)),
         rate_hz=first.rate_hz,
         joint_names=first.joint_names,
         robot=first.robot,
@@ -96,6 +98,17 @@ def demonstrations_of(
         end_effector=first.end_effector,
         limits=first.limits,
         objects=objects,
+    )
+
+
+def _with_added(kept: Sequence[JournalEpisode], episodes: tuple[Episode, ...]) -> tuple[Episode, ...]:
+    """The episodes with how much help was added, if any was in any of them."""
+    added = [np.array([[record.added] for record in one.records]) for one in kept]
+    if not any(one.any() for one in added):
+        return episodes
+    return tuple(
+        replace(episode, extras={**episode.extras, "assist.added": one})
+        for episode, one in zip(episodes, added, strict=True)
     )
 
 

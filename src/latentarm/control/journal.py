@@ -21,10 +21,10 @@ from latentarm.untrusted.documents import parse_object
 from latentarm.untrusted.memory import bounded_memory
 from latentarm.untrusted.opening import check_file, is_missing
 
-_EARLIER = (math.nan, 1.0)
-"""The bound and the pace, in samples from before they were recorded."""
+_EARLIER = (math.nan, 1.0, 0.0)
+"""The bound, the pace and what was added, in samples from before they were recorded."""
 
-_SCALARS = 6
+_SCALARS = 7
 _LATER = 3
 _MOST_FIGURES = 100_000
 _MOST_CELL_BYTES = 1 << 20
@@ -260,7 +260,7 @@ def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str)
     measured, asked, things = [*later, *[np.zeros(0)] * (_LATER - len(later))]
     missing = _SCALARS - len(scalars)
     known = [*scalars.tolist(), *_EARLIER[len(_EARLIER) - missing :]] if missing else scalars.tolist()
-    time_s, alpha, mode, duration_s, bound_rad, pace = known
+    time_s, alpha, mode, duration_s, bound_rad, pace, added = known
     if not 0.0 <= pace <= 1.0:
         raise ValueError("a sample has a pace outside [0, 1]")
     return StepRecord(
@@ -284,6 +284,7 @@ def _step_record(parts: Sequence[FloatArray], stop: str | None, limited_by: str)
         gripper=gripper_reading(measured),
         things=thing_poses(things),
         pace=pace,
+        added=added,
     )
 
 

@@ -41,6 +41,7 @@ def figures_of(record: StepRecord) -> Sequence[FloatArray]:
                 command.duration_s,
                 record.bound_rad,
                 record.pace,
+                record.added,
             ]
         ),
         record.state,

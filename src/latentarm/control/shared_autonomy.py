@@ -6,8 +6,8 @@ from typing import final
 
 import numpy as np
 
+from latentarm.assistance.assistance import Assistance, Contribution
 from latentarm.assistance.belief import Belief
-from latentarm.assistance.blending import Arbitration, assistive_action
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.types import Context, FloatArray, Goal
@@ -77,7 +77,7 @@ class SharedAutonomy:
         controller: what turns inputs into actions.
         goals: the discrete goals ``G``.
         belief: how inputs change the belief over goals; None keeps the belief uniform.
-        arbitration: how much the robot helps; None never helps.
+        assistance: how the robot helps; None never helps.
         dt_s: the loop's period, s.
 
     Raises:
@@ -90,25 +90,26 @@ class SharedAutonomy:
         controller: Controller,
         goals: Sequence[Goal],
         belief: Belief | None,
-        arbitration: Arbitration | None,
+        assistance: Assistance | None,
         dt_s: float,
     ) -> None:
-        if (belief is not None or arbitration is not None) and not goals:
+        if (belief is not None or assistance is not None) and not goals:
             raise UserError("Assistance needs at least one goal: name goals, or leave assistance out.")
         if belief is not None and len(belief.initial()) != len(goals):
             raise UserError(f"The belief is over {len(belief.initial())} goals, but {len(goals)} are given.")
         self._controller = controller
-        self._goals = np.array([goal.configuration for goal in goals], dtype=np.float64).reshape(-1, dof)
+        self._count = len(goals)
         self._rule = belief
-        self._arbitration = arbitration
+        self._assistance = assistance
         # The belief counts evidence per its own period, whatever the loop's.
         period_s = _BOUND_PERIOD_S if belief is None else belief.period_s
         self._ticks_per_update = max(1, round(period_s / dt_s))
         updates_s = self._ticks_per_update * dt_s
         self._updates_per_bound = max(1, math.ceil(_BOUND_PERIOD_S / updates_s - 1e-9))
-        self.acts_at_rest = arbitration is not None and arbitration.acts_at_rest
-        self._no_help = np.zeros(dof)
-        self._no_help.flags.writeable = False
+        self.acts_at_rest = assistance is not None and assistance.acts_at_rest
+        no_motion = np.zeros(dof)
+        no_motion.flags.writeable = False
+        self._no_help = Contribution(no_motion, 0.0)
         self.reset()
 
     @property
@@ -118,7 +119,7 @@ class SharedAutonomy:
 
     def reset(self) -> None:
         """Begin a new episode."""
-        count = len(self._goals)
+        count = self._count
         if self._rule is not None:
             first = np.array(self._rule.initial())
         else:
@@ -133,38 +134,16 @@ class SharedAutonomy:
         """Record a step without help: the bound is computed again when help resumes."""
         self._bound_rad = None
 
-    def help(self, u: FloatArray, state: FloatArray) -> tuple[FloatArray, float]:
-        """Assistive action (equation 3) and arbitration.
+    def update(self, u: FloatArray, context: Context, mode: int) -> Choices:
+        """Line 10, at the belief's own rate: the belief changes for the next step.
 
         Args:
             u: (d,), the input.
-            state: (n,), rad.
-
-        Returns:
-            (n,) rad/s, and alpha in [0, 1].
-
-        Raises:
-            ValueError: the arbitration is not in [0, 1].
-        """
-        if self._arbitration is None:
-            return self._no_help, 0.0
-        alpha = float(self._arbitration.alpha(u, self._belief))
-        if not 0.0 <= alpha <= 1.0:
-            raise ValueError(f"an arbitration of {alpha} is not in [0, 1]")
-        return assistive_action(state, self._belief, self._goals), alpha
-
-    def update(self, u: FloatArray, context: Context, mode: int, alpha: float) -> tuple[Choices, float]:
-        """Line 10 at the belief's own rate, and the bound at most every `_BOUND_PERIOD_S`.
-
-        Args:
-            u: (d,), the input.
-            context: what this step saw; the bound is that of its belief.
+            context: what this step saw.
             mode: index of the controller's mode.
-            alpha: how much this step helps.
 
         Returns:
-            What is known of inputs at this moment, and the radius of the bound about the likeliest goal
-            (equation 14), rad, held in between; NaN without help, or where sigma_h is not known.
+            What is known of inputs at this moment.
 
         Raises:
             ValueError: the controller or the belief gave something that cannot be.
@@ -172,20 +151,50 @@ class SharedAutonomy:
         self._since_update += 1
         due = self._since_update >= self._ticks_per_update
         self._updates_since_bound += due
-        if alpha == 0.0:
-            self._bound_rad = None
-            bounding = False
-        else:
-            bounding = self._bound_rad is None or self._updates_since_bound >= self._updates_per_bound
         choices = Choices(self._controller, context, mode)
         if due:
             self._since_update = 0
             self._learn(u, context, choices)
-        if bounding:
+        return choices
+
+    def help(self, u: FloatArray, action_human: FloatArray, context: Context) -> Contribution:
+        """Line 8: what the robot does towards the goals that it believed in when this step began.
+
+        Args:
+            u: (d,), the input.
+            action_human: (n,), the person's action, rad/s.
+            context: what this step saw.
+
+        Raises:
+            ValueError: the assistance gave shares that are not in [0, 1].
+        """
+        if self._assistance is None:
+            return self._no_help
+        return self._assistance.contribution(u, action_human, context.state, context.belief)
+
+    def bound(self, given: Contribution, context: Context, mode: int) -> float:
+        """The radius of the bound about the likeliest goal, computed at most every `_BOUND_PERIOD_S`.
+
+        Args:
+            given: what the robot does in this step.
+            context: what this step saw; the bound is that of its belief.
+            mode: index of the controller's mode.
+
+        Returns:
+            rad, held in between; NaN where the person's action is not blended with help, or nothing is known.
+        """
+        if self._assistance is None or given.alpha == 0.0:
+            self._bound_rad = None
+            return math.nan
+        if self._bound_rad is None or self._updates_since_bound >= self._updates_per_bound:
             self._updates_since_bound %= self._updates_per_bound
             sigma_h = self._controller.speed_bound(context, mode)
-            self._bound_rad = math.nan if sigma_h is None else self._bound(sigma_h, context, alpha)
-        return choices, math.nan if self._bound_rad is None else self._bound_rad
+            self._bound_rad = (
+                math.nan
+                if sigma_h is None
+                else self._assistance.bound_rad(given, context.state, context.belief, sigma_h)
+            )
+        return self._bound_rad
 
     def _learn(self, u: FloatArray, context: Context, choices: Choices) -> None:
         if self._rule is None:
@@ -195,16 +204,3 @@ class SharedAutonomy:
             raise ValueError("the belief is not finite")
         updated.flags.writeable = False
         self._belief = updated
-
-    def _bound(self, sigma_h: float, context: Context, alpha: float) -> float:
-        """Equation 14's radius about the likeliest goal, rad; NaN where it is not finite.
-
-        `assistance.bound.radius` for one moment, in a quarter of its time.
-        """
-        belief = context.belief.tolist()
-        sure = max(belief)
-        away = self._goals - context.state
-        distance = np.vecdot(away, away).tolist()
-        distance[belief.index(sure)] = 0.0
-        delta = (1.0 - alpha) / alpha * sigma_h + (1.0 - sure) * math.sqrt(max(distance))
-        return delta / sure if math.isfinite(delta) else math.nan

@@ -6,8 +6,8 @@ from typing import final
 
 import numpy as np
 
+from latentarm.assistance.assistance import Assistance
 from latentarm.assistance.belief import Belief
-from latentarm.assistance.blending import Arbitration, blend
 from latentarm.control.controller import Controller
 from latentarm.control.engagement import Engagement
 from latentarm.control.safety.config import SafetyConfig
@@ -42,6 +42,10 @@ _ASTRAY = 2.0 * math.pi
 STEADY_S = 1.0
 """After a jump, readings must be steady for this long before the arm can be enabled, s."""
 
+_MISSHAPEN = Stop(
+    "The controller gave a latent action or an action of the wrong size.", code="controller_invalid"
+)
+
 _FALTERING = (Freshness().name,)
 """What limits an arm whose inputs are missing for a moment."""
 
@@ -50,9 +54,10 @@ _FALTERING = (Freshness().name,)
 class Step:
     """From the person's input to a safe command, once per period.
 
-    Lines of Algorithm 1: ``z = f(u, c)``, ``a_h = phi(z, c)``, ``a_r = Σ b(g) (g - s)``,
-    ``a = (1 - alpha) a_h + alpha a_r``, and the belief's update for the next step. What they want then
-    passes the `SafetyStack`; nothing else can move the arm.
+    Lines of Algorithm 1: ``z = f(u, c)``, ``a_h = phi(z, c)``, ``a_r`` and how it joins ``a_h`` as the
+    `Assistance` says (in the paper ``a_r = Σ b(g) (g - s)`` and ``a = (1 - alpha) a_h + alpha a_r``), and the
+    belief's update for the next step. What they want then passes the `SafetyStack`; nothing else can move the
+    arm.
 
     The arm starts disengaged. After a neutral input, `enable` engages it. Whatever stops it (the
     operator, an input that is too old, a number that is not one, a reading of the joints that is too old or
@@ -66,7 +71,7 @@ class Step:
     drops nothing.
 
     An input within the dead zone means no motion, whatever the decoder returns for zero, and no help, unless
-    the arbitration acts at rest. An enabled arm then moves by itself while inputs are fresh.
+    the assistance acts at rest. An enabled arm then moves by itself while inputs are fresh.
     No input of any kind and no failing controller raises an exception here. Controllers and observers get
     read-only arrays, because the safety filters use the same ones.
 
@@ -83,7 +88,7 @@ class Step:
         safety: the limits.
         goals: the discrete goals ``G``, for assistance.
         belief: how inputs change the belief over goals; None keeps the belief uniform.
-        arbitration: how much the robot helps; None never helps.
+        assistance: how the robot helps; None never helps.
         dt_s: the loop's period, s.
         surroundings: gives the poses (K, 9) of the controller's `objects` at this moment, see
             `Context.objects`; for controllers that look at any.
@@ -100,7 +105,7 @@ class Step:
         safety: SafetyConfig,
         goals: Sequence[Goal] = (),
         belief: Belief | None = None,
-        arbitration: Arbitration | None = None,
+        assistance: Assistance | None = None,
         dt_s: float = 0.01,
         surroundings: Callable[[], FloatArray] | None = None,
     ) -> None:
@@ -110,7 +115,7 @@ class Step:
                 " where these are: drive it at a task that has them."
             )
         self._surroundings = surroundings
-        self._shared = SharedAutonomy(robot.dof, controller, goals, belief, arbitration, dt_s)
+        self._shared = SharedAutonomy(robot.dof, controller, goals, belief, assistance, dt_s)
         self._robot = robot
         self._dof = robot.dof
         self._lowest = (robot.limits.lower - _ASTRAY).tolist()
@@ -339,27 +344,22 @@ class Step:
     def _driven(self, u: FloatArray, input_age_s: float, q: FloatArray, time_s: float) -> StepRecord:
         """Lines 6 to 10 for an input that asks for motion, or at rest if the robot helps there too."""
         shared = self._shared
-        belief = shared.belief
-        a_r, alpha, bound_rad = self._no_motion, 0.0, math.nan
         try:
             context = self.context(q)
             # What overflows here is caught as not finite below.
             with np.errstate(all="ignore"):
-                a_r, alpha = shared.help(u, q)
-                choices, bound_rad = shared.update(u, context, self._mode, alpha)
+                choices = shared.update(u, context, self._mode)
                 # A person who lets go commands no motion, whatever the decoder makes of zero.
                 z, a_h = (u, self._no_motion) if u is self._no_input else choices.chosen(u)
-                wanted = self._pace * blend(a_h, a_r, alpha) if a_h.shape == q.shape else a_h
+                if z.shape != u.shape or a_h.shape != q.shape:
+                    return self._record(time_s, q, self._refused(_MISSHAPEN), u)
+                help_ = shared.help(u, a_h, context)
+                bound_rad = shared.bound(help_, context, self._mode)
+                wanted = self._pace * help_.with_person(a_h)
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
             said = _said(error)
             stop = Stop(
                 f"The controller failed ({said}).", code="controller_failed", parameters={"text": said}
-            )
-            return self._record(time_s, q, self._refused(stop), u)
-        if z.shape != u.shape or a_h.shape != q.shape:
-            stop = Stop(
-                "The controller gave a latent action or an action of the wrong size.",
-                code="controller_invalid",
             )
             return self._record(time_s, q, self._refused(stop), u)
         passed = self._passed(wanted, q, input_age_s)
@@ -370,14 +370,15 @@ class Step:
             input=u,
             latent=z,
             action_human=a_h,
-            action_assist=a_r,
-            alpha=alpha,
-            belief=belief,
+            action_assist=help_.action,
+            alpha=help_.alpha,
+            belief=context.belief,
             mode=self._mode,
             command=command,
             bound_rad=bound_rad,
             gripper=self._gripper.reading,
             pace=self._pace,
+            added=help_.added,
         )
 
     def _passed(self, wanted: FloatArray, q: FloatArray, input_age_s: float) -> Passed:

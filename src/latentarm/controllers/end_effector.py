@@ -1,54 +1,72 @@
-"""Today's way: two axes of the end-effector at a time, and a button that switches which."""
+"""Today's way: a few axes of the end-effector at a time, and a button that switches which."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
+from latentarm.kinematics.resolved_rates import Damping, joint_velocities
 from latentarm.models.enclosure import linear_enclosure
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray
 
-_MODES = ("x-y", "z-yaw", "roll-pitch")
-# Rows of the twist (x, y, z, roll, pitch, yaw) that the two input axes of each mode drive.
-_AXES = ((0, 1), (2, 5), (3, 4))
-
 
 @final
 @dataclass(frozen=True)
-class Damping:
-    """How resolved rates give way near singular configurations.
-
-    A singular value σ of the Jacobian is inverted as ``σ / (σ² + λ²)`` with
-    ``λ² = (1 - (σ / threshold)²) factor²`` below ``threshold`` and 0 above: Nakamura and Hanafusa's
-    variable damping, for each singular direction by itself as Chiaverini proposed, so that motions
-    which stay possible stay exact. Metres and radians count alike.
+class AxisModes:
+    """Which axes of the end-effector the person's inputs drive in each mode.
 
     Attributes:
-        threshold: singular value below which damping sets in, m or rad per rad.
-        factor: damping at a singular configuration, same unit.
+        names: of the modes.
+        axes: for each mode, the row of the twist (x, y, z, roll, pitch, yaw) that each of the d input axes
+            drives.
+
+    Raises:
+        UserError: there is no mode, modes have different numbers of axes, or a row is not one of the six.
     """
 
-    threshold: float = 0.1
-    factor: float = 0.1
+    names: tuple[str, ...]
+    axes: tuple[tuple[int, ...], ...]
 
     def __post_init__(self) -> None:
-        for name, value in (("threshold", self.threshold), ("factor", self.factor)):
-            if not 0 < value < np.inf:
-                raise UserError(f"The damping's {name} must be positive and finite, not {value}.")
+        if not self.axes or len(self.names) != len(self.axes) or len({len(one) for one in self.axes}) != 1:
+            raise UserError("End-effector control needs modes, each with a name and the same number of axes.")
+        if not self.axes[0] or not {row for one in self.axes for row in one} <= set(range(6)):
+            raise UserError("A mode's axes are rows of the twist, 0 to 5.")
 
-    def inverse(self, singular: FloatArray) -> FloatArray:
-        """Damped reciprocals of singular values (..., k)."""
-        share = np.minimum(singular / self.threshold, 1.0)
-        squared = singular * singular + (1.0 - share * share) * self.factor**2
-        return singular / squared
+    def twists(self, mode: int, scale: FloatArray, rotation: FloatArray) -> FloatArray:
+        """What a full input along each axis asks of the tool.
+
+        Args:
+            mode: index into `names`.
+            scale: (6,), speed along and about each axis, m/s and rad/s.
+            rotation: (..., 3, 3), of the tool.
+
+        Returns:
+            (..., d, 6), m/s and rad/s, in the base frame; turns are asked for in the tool's.
+        """
+        rows = self.axes[mode]
+        directions = np.zeros((len(rows), 6))
+        for direction, row in zip(directions, rows, strict=True):
+            direction[row] = scale[row]
+        turns = directions[:, 3:] @ rotation.mT
+        shifts = np.broadcast_to(directions[:, :3], turns.shape)
+        return np.concatenate([shifts, turns], axis=-1)
+
+
+PAIRS: Final = AxisModes(("x-y", "z-yaw", "roll-pitch"), ((0, 1), (2, 5), (3, 4)))
+"""One stick of two axes and three modes, those of HARMONIC (Newman et al.): the paper's first study."""
+
+TWO_STICKS: Final = AxisModes(("linear", "angular"), ((0, 1, 2), (3, 4, 5)))
+"""A stick of two axes, another of one, and a button that toggles between linear and angular motion: the
+paper's End-Effector (section 9.2)."""
 
 
 @final
 class EndEffectorController(Controller):
-    """Mode-switched control of the tool: x-y, z-yaw, roll-pitch.
+    """Mode-switched control of the tool.
 
     Translations are along the axes of the base frame. Turns are about the axes of the tool frame
     through the tool point: roll about its x, pitch about its y, yaw about its z, the way it points.
@@ -59,6 +77,7 @@ class EndEffectorController(Controller):
         linear_speed: of a full input along an axis, m/s.
         angular_speed: of a full input about an axis, rad/s.
         damping: behaviour near singular configurations.
+        modes: which axes the inputs drive in each mode.
 
     Raises:
         UserError: a speed is not positive and finite.
@@ -70,6 +89,7 @@ class EndEffectorController(Controller):
         linear_speed: float = 0.15,
         angular_speed: float = 0.5,
         damping: Damping | None = None,
+        modes: AxisModes = PAIRS,
     ) -> None:
         for name, value in (("linear_speed", linear_speed), ("angular_speed", angular_speed)):
             if not 0 < value < np.inf:
@@ -77,36 +97,29 @@ class EndEffectorController(Controller):
         self._chain = robot.chain
         self._damping = damping or Damping()
         self._scale = np.array([linear_speed] * 3 + [angular_speed] * 3)
+        self._modes = modes
 
     @property
     def modes(self) -> tuple[str, ...]:
-        """The three pairs of axes."""
-        return _MODES
+        """Names of the groups of axes."""
+        return self._modes.names
 
     @property
     def input_dim(self) -> int:
-        """Two axes."""
-        return 2
+        """As many axes as a mode has."""
+        return len(self._modes.axes[0])
 
     def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
         """The input as it is: there is nothing to align."""
         return u
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
-        """Joint velocities that move the tool along the mode's two axes, (..., n), rad/s."""
+        """Joint velocities that move the tool along the mode's axes, (..., n), rad/s."""
         transforms = self._chain.link_transforms(context.state)
         pose = self._chain.tool_pose(transforms)
+        twists = self._modes.twists(mode, self._scale, pose.rotation)
         jacobian = self._chain.jacobian_at(transforms, pose)
-        left, singular, right = np.linalg.svd(jacobian, full_matrices=False)
-        first, second = _AXES[mode]
-        directions = np.zeros((2, 6))
-        directions[0, first], directions[1, second] = self._scale[first], self._scale[second]
-        # Turns are asked for in the tool's frame.
-        turns = directions[:, 3:] @ pose.rotation.mT
-        shifts = np.broadcast_to(directions[:, :3], turns.shape)
-        twists = np.concatenate([shifts, turns], axis=-1)
-        inverse = self._damping.inverse(singular)[..., None, :]
-        return np.vecmat(z, twists @ (left * inverse) @ right)
+        return np.vecmat(z, joint_velocities(twists, jacobian, self._damping))
 
     def speed_bound(self, context: Context, mode: int) -> float:
         """Exact: the action is linear in the input."""

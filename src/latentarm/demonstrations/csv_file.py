@@ -7,28 +7,23 @@ the name of the robot that was recorded. With a robot whose joint names are all 
 those are read, and a gripper's; otherwise every column that is not named above.
 """
 
-import csv
-import io
 import math
 from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final, TextIO, final
+from typing import Final, final
 
 import numpy as np
 
-from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_EPISODES, MAX_LINE, MAX_TEXT_BYTES
+from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_EPISODES
 from latentarm.demonstrations.columns import is_gripper
+from latentarm.demonstrations.csv_lines import read_lines
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
-from latentarm.untrusted.opening import opened
 
 ACTION_PREFIX: Final = "action."
 RESERVED_COLUMNS: Final = frozenset({"episode", "timestamp", "task", "robot"})
-
-MAX_RECORD_LINES: Final = 100
-"""Lines that one record may have, where its texts hold line breaks."""
 
 
 @final
@@ -59,7 +54,7 @@ def read_csv(
     Raises:
         UserError: naming the file and the line that cannot be understood.
     """
-    lines = _lines(source)
+    lines = read_lines(source)
     header = [name.strip() for name in next(lines, (0, []))[1]]
     joints = _joints(header, joint_names, source)
     actions = [f"{ACTION_PREFIX}{joint}" for joint in joints]
@@ -75,59 +70,6 @@ def read_csv(
     if len(robots) > 1:
         raise UserError(f"{source} holds episodes of different robots ({', '.join(robots)}): split the file.")
     return Demonstrations(episodes=episodes, rate_hz=rate, joint_names=joints, robot=robots[0])
-
-
-def _lines(source: Path) -> Iterator[tuple[int, list[str]]]:
-    """Line numbers, from one, and fields."""
-    with opened(source, MAX_TEXT_BYTES) as stream:
-        lines = _Lines(io.TextIOWrapper(stream, encoding="utf-8-sig", newline=""), source)
-        reader = csv.reader(lines, strict=True)
-        try:
-            for fields in reader:
-                lines.in_record = 0
-                if fields:
-                    yield reader.line_num, fields
-        except (UnicodeDecodeError, csv.Error) as error:
-            raise UserError(
-                f"{source} is not a readable CSV file in UTF-8, from about line {reader.line_num + 1} on."
-            ) from error
-
-
-@final
-class _Lines:
-    """Lines of bounded length: the parser takes as much as it is given.
-
-    Args:
-        stream: the file.
-        source: its path.
-
-    Attributes:
-        in_record: lines since this was last set to zero; a text in quotation marks may go over several.
-    """
-
-    def __init__(self, stream: TextIO, source: Path) -> None:
-        self._stream = stream
-        self._source = source
-        self._number = 0
-        self.in_record = 0
-
-    def __iter__(self) -> "_Lines":
-        return self
-
-    def __next__(self) -> str:
-        line = self._stream.readline(MAX_LINE + 1)
-        if not line:
-            raise StopIteration
-        self._number += 1
-        self.in_record += 1
-        if len(line) > MAX_LINE:
-            raise UserError(f"{self._source}: line {self._number} has more than {MAX_LINE:,} characters.")
-        if self.in_record > MAX_RECORD_LINES:
-            raise UserError(
-                f"{self._source}: the text that begins in line {self._number - MAX_RECORD_LINES} has no end;"
-                " a quotation mark is missing."
-            )
-        return line
 
 
 def _joints(header: list[str], joint_names: Sequence[str], source: Path) -> tuple[str, ...]:

@@ -11,6 +11,8 @@ from latentarm.demonstrations.csv_file import read_csv
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.gripper import GripperStart
+from latentarm.demonstrations.harmonic import harmonic_runs, read_harmonic
+from latentarm.demonstrations.info import INFO_PATH
 from latentarm.demonstrations.lerobot import read_lerobot
 from latentarm.demonstrations.npz_file import read_npz
 from latentarm.demonstrations.plausibility import check_rate, speed_warning
@@ -23,7 +25,7 @@ from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, StrPath
 from latentarm.untrusted.memory import bounded_memory
-from latentarm.untrusted.opening import opened
+from latentarm.untrusted.opening import is_missing, opened
 
 FOREIGN: Final = {
     b"\x80": "a pickle, which is never opened",
@@ -66,9 +68,9 @@ def import_demonstrations(
 ) -> Demonstrations:
     """Read demonstrations from a file or folder of any known kind, and check them.
 
-    The format is recognised by content: a folder with a LeRobot layout (v2.0, v2.1, v3.0), a NumPy
-    archive, an HDF5 file in robomimic's layout, or a CSV file. What was decided about its columns and
-    units is in the result's ``import_record``.
+    The format is recognised by content: a folder with a LeRobot layout (v2.0, v2.1, v3.0) or with runs of
+    HARMONIC, a NumPy archive, an HDF5 file in robomimic's layout, or a CSV file. What was decided about its
+    columns and units is in the result's ``import_record``.
 
     Args:
         source: the file or folder.
@@ -141,7 +143,7 @@ def _read(source: Path, robot: Robot | None, options: ImportOptions) -> SourceDa
         raise UserError(f"The sampling rate is {rate_hz:g} Hz; it must be a finite number above zero.")
     start, size = _beginning(source)
     if start is None:
-        return _at_rate(read_lerobot(source), rate_hz)
+        return _read_folder(source, options)
     if not start:
         raise UserError(f"{source} is an empty file.")
     for magic, what in FOREIGN.items():
@@ -163,6 +165,14 @@ def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportO
         raise UserError(f"{source} does not hold what its name says; it is truncated or damaged.")
     names = () if robot is None or options.get("joints") else robot.joint_names
     return SourceData(read_csv(source, names, rate_hz, task), "CSV", in_rad=True)
+
+
+def _read_folder(source: Path, options: ImportOptions) -> SourceData:
+    rate_hz = options.get("rate_hz")
+    runs = harmonic_runs(source) if is_missing(source / INFO_PATH) else ()
+    if runs:
+        return read_harmonic(runs, rate_hz, options.get("task"))
+    return _at_rate(read_lerobot(source), rate_hz)
 
 
 def _at_rate(data: SourceData, rate_hz: float | None) -> SourceData:

@@ -59,9 +59,11 @@ def why_it_ended(
     if now_s - since_s < STUCK_S or _progressed(records, chain, waypoint, since_s):
         return Ending("time_limit", f"still on its way at the time limit of {now_s - records[0].time_s:g} s")
     lately = [record for record in records if record.time_s >= now_s - STUCK_S]
-    # Help moves the arm too, so the requested motion is the blend of both.
+    # Help moves the arm too, so the requested motion is that of both.
     wanted = sum(
-        float(np.linalg.norm((1 - one.alpha) * one.action_human + one.alpha * one.action_assist))
+        float(
+            np.linalg.norm((1 - one.alpha) * one.action_human + (one.alpha + one.added) * one.action_assist)
+        )
         for one in lately
         if one.input.any()
     )

@@ -9,6 +9,8 @@ LOOKS: Final[dict[str, Look]] = {
     "latent": Look("latent actions", "#0072B2", "o", "-"),
     "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),
     "end_effector": Look("mode switching", "#7f7f7f", "s", ":"),
+    "two_sticks": Look("two sticks, mode switching", "#56B4E9", "<", ":"),
+    "retargeting": Look("retargeting", "#E69F00", "^", "--"),
     "demonstrator": Look("scripted demonstrator", "#000000", "D", "-"),
     "LA": Look("LA", "#7f7f7f", "s", ":"),
     "LA+SA": Look("LA+SA", "#D55E00", "^", "--"),

@@ -17,6 +17,11 @@ class Decision(ABC):
     def reset(self) -> None:
         """Forget what was being done, before a new drive."""
 
+    @property
+    @abstractmethod
+    def holding(self) -> bool:
+        """Whether the next call of `decide` goes on with what is being done, without deciding."""
+
     @abstractmethod
     def decide(
         self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator

@@ -24,6 +24,8 @@ class HandConfig:
         tremor: RMS of each axis's tremor as a share of full deflection, while the stick is pushed.
         lowest_hz: lower edge of the tremor's band, Hz.
         highest_hz: its upper edge, Hz.
+        variation: SD of each axis of a push about what was meant, as a share of its length; drawn anew for
+            each push that is meant, and held as long as it.
 
     Raises:
         UserError: a figure is out of its range.
@@ -33,6 +35,7 @@ class HandConfig:
     tremor: float = 0.0
     lowest_hz: float = 4.0
     highest_hz: float = 12.0
+    variation: float = 0.0
 
     def __post_init__(self) -> None:
         if not 0 <= self.reaction_s < np.inf:
@@ -44,6 +47,8 @@ class HandConfig:
                 "A tremor's band must go from a positive frequency to a higher one, not from"
                 f" {self.lowest_hz} to {self.highest_hz} Hz."
             )
+        if not 0 <= self.variation < np.inf:
+            raise UserError(f"A variation of pushes must be zero or more, and finite, not {self.variation}.")
 
 
 UNSTEADY: Final = HandConfig(reaction_s=0.23, tremor=0.1)
@@ -54,11 +59,14 @@ Hum. Neurosci. 9:131, 2015). A tremor of 4 to 12 Hz, the band of essential tremo
 
 @final
 class Hand:
-    """Delays what is seen, and adds tremor to what is given.
+    """Delays what is seen, and adds tremor and noise to what is given.
 
     The tremor of each axis is a sum of sinusoids with random phases and with frequencies drawn from equal
     parts of the band: nearly Gaussian noise, with nothing outside the band (Shinozuka and Jan 1972). A hand
     that lets go does not move the stick.
+
+    The noise of a push is in proportion to it (Harris and Wolpert, Nature 394:780, 1998). The next pushes
+    correct what comes of it: the more of them, the narrower the target (Crossman and Goodeve 1963).
 
     Args:
         config: how late and how unsteady.
@@ -80,9 +88,10 @@ class Hand:
         self.reset()
 
     def reset(self) -> None:
-        """Forget what was seen, and the tremor."""
+        """Forget what was seen, the tremor, and the push."""
         self._views = deque[Moment](maxlen=self._delay_calls + 1)
         self._phase = self._turn = np.zeros((0, SINUSOIDS))
+        self._meant = self._wrong = np.zeros(0)
 
     def sees(self, moment: Moment) -> Moment:
         """What is seen now: what was there a reaction time ago, or when the drive began."""
@@ -96,6 +105,8 @@ class Hand:
             meant: what they mean.
             rng: source of all randomness.
         """
+        if self._config.variation:
+            meant = Input(self._pushed(meant.u, rng), meant.switch_mode)
         if not self._config.tremor:
             return meant
         if not len(self._phase):
@@ -105,6 +116,13 @@ class Hand:
             return meant
         size = self._config.tremor * np.sqrt(2.0 / SINUSOIDS)
         return Input(within_reach(meant.u + size * np.cos(self._phase).sum(axis=1)), meant.switch_mode)
+
+    def _pushed(self, u: FloatArray, rng: np.random.Generator) -> FloatArray:
+        """What becomes of a push."""
+        if u.any() and not np.array_equal(u, self._meant):
+            self._wrong = self._config.variation * float(np.linalg.norm(u)) * rng.normal(size=len(u))
+        self._meant = u
+        return within_reach(u + self._wrong) if u.any() else u
 
     def _start(self, axes: int, rng: np.random.Generator) -> None:
         shape = (axes, SINUSOIDS)

@@ -33,9 +33,12 @@ class LinearGuessConfig:
             the same mode, m. A radian of turning counts as ``speed_m_s / turn_rad_s``.
         glance_s: they compare where the tool is with where it was so long ago, s.
         trial_s: they stay with one guess for so long, s.
+        expected: what they expect at first of a full push along each axis of the stick, in every mode: for
+            each axis a twist (6 numbers, m/s and rad/s, in the base frame); None expects nothing in
+            particular. What is forgotten gives way to it.
 
     Raises:
-        UserError: a figure is not positive and finite.
+        UserError: a figure is not positive and finite, or what is expected is no twists.
     """
 
     speed_m_s: float = 0.1
@@ -44,12 +47,18 @@ class LinearGuessConfig:
     memory_m: float = 0.1
     glance_s: float = 0.2
     trial_s: float = 0.3
+    expected: tuple[tuple[float, ...], ...] | None = None
 
     def __post_init__(self) -> None:
         for name in ("speed_m_s", "turn_rad_s", "noise", "memory_m", "glance_s", "trial_s"):
             if not 0 < getattr(self, name) < np.inf:
                 raise UserError(
                     f"A learning person's {name} must be positive and finite, not {getattr(self, name)}."
+                )
+        for twist in self.expected or ():
+            if len(twist) != 6 or not np.isfinite(twist).all():
+                raise UserError(
+                    "What a learning person expects of an axis must be a twist of 6 finite numbers."
                 )
 
 
@@ -64,11 +73,13 @@ class Regression:
 
     Attributes:
         precision: (d, d), of each row of B beyond the prior's, which is 1.
-        moment: (6, d), precision times mean.
+        moment: (6, d), precision times mean, beyond the prior's.
+        prior: (6, d), B's mean before anything was seen, or one for all entries.
     """
 
     precision: FloatArray
     moment: FloatArray
+    prior: FloatArray | float = 0.0
 
     def learn(self, u: FloatArray, y: FloatArray, noise: float, kept: float) -> None:
         """Take in one motion.
@@ -85,7 +96,7 @@ class Regression:
     def drawn(self, rng: np.random.Generator) -> FloatArray:
         """B (6, d), drawn from what is believed of it."""
         precision = self.precision + np.eye(len(self.precision))
-        mean = np.linalg.solve(precision, self.moment.T).T
+        mean = np.linalg.solve(precision, (self.moment + self.prior).T).T
         root = np.linalg.cholesky(precision)
         return mean + np.linalg.solve(root.T, rng.normal(size=mean.shape).T).T
 
@@ -102,6 +113,9 @@ class LinearGuess(Imagination):
         chain: the arm; its first tool is looked at.
         config: how they learn.
         period_s: time between calls of `saw`, s.
+
+    Raises:
+        UserError: in a drive, where they expect something of another number of axes.
     """
 
     def __init__(self, chain: Chain, config: LinearGuessConfig, period_s: float) -> None:
@@ -169,4 +183,18 @@ class LinearGuess(Imagination):
         return self._guesses[mode]
 
     def _of(self, mode: int, axes: int) -> Regression:
-        return self._learned.setdefault(mode, Regression(np.zeros((axes, axes)), np.zeros((6, axes))))
+        if mode not in self._learned:
+            nothing = np.zeros((6, axes))
+            self._learned[mode] = Regression(np.zeros((axes, axes)), nothing, self._prior(axes))
+        return self._learned[mode]
+
+    def _prior(self, axes: int) -> FloatArray | float:
+        """(6, d), what they expect before they have seen anything, in units of the prior's SD."""
+        expected = self._config.expected
+        if expected is None:
+            return 0.0
+        if len(expected) != axes:
+            raise UserError(
+                f"A person who knows what to expect of {len(expected)} axes cannot drive with {axes}."
+            )
+        return np.array(expected).T / self._scale[:, None]

@@ -1,21 +1,25 @@
 """A simulated person: what they imagine, how they decide, and what their hand does."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import final
 
 import numpy as np
 
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
+from latentarm.operators.anticipation import Anticipation
 from latentarm.operators.boltzmann import BoltzmannConfig, OneStep
 from latentarm.operators.decision import Decision
 from latentarm.operators.foresight import Foresight, KnowsTheArm
 from latentarm.operators.hand import Hand, HandConfig
 from latentarm.operators.imagination import Imagination, Settled
+from latentarm.operators.lapses import LapseConfig, Lapsing
 from latentarm.operators.linear_guess import LinearGuess, LinearGuessConfig
 from latentarm.operators.loop_limits import UNLIMITED, LoopLimits
 from latentarm.operators.moment import USUAL_WITHIN_M, Moment
 from latentarm.operators.operator import Operator
+from latentarm.operators.own_speed import OwnSpeed
+from latentarm.operators.page_rates import PageRates, Screen, Wire
 from latentarm.operators.planning import Planning, PlanningConfig
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, Input, Pose
@@ -32,19 +36,29 @@ class Person:
             linear guess; None knows the arm and its decoder exactly.
         plans: how far they plan where one step leads no nearer; None never plans.
         hand: how late and how unsteady their hand is.
+        speed: how fast they like to go.
+        lapses: how their attention lapses; None never.
+        anticipates: whether they make up for their reaction time by what they know that they have pushed.
+        page: what they drive through; None sees and is heard at once.
 
     Raises:
-        UserError: they are to plan with an arm that they do not know.
+        UserError: they are to plan or anticipate with an arm that they do not know.
     """
 
     decides: BoltzmannConfig = field(default_factory=BoltzmannConfig)
     imagines: Foresight | LinearGuessConfig | None = None
     plans: PlanningConfig | None = None
     hand: HandConfig = field(default_factory=HandConfig)
+    speed: OwnSpeed = field(default_factory=OwnSpeed)
+    lapses: LapseConfig | None = None
+    anticipates: bool = False
+    page: PageRates | None = None
 
     def __post_init__(self) -> None:
         if self.imagines is not None and self.plans is not None:
             raise UserError("Only a simulated person who knows the arm plans: give foresight or planning.")
+        if self.imagines is not None and self.anticipates:
+            raise UserError("Only a simulated person who knows the arm anticipates where it is.")
 
 
 @final
@@ -66,6 +80,11 @@ class SimulatedPerson(Operator):
         self._imagination = _imagination(robot, person, period_s, limits)
         self._decision = _decision(robot, person, period_s, limits)
         self._hand = Hand(person.hand, period_s)
+        self._speed = person.speed
+        self._limits = limits
+        self._anticipation = Anticipation(limits, period_s) if person.anticipates else None
+        self._screen = Screen(person.page, period_s) if person.page else None
+        self._wire = Wire(person.page, period_s) if person.page else None
         self.reset()
 
     def reset(self) -> None:
@@ -73,6 +92,9 @@ class SimulatedPerson(Operator):
         self._imagination.reset()
         self._decision.reset()
         self._hand.reset()
+        for part in (self._anticipation, self._screen, self._wire):
+            if part is not None:
+                part.reset()
         self._given: Input | None = None
 
     def act(
@@ -86,11 +108,17 @@ class SimulatedPerson(Operator):
     ) -> Input:
         """See, learn, decide and move the hand."""
         u = np.zeros(controller.input_dim) if self._given is None else self._given.u
-        seen = self._hand.sees(Moment(context, mode, target, u, within_m))
+        moment = Moment(context, mode, target, u, within_m)
+        seen = self._hand.sees(moment if self._screen is None else self._screen.shown(moment))
         self._imagination.saw(seen)
+        if self._anticipation is not None and not self._decision.holding:
+            seen = self._anticipation.now(moment, seen, controller)
         meant = self._decision.decide(seen, controller, self._imagination, rng)
+        meant = replace(meant, u=self._speed.pushed(meant.u, self._limits))
+        if self._anticipation is not None:
+            self._anticipation.meant(moment, meant.u)
         self._given = self._hand.gives(meant, rng)
-        return self._given
+        return self._given if self._wire is None else self._wire.carried(self._given)
 
 
 def _imagination(robot: Robot, person: Person, period_s: float, limits: LoopLimits) -> Imagination:
@@ -101,5 +129,7 @@ def _imagination(robot: Robot, person: Person, period_s: float, limits: LoopLimi
 
 def _decision(robot: Robot, person: Person, period_s: float, limits: LoopLimits) -> Decision:
     if person.plans is None:
-        return OneStep(person.decides, period_s, limits.dead_zone)
-    return Planning(robot, person.decides, person.plans, period_s, limits)
+        decision: Decision = OneStep(person.decides, period_s, limits.dead_zone)
+    else:
+        decision = Planning(robot, person.decides, person.plans, period_s, limits)
+    return decision if person.lapses is None else Lapsing(decision, person.lapses, period_s)

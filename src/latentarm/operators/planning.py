@@ -106,6 +106,11 @@ class Planning(Decision):
         self._held = np.zeros(0)
         self._held_calls = 0
 
+    @property
+    def holding(self) -> bool:
+        """Whether the next call of `decide` holds a piece of a plan, or an input."""
+        return self._held_calls > 0 or self._one_step.holding
+
     def decide(
         self, moment: Moment, controller: Controller, imagination: Imagination, rng: np.random.Generator
     ) -> Input:

@@ -7,8 +7,8 @@ import numpy as np
 
 from latentarm.arms.catalogue import DEFAULT_ARM, make_simulated_arm
 from latentarm.arms.contract import check_arm
+from latentarm.assistance.assistance import AssistanceRule
 from latentarm.assistance.belief import Rule
-from latentarm.assistance.blending import Arbitration
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
@@ -39,7 +39,7 @@ class Setup:
     Attributes:
         task: the robot, the goals and when they are reached.
         controller: what the simulated operator steers with.
-        arbitration: how much the robot helps towards its belief over the task's goals; None never helps.
+        assistance: how the robot helps towards its belief over the task's goals; None never helps.
         person: the simulated person who drives.
         time_limit_s: a drive that lasts longer has failed.
         rule: how inputs change the belief; without help too, for a decoder may look at it.
@@ -48,7 +48,7 @@ class Setup:
 
     task: Task
     controller: Controller
-    arbitration: Arbitration | None
+    assistance: AssistanceRule | None
     person: Person
     time_limit_s: float
     rule: Rule = BoltzmannBelief
@@ -154,7 +154,7 @@ def _step(setup: Setup, dt_s: float) -> Step:
         SafetyConfig(obstacles=tuple(task.obstacles)),
         goals=task.goals,
         belief=setup.rule(goals, period_s=BELIEF_PERIOD_S),
-        arbitration=setup.arbitration,
+        assistance=None if setup.assistance is None else setup.assistance(goals),
         dt_s=dt_s,
         surroundings=surroundings_of(task, setup.controller.objects),
     )

@@ -29,7 +29,7 @@ COLUMNS: Final[dict[str, str]] = {
     "manner": "what is done at the goal",
     "repeat": "number of the drive to this goal, from 0",
     "seed": "seed of the command; start and inputs depend on seed, goal and repeat alone",
-    "controller": "latent, latent_assist or end_effector",
+    "controller": "latent, latent_assist, end_effector, two_sticks or retargeting",
     "operator": "greedy, learning, unsteady or planning; all are simulated",
     "success": "whether all waypoints were reached",
     "ended_because": "reached, time_limit, operator_stuck, held_back or safety_stop",

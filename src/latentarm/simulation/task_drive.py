@@ -8,7 +8,8 @@ import numpy as np
 
 from latentarm.arms.catalogue import make_scene_arm
 from latentarm.arms.contract import SceneArm, check_arm
-from latentarm.assistance.blending import Arbitration
+from latentarm.assistance.assistance import Assistance, AssistanceRule
+from latentarm.assistance.belief import Belief, Rule
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.controller import Controller
@@ -52,15 +53,17 @@ class TaskSetup:
         task: what is to be done.
         controller: what the simulated operator steers with.
         person: the simulated person who drives.
-        arbitration: how much the robot helps towards its belief over the goals; None never helps.
+        assistance: how the robot helps towards its belief over the goals; None never helps.
         arm: what moves, a simulated arm of the catalogue that can have things about it.
+        rule: how inputs change the belief; without help too, for a decoder may look at it.
     """
 
     task: SceneTask
     controller: Controller
     person: Person
-    arbitration: Arbitration | None = None
+    assistance: AssistanceRule | None = None
     arm: str = "mujoco"
+    rule: Rule = BoltzmannBelief
 
 
 @final
@@ -169,17 +172,19 @@ def drive_task(
 
 
 def _step(setup: TaskSetup, begun: Beginning, follow: "_Watch") -> Step:
-    belief = None
+    belief: Belief | None = None
+    assistance: Assistance | None = None
     if begun.goals:
         goals = np.stack([goal.configuration for goal in begun.goals])
-        belief = BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S)
+        belief = setup.rule(goals, period_s=BELIEF_PERIOD_S)
+        assistance = None if setup.assistance is None else setup.assistance(goals)
     return Step(
         setup.task.robot,
         setup.controller,
         SafetyConfig(obstacles=setup.task.obstacles),
         goals=begun.goals,
         belief=belief,
-        arbitration=setup.arbitration if begun.goals else None,
+        assistance=assistance,
         dt_s=1.0 / RATE_HZ,
         surroundings=watched(lambda: follow.poses, setup.controller.objects),
     )

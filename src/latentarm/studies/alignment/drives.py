@@ -15,6 +15,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.assistance.blending import FixedAlpha
+from latentarm.assistance.goal_blending import blending
 from latentarm.controllers.latent import LatentController
 from latentarm.operators.person import Person
 from latentarm.simulation.drive import RATE_HZ, Setup, simulate
@@ -155,7 +156,7 @@ def _setup(task: Task, learned: Learned, seed: int, condition: str, limit_s: flo
     return Setup(
         task,
         LatentController(learned.model.decoder(seed), learned.alignments[seed][alignment]),
-        FixedAlpha() if condition == HELPED else None,
+        blending(FixedAlpha()) if condition == HELPED else None,
         Person(imagines=None if condition == KNOWS else learned.person),
         limit_s,
     )

@@ -136,7 +136,7 @@ def measure_drive_cell(cell: DriveCell) -> DriveResult:
         setup = Setup(
             task,
             controller,
-            arbitration=None,
+            assistance=None,
             person=PEOPLE[usual_operator(task.name)],
             time_limit_s=cell.limit_s,
         )

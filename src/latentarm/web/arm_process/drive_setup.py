@@ -10,6 +10,7 @@ import numpy as np
 from latentarm.arms.catalogue import ARMS, make_scene_arm
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.boltzmann import BoltzmannBelief
+from latentarm.assistance.goal_blending import GoalBlending
 from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.safety.config import SafetyConfig
@@ -221,7 +222,7 @@ class DriveSetup:
             ),
             goals=self.task.goals,
             belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
-            arbitration=self.help if self.task.goals else None,
+            assistance=GoalBlending(goals, self.help) if self.task.goals else None,
             dt_s=PERIOD_S,
             surroundings=surroundings,
         )

@@ -1,0 +1,83 @@
+"""Write the tables of docs/simulated_people.md: what the simulated people are like, and their calibration.
+
+python scripts/people_tables.py
+"""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from latentarm.operators.calibration import PROVENANCE
+from latentarm.operators.population import MIRRORED, TRAITS
+
+PAGE: Final = Path(__file__).parents[1] / "docs" / "simulated_people.md"
+
+
+def main() -> None:
+    """Write them between their marks."""
+    PAGE.write_text(written(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def written(page: str) -> str:
+    """The page with its tables anew."""
+    for name, table in (("traits", traits()), ("calibration", calibration())):
+        begin, end = f"<!-- {name}: written by scripts/people_tables.py -->", f"<!-- {name}: end -->"
+        before, rest = page.split(begin)
+        page = f"{before}{begin}\n{table}\n{end}{rest.split(end)[1]}"
+    return page
+
+
+def traits() -> str:
+    """A row for each trait."""
+    lines = ["| trait | distribution over people | range | source |", "| --- | --- | --- | --- |"]
+    for one in TRAITS:
+        unit = f", {one.unit}" if one.unit else ""
+        lines.append(
+            f"| {one.meaning}{unit} | {one.spread.shape}"
+            f" | {_short(one.spread.lowest)} to {_short(one.spread.highest)} | {one.source} |"
+        )
+    lines.append(
+        f"| second axis upside down | {100 * MIRRORED:g} % of people | yes or no"
+        " | that a minority inverts it: Corbett and Munneke, Cogn. Res. Princ. Implic., 2025; share chosen |"
+    )
+    return "\n".join(lines)
+
+
+def calibration() -> str:
+    """The figures before and after."""
+    before, after, aim = (PROVENANCE[one] for one in ("before", "after", "aimed_at"))
+    low, high = aim["slopes_s_per_bit"]
+    share = f"{100 * aim['switching_share']:.1f} % (Herlant et al. 2016)"
+    slopes = f"{low} to {high} (Draper et al. 1990, Soukoreff and MacKenzie 2004)"
+    rows = [
+        ("SD of a push, share of its length, median", "", _figure("push_variation", "{:g}")),
+        ("median time of a mode switch, first trial (s)", "", _figure("switch_s", "{:.2f}")),
+        ("share of time in mode switches, mean ± SD over people", share, _share),
+        ("mode switches in a drive", "", _figure("switches_per_drive", "{:.1f}")),
+        ("time of a drive (s)", "", _figure("drive_s", "{:.1f}")),
+        ("drives done", "", lambda one: f"{one['drives_done']} of {one['drives']}"),
+        ("Fitts's law: slope (s/bit)", slopes, _figure("slope_s_per_bit", "{:.2f}")),
+        ("Fitts's law: intercept (s)", "", _figure("intercept_s", "{:.2f}")),
+        ("Fitts's law: r² over the means of 9 conditions", "", _figure("r2", "{:.2f}")),
+        ("movements that failed", "", lambda one: f"{one['movements_failed']} of {one['movements']}"),
+    ]
+    lines = ["| simulated | published, of people | before | after |", "| --- | --- | ---: | ---: |"]
+    lines += [f"| {name} | {aim or '–'} | {of(before)} | {of(after)} |" for name, aim, of in rows]
+    return "\n".join(lines)
+
+
+def _short(value: float) -> str:
+    """Three digits, and no exponent."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
+def _figure(name: str, form: str) -> Callable[[Mapping[str, Any]], str]:
+    return lambda one: form.format(one[name])
+
+
+def _share(one: Mapping[str, Any]) -> str:
+    return f"{100 * one['switching_share']:.1f} ± {100 * one['switching_share_sd']:.1f} %"
+
+
+if __name__ == "__main__":
+    main()

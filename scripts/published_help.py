@@ -1,0 +1,89 @@
+"""What the published kinds of help are worth at the marshmallows, in physics, to a noisy simulated person.
+
+A simulated person with a reaction time and tremor brings the fork over each of three marshmallows with one
+stick of two axes and three modes (x-y, z-yaw, roll-pitch), at several rationalities. Every condition meets
+the same scenes and starts. Prints one table. For example:
+python scripts/published_help.py --drives 10
+"""
+
+import argparse
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from latentarm.assistance.catalogue import AssistanceName, published_assistance, published_belief
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.operators.catalogue import PEOPLE
+from latentarm.operators.person import Person
+from latentarm.simulation.task_drive import TaskSetup, TaskTrace
+from latentarm.simulation.task_drives import Series, drive_series
+from latentarm.tasks.eating.over_marshmallow import OverMarshmallow
+
+SPEED_M_S: Final = 0.2
+TURN_RAD_S: Final = 0.4
+"""The person's gains in Javdani et al. (2018)."""
+
+WAYS: Final[dict[str, AssistanceName | None]] = {
+    "no help": None,
+    "hindsight optimisation": "hindsight",
+    "HARMONIC, Low Assist (1/3)": "low_assist",
+    "HARMONIC, High Assist (2/3)": "high_assist",
+    "HARMONIC, Full Assist (1)": "full_assist",
+    "policy blending": "policy_blending",
+}
+
+RATIONALITIES: Final = (50.0, 200.0, 1000.0)
+"""beta of equation 24, 1/m²."""
+
+
+def main() -> None:
+    """Drive, and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--drives", type=int, default=10, help="for each marshmallow")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--beta", type=float, nargs="*", default=[*RATIONALITIES])
+    options = parser.parse_args()
+    print("| β (1/m²) | help | reached | time (s) | input (s) | idle (s) | mode switches |")
+    print("|---:|---|---:|---:|---:|---:|---:|")
+    for beta in options.beta:
+        for name, help_by in WAYS.items():
+            series = Series([setup(help_by, noisy(beta))], options.drives)
+            (traces,) = drive_series([series], options.seed, options.jobs)
+            print(f"| {beta:g} | {name} | {' | '.join(figures(traces))} |", flush=True)
+
+
+def noisy(beta: float) -> Person:
+    """A simulated person with a reaction time and tremor, who is this rational."""
+    unsteady = PEOPLE["unsteady"]
+    return replace(unsteady, decides=replace(unsteady.decides, beta=beta))
+
+
+def setup(help_by: AssistanceName | None, person: Person) -> TaskSetup:
+    """Everything that a condition is driven with."""
+    task = OverMarshmallow()
+    return TaskSetup(
+        task,
+        EndEffectorController(task.robot, SPEED_M_S, TURN_RAD_S),
+        person,
+        None if help_by is None else published_assistance(help_by, task.robot),
+        rule=published_belief(task.robot),
+    )
+
+
+def figures(traces: list[TaskTrace]) -> list[str]:
+    """How many arrive; mean and SD of the other figures over all drives, failed ones until they ended."""
+    arrived = sum(trace.figures.success for trace in traces)
+    columns = [
+        [trace.figures.time_s for trace in traces],
+        [trace.figures.input_magnitude for trace in traces],
+        [trace.figures.idle_s for trace in traces],
+        [float(trace.figures.mode_switches) for trace in traces],
+    ]
+    spread = [f"{np.mean(values):.1f} ± {np.std(values, ddof=1):.1f}" for values in columns]
+    return [f"{arrived} of {len(traces)}", *spread]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,155 @@
+"""Null checks of the analysis of user studies: how often it finds what is not there, and what is.
+
+A condition is compared with itself in many studies of twelve people whose trials are drawn at random: a
+test should be significant in 5 % of them. With an injected effect of dz = 0.8 it should be found as often as
+the power analysis says. Orders, people's levels, and chance from trial to trial are drawn as a study has
+them. Nobody drives.
+
+``python scripts/study_null_checks.py --out FILE.json`` writes what it found, and fails where a rate is off.
+"""
+
+import argparse
+import sys
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from statsmodels.stats.power import TTestPower
+
+from latentarm.runs.results_folder import write_json
+from latentarm.studies.statistics import LEVEL
+from latentarm.user_studies.analysis.anova import repeated_measures
+from latentarm.user_studies.analysis.claims import claims_tested, sides_of
+from latentarm.user_studies.analysis.long_table import long_table
+from latentarm.user_studies.analysis.randomisation import randomisation_p
+from latentarm.user_studies.catalogue import load_definition
+from latentarm.user_studies.definition import Definition, Factor
+from latentarm.user_studies.hypothesis import Claim
+from latentarm.user_studies.order import orders
+from latentarm.user_studies.record import Trial
+
+PEOPLE = 12
+DZ = 0.8
+PERSON_SD, ORDER_EFFECT, TRIAL_SD, CONDITION_SD = 4.0, -0.1, 1.0, 1.0
+"""Of the drawn trials, in units of the chance from trial to trial: how people differ, what each place in the
+order adds, and how much the difference between two conditions varies from person to person."""
+
+TOLERANCE = 0.02
+"""How far the share of false findings may be from 5 %."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """One rate.
+
+    Attributes:
+        test: which test.
+        expected: share of the studies in which it should be significant.
+        found: in which it was.
+        tolerance: how far the two may be apart.
+    """
+
+    test: str
+    expected: float
+    found: float
+    tolerance: float
+
+    @property
+    def passes(self) -> bool:
+        """Whether they are near enough."""
+        return abs(self.found - self.expected) <= self.tolerance
+
+
+def drawn(definition: Definition, rng: np.random.Generator, effects: dict[str, float]) -> list[Trial]:
+    """Trials of one study."""
+    names = [condition.name for condition in definition.conditions]
+    trials: list[Trial] = []
+    for person, order in enumerate(orders(names, PEOPLE, rng)):
+        level = rng.normal(20.0, PERSON_SD)
+        own = {name: rng.normal(0.0, CONDITION_SD / np.sqrt(2.0)) for name in names}
+        for place, name in enumerate(order):
+            usual = level + effects.get(name, 0.0) + own[name] + ORDER_EFFECT * place
+            for task in definition.tasks:
+                for number in range(task.trials):
+                    value = usual + rng.normal(0.0, TRIAL_SD)
+                    trials.append(Trial(person, name, task.name, place, number, {"time_s": float(value)}))
+    return trials
+
+
+def effect_of(definition: Definition) -> float:
+    """The difference between two conditions whose dz is `DZ` in people's means, orders apart."""
+    trials = sum(task.trials for task in definition.tasks)
+    return DZ * float(np.sqrt(CONDITION_SD**2 + 2.0 * TRIAL_SD**2 / trials))
+
+
+def rates(definition: Definition, claim: Claim, effect: float, studies: int, seed: int) -> dict[str, float]:
+    """Share of the studies in which each test of a claim is significant."""
+    found: dict[str, list[float]] = {"paired t": [], "randomisation": []}
+    for study in range(studies):
+        trials = drawn(definition, np.random.default_rng([seed, study]), dict.fromkeys(claim.subject, effect))
+        tested = claims_tested(definition, sides_of(definition, trials))
+        p = next(one.p for one in tested if one.claim == claim)
+        found["paired t"].append(1.0 if p is None else p)
+        exact = randomisation_p(long_table(trials, claim))
+        found["randomisation"].append(1.0 if exact is None else exact)
+    return {test: float(np.mean(np.array(p) < LEVEL)) for test, p in found.items()}
+
+
+def anova_rate(definition: Definition, factors: tuple[Factor, Factor], studies: int, seed: int) -> float:
+    """Share of all effects in studies without any that the analysis of variance finds significant."""
+    tasks = [task.name for task in definition.tasks]
+    p = [
+        effect.p
+        for study in range(studies)
+        for effect in repeated_measures(
+            drawn(definition, np.random.default_rng([seed, study]), {}), factors, "time_s", tasks
+        )
+    ]
+    return float(np.mean(np.array(p) < LEVEL))
+
+
+def checks(studies: int, seed: int) -> list[Check]:
+    """All null checks."""
+    harmonic, eating = load_definition("harmonic"), load_definition("eating")
+    claim = Claim("time_s", ("cVAE",), ("High Assist",), "less")
+    itself = rates(harmonic, claim, 0.0, studies, seed)
+    injected = rates(harmonic, claim, -effect_of(harmonic), studies, seed + 1)
+    power = float(TTestPower().power(DZ, PEOPLE, LEVEL))
+    # Two standard errors of a share of so many studies.
+    apart = 2.0 * float(np.sqrt(power * (1.0 - power) / studies))
+    control, assistance = eating.factors
+    return [
+        *(
+            Check(f"{test}, a condition against itself", LEVEL, rate, TOLERANCE)
+            for test, rate in itself.items()
+        ),
+        Check(
+            "repeated-measures F, no effects",
+            LEVEL,
+            anova_rate(eating, (control, assistance), studies, seed + 2),
+            TOLERANCE,
+        ),
+        Check(f"paired t, dz = {DZ}", power, injected["paired t"], apart),
+    ]
+
+
+def main() -> int:
+    """Run the checks, print and write them; 1 where one fails."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--studies", type=int, default=500)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", type=Path)
+    options = parser.parse_args()
+    found = checks(options.studies, options.seed)
+    for one in found:
+        verdict = "ok" if one.passes else "OFF"
+        rate = f"{one.found:.1%} of {options.studies} studies, {one.expected:.1%} expected"
+        print(f"{one.test}: {rate}: {verdict}")
+    if options.out is not None:
+        entries = [{**asdict(one), "passes": one.passes} for one in found]
+        write_json(options.out, {"studies": options.studies, "seed": options.seed, "checks": entries})
+    return 0 if all(one.passes for one in found) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,170 @@
+"""The cost-to-go of hindsight optimisation: what it takes to bring the tool to a goal.
+
+Javdani, Admoni, Pellegrinelli, Srinivasa and Bagnell, "Shared autonomy via hindsight optimization for
+teleoperation and teaming", 2018. The paper gives the form; the constants are those of its public
+implementation.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.errors import UserError
+from latentarm.kinematics.rotations import rotation_vector
+from latentarm.types import FloatArray, Pose
+
+MOST_POSES: Final = 30
+"""Of a goal, as published."""
+
+LOOK_AHEAD_S: Final = 0.1
+"""For how long an input is held where it is asked what it leaves to be done, s."""
+
+
+@final
+@dataclass(frozen=True)
+class HuberCost:
+    """What it costs to close a distance d to zero, and how fast the robot closes it.
+
+    A second at the distance d costs ``rate(d)``, and the cost-to-go V is its integral over the way::
+
+        rate(d) = weight (slope d / near + constant)    for d <= near
+                  weight (slope + constant)             beyond
+        V(d)    = weight (slope d² / (2 near) + constant d)                  for d <= near
+                  weight ((slope + constant) d - slope near / 2)             beyond
+
+    Attributes:
+        slope: of the linear part.
+        near: distance up to which the cost is quadratic, m or rad.
+        constant: added to the slope everywhere.
+        weight: of the whole cost.
+        price: what the robot's own motion costs it; its speed is the slope of V divided by this.
+        soft: distance below which the robot slows down in proportion, m or rad.
+    """
+
+    slope: float
+    near: float
+    constant: float
+    weight: float
+    price: float
+    soft: float
+
+    def rate(self, distance: FloatArray) -> FloatArray:
+        """Cost of a second at distances (...), which is also the slope of `value`."""
+        return self.weight * (self.slope * np.minimum(distance / self.near, 1.0) + self.constant)
+
+    def value(self, distance: FloatArray) -> FloatArray:
+        """V, the cost-to-go from distances (...)."""
+        # Both branches as one: quadratic up to near, then straight on at the slope that it has there.
+        inside = np.minimum(distance, self.near)
+        return self.weight * (
+            self.slope * (inside * inside / (2.0 * self.near) + distance - inside) + self.constant * distance
+        )
+
+    def speed(self, distance: FloatArray) -> FloatArray:
+        """How fast the robot closes distances (...), m/s or rad/s."""
+        return self.rate(distance) * np.minimum(distance / self.soft, 1.0) / self.price
+
+
+TRANSLATION: Final = HuberCost(slope=2.25, near=0.07, constant=0.2, weight=1.0, price=40.0, soft=0.02)
+"""Of the tool's distance, m: 0.06 m/s from afar."""
+
+ROTATION: Final = HuberCost(
+    slope=0.20, near=np.pi / 32, constant=0.01, weight=0.07, price=0.05, soft=np.pi / 12
+)
+"""Of the tool's angle, rad: 0.29 rad/s from afar."""
+
+
+@final
+class GoalPoses:
+    """The poses at which each goal is reached. The one with the least cost-to-go counts.
+
+    Args:
+        poses: of each of G goals, up to `MOST_POSES`, in the base frame.
+
+    Raises:
+        UserError: there is no goal, or one has no pose or too many.
+    """
+
+    def __init__(self, poses: Sequence[Sequence[Pose]]) -> None:
+        most = max((len(one) for one in poses), default=0)
+        if not poses or not all(poses) or most > MOST_POSES:
+            raise UserError(f"Every goal needs 1 to {MOST_POSES} poses, and there must be a goal.")
+        # A pose that is there twice changes nothing.
+        full = [[*one, *[one[0]] * (most - len(one))] for one in poses]
+        self._position = np.array([[pose.position for pose in one] for one in full], dtype=np.float64)
+        self._rotation = np.array([[pose.rotation for pose in one] for one in full], dtype=np.float64)
+
+    def __len__(self) -> int:
+        return len(self._position)
+
+    def value(self, at: Pose) -> FloatArray:
+        """``V_g`` of tool poses (...), (..., G)."""
+        return self._values(at).min(axis=-1)
+
+    def advantage(self, at: Pose, after: Pose) -> FloatArray:
+        """``Q_g - V_g`` of inputs, each held for `LOOK_AHEAD_S`.
+
+        Args:
+            at: tool poses (...).
+            after: where the inputs would take them, (...).
+
+        Returns:
+            (..., G): what the way to ``after`` costs, and by how much the cost-to-go is more there than at
+            ``at``.
+        """
+        there, shift_at, turn_at = self._nearest(at)
+        shift, turn = _away(there, after)
+        far_at, turned_at = _length(shift_at), _length(turn_at)
+        far, turned = _length(shift), _length(turn)
+        cost = LOOK_AHEAD_S * (TRANSLATION.rate(far_at) + ROTATION.rate(turned_at))
+        gain = TRANSLATION.value(far) + ROTATION.value(turned)
+        return cost + gain - TRANSLATION.value(far_at) - ROTATION.value(turned_at)
+
+    def twists(self, at: Pose, after: Pose) -> FloatArray:
+        """The robot's best action towards each goal: down the slope of Q, where the person's input leads.
+
+        Args:
+            at: tool poses (...), which say which pose of each goal counts.
+            after: where the person's input would take them in `LOOK_AHEAD_S`, (...).
+
+        Returns:
+            (..., G, 6), m/s and rad/s, in the base frame.
+        """
+        there, _, _ = self._nearest(at)
+        shift, turn = _away(there, after)
+        return np.concatenate([_towards(shift, TRANSLATION), _towards(turn, ROTATION)], axis=-1)
+
+    def _values(self, at: Pose) -> FloatArray:
+        """Of every pose, (..., G, P)."""
+        shift, turn = _away(
+            Pose(self._position, self._rotation),
+            Pose(at.position[..., None, :], at.rotation[..., None, :, :]),
+        )
+        return TRANSLATION.value(_length(shift)) + ROTATION.value(_length(turn))
+
+    def _nearest(self, at: Pose) -> tuple[Pose, FloatArray, FloatArray]:
+        """The pose of each goal that counts, (..., G), and how far it is away, both (..., G, 3)."""
+        index = self._values(at).argmin(axis=-1)
+        goals = np.arange(len(self))
+        there = Pose(self._position[goals, index], self._rotation[goals, index])
+        return there, *_away(there, at)
+
+
+def _away(there: Pose, at: Pose) -> tuple[FloatArray, FloatArray]:
+    """From tool poses (...) to goals' poses (..., K), both (..., K, 3): a shift, m, and a turn, rad."""
+    turn = there.rotation @ at.rotation[..., None, :, :].mT
+    return there.position - at.position[..., None, :], rotation_vector(turn)
+
+
+def _length(vector: FloatArray) -> FloatArray:
+    return np.sqrt(np.vecdot(vector, vector))
+
+
+def _towards(away: FloatArray, cost: HuberCost) -> FloatArray:
+    """Velocities (..., 3) that close what is left (..., 3)."""
+    distance = _length(away)
+    # At the goal itself there is no direction, and no speed either.
+    share = np.divide(cost.speed(distance), distance, out=np.zeros_like(distance), where=distance > 0.0)
+    return share[..., None] * away

@@ -1,0 +1,50 @@
+"""The action that lowers the expected cost-to-go: what hindsight optimisation and its relatives share."""
+
+from typing import final
+
+import numpy as np
+
+from latentarm.assistance.cost_to_go import LOOK_AHEAD_S
+from latentarm.assistance.goal_poses import PosesOf, goal_poses, that_pose
+from latentarm.kinematics.resolved_rates import Damping, joint_velocities
+from latentarm.robots.robot import Robot
+from latentarm.types import FloatArray, Pose
+
+
+@final
+class ExpectedHelp:
+    """``a_r = Σ_g b(g) a_g``: each goal's best twist (Javdani et al. 2018), by how likely the goal is.
+
+    The twist is at most 0.06 m/s and 0.29 rad/s, below the gains of 0.2 m/s and 0.4 rad/s that the published
+    system gave the person. Joint velocities follow by resolved rates.
+
+    Args:
+        goals: (G, n), rad.
+        robot: the arm; its first tool is moved.
+        poses_of: at which poses a goal is reached.
+
+    Raises:
+        UserError: a goal has too many poses.
+    """
+
+    def __init__(self, goals: FloatArray, robot: Robot, poses_of: PosesOf = that_pose) -> None:
+        self._chain = robot.chain
+        self._poses = goal_poses(goals, robot, poses_of)
+        self._damping = Damping()
+
+    def twist(self, action_human: FloatArray, state: FloatArray, weights: FloatArray) -> FloatArray:
+        """The expected twist, (6,), m/s and rad/s, in the base frame.
+
+        Args:
+            action_human: (n,), the person's action, rad/s.
+            state: (n,), rad.
+            weights: (G,), how much each goal counts; they sum to one.
+        """
+        reached = self._chain.forward(np.stack([state, state + LOOK_AHEAD_S * action_human]))
+        at, after = (Pose(reached.position[i], reached.rotation[i]) for i in range(2))
+        return weights @ self._poses.twists(at, after)
+
+    def action(self, action_human: FloatArray, state: FloatArray, weights: FloatArray) -> FloatArray:
+        """The same as joint velocities, (n,), rad/s; see `twist`."""
+        twist = self.twist(action_human, state, weights)
+        return joint_velocities(twist[None], self._chain.jacobian(state), self._damping)[0]

@@ -1,0 +1,52 @@
+"""The paper's own help: the action towards the goals (equation 3), blended with the person's (equation 2)."""
+
+import math
+from functools import partial
+from typing import final
+
+import numpy as np
+
+from latentarm.assistance.assistance import Assistance, AssistanceRule, Contribution
+from latentarm.assistance.blending import Arbitration, assistive_action
+from latentarm.types import FloatArray
+
+
+@final
+class GoalBlending(Assistance):
+    """``a = (1 - alpha) a_h + alpha Σ_g b(g) (g - s)`` (equation 10).
+
+    Args:
+        goals: (G, n), configurations, rad.
+        arbitration: how much the robot helps.
+    """
+
+    def __init__(self, goals: FloatArray, arbitration: Arbitration) -> None:
+        self._goals = goals
+        self._arbitration = arbitration
+
+    @property
+    def acts_at_rest(self) -> bool:
+        """As the arbitration does."""
+        return self._arbitration.acts_at_rest
+
+    def contribution(
+        self, u: FloatArray, action_human: FloatArray, state: FloatArray, belief: FloatArray
+    ) -> Contribution:
+        """Equation 3, as much as the arbitration says."""
+        alpha = float(self._arbitration.alpha(u, belief))
+        return Contribution(assistive_action(state, belief, self._goals), alpha)
+
+    def bound_rad(self, given: Contribution, state: FloatArray, belief: FloatArray, sigma_h: float) -> float:
+        """Equation 14: `assistance.bound.radius` for one moment, in a quarter of its time."""
+        probabilities = belief.tolist()
+        sure = max(probabilities)
+        away = self._goals - state
+        distance = np.vecdot(away, away).tolist()
+        distance[probabilities.index(sure)] = 0.0
+        delta = (1.0 - given.alpha) / given.alpha * sigma_h + (1.0 - sure) * math.sqrt(max(distance))
+        return delta / sure if math.isfinite(delta) else math.nan
+
+
+def blending(arbitration: Arbitration) -> AssistanceRule:
+    """The rule of `GoalBlending` with an arbitration."""
+    return partial(GoalBlending, arbitration=arbitration)

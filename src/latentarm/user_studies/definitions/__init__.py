@@ -1,0 +1,1 @@
+"""One study of the paper per module, each with its ``DEFINITION``."""

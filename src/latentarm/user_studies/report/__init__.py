@@ -1,0 +1,1 @@
+"""One HTML page and one PDF of a study that was run."""

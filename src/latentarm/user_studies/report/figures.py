@@ -1,0 +1,78 @@
+"""All figures of a study's report, by name, with their captions."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, final
+
+from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.record import Trial
+from latentarm.user_studies.report.boxes import box_figure, idle_figure
+from latentarm.user_studies.report.ways import plate_figure, stick_figure, way_figure
+from latentarm.user_studies.trace import Trace
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A figure of the report.
+
+    Attributes:
+        name: of its file, without suffix.
+        figure: the drawing.
+        caption: what it shows, and of whom.
+    """
+
+    name: str
+    figure: "Figure"
+    caption: str
+
+
+def figure_names(definition: Definition) -> tuple[str, ...]:
+    """Names of all figures that a study's report may have."""
+    tasks = [task.name for task in definition.tasks]
+    return (
+        "measures",
+        "ratings",
+        "idle",
+        "plates",
+        *(f"{kind}_{task}" for task in tasks for kind in ("ways", "stick")),
+    )
+
+
+def draw(definition: Definition, trials: Sequence[Trial], traces: Sequence[Trace], who: str) -> list[Drawn]:
+    """Draw what there are figures for; nothing empty is drawn.
+
+    Args:
+        definition: of the study.
+        trials: that count.
+        traces: of all trials.
+        who: the people, in words, such as ``12 simulated people``.
+    """
+    measured = {name for trial in trials for name in trial.measures}
+    shown = [name for name in definition.measures if name in measured]
+    rated = [name for name in definition.scales if name in measured]
+    found: list[Drawn] = []
+    if shown:
+        caption = (
+            f"Every measure, {who}. Boxes hold the middle half, whiskers end at the 10 and 90 percentiles."
+        )
+        found.append(Drawn("measures", box_figure(definition, trials, shown, who), caption))
+    if rated:
+        caption = f"Ratings on the scales of the questionnaire, {who}; higher is more agreement."
+        found.append(Drawn("ratings", box_figure(definition, trials, rated, who), caption))
+    if {"time_s", "idle_s"} <= measured:
+        caption = f"Time taken, and in the lighter shade the part of it without input, {who}."
+        found.append(Drawn("idle", idle_figure(definition, trials, who), caption))
+    if any(trace.plate_m for trace in traces):
+        caption = f"Goal error: distance of the tool from the closest plate in the course of a trial, {who}."
+        found.append(Drawn("plates", plate_figure(definition, traces, who), caption))
+    for task in definition.tasks:
+        if any(trace.task == task.name for trace in traces):
+            caption = f"Ways of the tool in {task.label}, {who}. The scene differs from person to person."
+            found.append(Drawn(f"ways_{task.name}", way_figure(definition, task, traces, who), caption))
+            caption = f"Where the stick was in {task.label}, {who}; rest does not count."
+            found.append(Drawn(f"stick_{task.name}", stick_figure(definition, task, traces, who), caption))
+    return found

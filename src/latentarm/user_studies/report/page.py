@@ -1,0 +1,205 @@
+"""The report as one HTML page, which holds everything that it shows."""
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from latentarm.metrics.measures import unit_of
+from latentarm.metrics.table import ABSENT, format_figure
+from latentarm.studies.page import listed
+from latentarm.studies.statistics import format_p
+from latentarm.style import FIGURE_DPI
+from latentarm.types import Row
+from latentarm.user_studies.analysis.analysis import Analysis
+from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.printed import WRONG
+from latentarm.user_studies.report.figures import Drawn
+from latentarm.user_studies.report.people import HEAD as PEOPLE_HEAD
+from latentarm.user_studies.report.words import (
+    CLAIM_HEAD,
+    claim_line,
+    condition_parts,
+    exclusion_words,
+    task_words,
+    yes_no,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NOTICE: Final = (
+    "Everything here is simulated: the arm, the things, the demonstrator and the people who drive. No"
+    " person took"
+    " part. Figures of the paper are quoted as the paper's and come from real people."
+)
+
+NO_OPINIONS: Final = (
+    "Simulated people have no opinions: nobody was asked, and every claim about ratings could not be tested."
+)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Content:
+    """What a report is about.
+
+    Attributes:
+        definition: of the study.
+        analysis: of its trials.
+        rows: of ``results.json``.
+        people: what the people are like, lines below `latentarm.user_studies.report.people.HEAD`.
+        figures: to show.
+        who: the people, in words, such as ``12 simulated people``.
+        command: that repeats the run.
+    """
+
+    definition: Definition
+    analysis: Analysis
+    rows: Sequence[Row]
+    people: Sequence[tuple[str, ...]]
+    figures: Sequence[Drawn]
+    who: str
+    command: str
+
+
+def report_page(content: Content) -> str:
+    """The page."""
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent, encoding="utf-8"),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    definition, analysis = content.definition, content.analysis
+    return environment.get_template("page.html").render(
+        definition=definition,
+        who=content.who,
+        command=content.command,
+        notice=NOTICE,
+        practice=_practice(definition),
+        order_words=_order_words(definition),
+        verdict_lines=[
+            (one.hypothesis.name, one.hypothesis.text, one.says, one.why) for one in analysis.verdicts
+        ],
+        condition_lines=[(one.name, one.about, *condition_parts(one)) for one in definition.conditions],
+        task_lines=[task_words(task) for task in definition.tasks],
+        exclusion_lines=exclusion_words(definition),
+        excluded_words=_excluded_words(analysis, content.who),
+        departures=definition.departures,
+        people_head=PEOPLE_HEAD,
+        people_lines=content.people,
+        result_head=["task", "measure", *(one.name for one in definition.conditions)],
+        result_lines=_result_lines(definition, content.rows),
+        figures=[{"caption": one.caption, "data": _encoded(one.figure)} for one in content.figures],
+        claim_head=CLAIM_HEAD,
+        claim_lines=[
+            claim_line(definition, tested, modelled)
+            for tested, modelled in zip(analysis.tested, analysis.modelled, strict=True)
+        ],
+        anova_lines=_anova_lines(definition, analysis),
+        printed_lines=_printed_lines(definition, analysis),
+        wrong_lines=_wrong_lines(analysis),
+        questionnaire_words=NO_OPINIONS,
+        item_lines=_item_lines(definition),
+    )
+
+
+def _practice(definition: Definition) -> str:
+    if not definition.practice_min:
+        return definition.practice
+    return f"up to {definition.practice_min:g} minutes, {definition.practice}"
+
+
+def _order_words(definition: Definition) -> str:
+    if definition.orders:
+        every = "; ".join(" then ".join(order) for order in definition.orders)
+        return f"People take turns with these orders: {every}."
+    return (
+        "Each person meets the conditions in an order of a Williams design: every condition stands at every"
+        " place, and follows every other, equally often. Conditions and rows of the design are assigned at"
+        " random, from the seed."
+    )
+
+
+def _excluded_words(analysis: Analysis, who: str) -> str:
+    trials, people = len(analysis.excluded.trials), len(analysis.excluded.people)
+    return f"Of {who}, {trials} trials and {people} people are excluded; {len(analysis.trials)} trials count."
+
+
+def _result_lines(definition: Definition, rows: Sequence[Row]) -> list[list[str]]:
+    labels = {task.name: task.label for task in definition.tasks}
+    places = dict.fromkeys((row.task or "", row.measure) for row in rows)
+    found = {(row.task or "", row.measure, row.condition): row for row in rows}
+    lines: list[list[str]] = []
+    for task, measure in places:
+        unit = unit_of(measure)
+        name = definition.label(measure) + ("" if unit == "1" else f" ({unit})")
+        shown = [found.get((task, measure, one.name)) for one in definition.conditions]
+        cells = [ABSENT if row is None else format_figure(row.mean, row.sd) for row in shown]
+        lines.append([labels[task], name, *cells])
+    return lines
+
+
+def _anova_lines(definition: Definition, analysis: Analysis) -> list[tuple[str, ...]]:
+    return [
+        (
+            definition.label(measure),
+            effect.name,
+            f"F({effect.dof}, {effect.dof_error}) = {effect.f:.2f}",
+            format_p(effect.p),
+            f"{effect.eta:.2f}",
+        )
+        for measure, effects in analysis.effects.items()
+        for effect in effects
+    ]
+
+
+def _printed_lines(definition: Definition, analysis: Analysis) -> list[tuple[str, ...]]:
+    labels = {task.name: task.label for task in definition.tasks}
+    lines: list[tuple[str, ...]] = []
+    for one in analysis.as_printed:
+        printed = one.printed
+        where = f" ({listed(labels[task] for task in printed.tasks)})" if printed.tasks else ""
+        sides = [listed(side) for side in (printed.subject, printed.against) if side]
+        lines.append(
+            (
+                definition.label(printed.measure) + where,
+                " against ".join(sides),
+                printed.text,
+                one.text,
+                yes_no(one.same_sign),
+                yes_no(one.same_significance),
+            )
+        )
+    return lines
+
+
+def _wrong_lines(analysis: Analysis) -> list[str]:
+    """What is wrong with each way in which the paper got a statistic, after these statistics."""
+    texts: dict[str, list[str]] = {}
+    for one in analysis.as_printed:
+        texts.setdefault(WRONG[one.printed.test], []).append(one.printed.text)
+    return [f"{listed(printed)}: {wrong}" for wrong, printed in texts.items()]
+
+
+def _item_lines(definition: Definition) -> list[tuple[str, str]]:
+    return [
+        (scale.label, " · ".join(f"{item.text}{' (r)' if item.reversed else ''}" for item in scale.items))
+        for scale in definition.questionnaire
+    ]
+
+
+def _encoded(figure: "Figure") -> str:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    FigureCanvasAgg(figure)
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png", dpi=FIGURE_DPI)
+    return base64.b64encode(buffer.getvalue()).decode()

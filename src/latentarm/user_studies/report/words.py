@@ -1,0 +1,107 @@
+"""What the report says in words: the methods, from the definition, and figures as people read them."""
+
+from typing import Final
+
+from latentarm.metrics.table import ABSENT, format_figure
+from latentarm.studies.page import listed
+from latentarm.studies.statistics import CONFIDENCE, format_p
+from latentarm.user_studies.analysis.analysis import Modelled
+from latentarm.user_studies.analysis.claims import Tested, worded
+from latentarm.user_studies.definition import Condition, Definition, StudyTask
+
+CONTROLS: Final = {
+    "modes": "two axes of the end-effector at a time; a button switches which",
+    "two_sticks": "two sticks for the end-effector; a button toggles linear and angular motion",
+    "retargeting": "the stick retargeted to the twist of the end-effector; a button switches which two axes",
+    "latent": "latent actions",
+}
+ASSISTS: Final = {
+    "none": "no assistance",
+    "interpolation": "assistance by interpolation",
+    "blending": "shared autonomy of Algorithm 1",
+}
+ALIGNS: Final = {
+    "none": "z = u",
+    "no_priors": "alignment learned from answers alone",
+    "all_priors": "alignment learned from answers and priors",
+}
+
+
+def condition_parts(condition: Condition) -> tuple[str, str, str, str]:
+    """Controls, model, assistance and alignment of a condition, in words."""
+    model = f"{condition.model}, sees {listed(condition.context)}" if condition.model else ABSENT
+    helps = ASSISTS[condition.assists]
+    if condition.assists == "interpolation":
+        helps = f"{helps}, weight {condition.weight:.2g}"
+    return CONTROLS[condition.controls], model, helps, ALIGNS[condition.aligns] if condition.model else ABSENT
+
+
+def task_words(task: StudyTask) -> str:
+    """How a task goes, in a sentence or two."""
+    trials = f"{task.trials} trial{'s' if task.trials > 1 else ''} in each condition"
+    parts = [f"{task.label}: {trials}"]
+    if task.all_choices:
+        parts.append("each of all parts one after the other, their figures summed")
+    if task.queries:
+        parts.append(f"{task.queries} alignment queries before it")
+    if task.demonstrations_min:
+        parts.append(f"a model from at most {task.demonstrations_min:g} minutes of demonstrations")
+    if task.trained_with:
+        parts.append("with the model of the other task")
+    return "; ".join(parts) + "."
+
+
+def exclusion_words(definition: Definition) -> list[str]:
+    """Each rule in a sentence."""
+    side = {"less": "below", "more": "above"}
+    return [
+        f"A trial with {definition.label(rule.measure)} {side[rule.side]} {rule.limit:g} does not count:"
+        f" {rule.why}."
+        for rule in definition.exclusions
+    ]
+
+
+def claim_line(definition: Definition, tested: Tested, modelled: Modelled) -> list[str]:
+    """One claim as a line of a table."""
+    test, mixed = tested.paired, modelled.mixed
+    head = [tested.hypothesis, worded(definition, tested.claim), str(tested.n)]
+    means = [format_figure(tested.mean, tested.sd), format_figure(tested.mean_against, tested.sd_against)]
+    if test is None:
+        return [*head, *means, *[ABSENT] * 6, f"{tested.says} ({tested.why_not})"]
+    p = f"{format_p(tested.p)} / {format_p(tested.p_holm)}"
+    return [
+        *head,
+        *means,
+        f"{test.difference:.3g} [{test.low:.3g}, {test.high:.3g}]",
+        f"{'TOST' if tested.claim.margin else f't({test.dof}) = {test.t:.2f}'}",
+        p,
+        f"{test.dz:.2f} [{_two(modelled.dz_low)}, {_two(modelled.dz_high)}]; g {test.g:.2f}",
+        ABSENT if mixed is None else f"{mixed.estimate:.3g} ± {mixed.se:.2g}",
+        format_p(modelled.p),
+        tested.says,
+    ]
+
+
+CLAIM_HEAD: Final = (
+    "",
+    "claim",
+    "n",
+    "subject, mean ± SD",
+    "other, mean ± SD",
+    f"difference [{CONFIDENCE:.0%}]",
+    "test",
+    "p / p, Holm",
+    "dz [95%]; g",
+    "mixed model ± SE",
+    "p, randomisation",
+    "says",
+)
+
+
+def yes_no(value: bool | None) -> str:
+    """Yes, no, or a dash."""
+    return ABSENT if value is None else "yes" if value else "no"
+
+
+def _two(value: float | None) -> str:
+    return ABSENT if value is None else f"{value:.2f}"

@@ -1,0 +1,198 @@
+"""A run of a study with simulated people: their trials, and the analysis of these."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Final, TypeVar, final
+
+from latentarm.errors import UserError
+from latentarm.operators.population import draw_people
+from latentarm.operators.traits import Traits
+from latentarm.parallel.grid import check_processes, run_grid
+from latentarm.runs.checks import check_seed
+from latentarm.studies.streams import generator
+from latentarm.untrusted.console import VisibleConsole
+from latentarm.user_studies.analysis.analysis import Analysis, analyse
+from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.order import orders
+from latentarm.user_studies.record import Trial
+from latentarm.user_studies.session import SessionCell, go_through
+from latentarm.user_studies.sizes import Sizes, Stream
+from latentarm.user_studies.trace import Trace
+from latentarm.user_studies.training import Trained, TrainingCell, train
+
+FEWEST_PEOPLE: Final = 2
+
+PREFIX: Final = "user study "
+"""Before a study's name, in what a folder of its results says that it is."""
+
+Cell = TypeVar("Cell")
+Result = TypeVar("Result")
+
+
+@final
+@dataclass(frozen=True)
+class Request:
+    """What a run was asked for.
+
+    Attributes:
+        definition: of the study.
+        sizes: of the run.
+        people: how many simulated people go through it.
+        out: a new folder, or that of an earlier run that asked for the same, which is replaced.
+        seed: of everything random.
+        jobs: processes side by side; -1 is one per core.
+        backend: where they run, a name in `latentarm.parallel.backends.BACKENDS`.
+        quiet: say nothing while working.
+        bars: show how far the grids are.
+
+    Raises:
+        UserError: people, seed, jobs or backend are out of range.
+    """
+
+    definition: Definition
+    sizes: Sizes
+    people: int
+    out: Path
+    seed: int = 0
+    jobs: int = -1
+    backend: str = "joblib"
+    quiet: bool = False
+    bars: bool = False
+
+    def __post_init__(self) -> None:
+        check_seed(self.seed)
+        check_processes(self.jobs, self.backend)
+        if self.people < FEWEST_PEOPLE:
+            raise UserError(
+                f"A study needs {FEWEST_PEOPLE} people or more, not {self.people}: see --simulated."
+            )
+
+    @property
+    def about(self) -> dict[str, object]:
+        """What the figures depend on."""
+        return {
+            "study": folder_name(self.definition),
+            "definition": self.definition.digest,
+            "people": self.people,
+            "people_are": "simulated",
+            "sizes": self.sizes.as_json(),
+            "seed": self.seed,
+        }
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Ran:
+    """What came of a run.
+
+    Attributes:
+        definition: of the study.
+        people: who went through it.
+        trials: of all people.
+        traces: of all trials, for figures.
+        trained: models by task; empty where no condition has any.
+        analysis: of the trials.
+        grid_s: how long the grids took, s.
+    """
+
+    definition: Definition
+    people: tuple[Traits, ...]
+    trials: tuple[Trial, ...]
+    traces: tuple[Trace, ...]
+    trained: Mapping[str, Trained]
+    analysis: Analysis
+    grid_s: float
+
+
+def folder_name(definition: Definition) -> str:
+    """What the folder of a study's results says that it is."""
+    return f"{PREFIX}{definition.name}"
+
+
+def send_people(request: Request) -> Ran:
+    """Let simulated people go through a study, and analyse their trials. Writes nothing.
+
+    Raises:
+        UserError: a cell cannot be driven as asked, or the backend is not available.
+    """
+    definition = request.definition
+    people = draw_people(request.people, request.seed)
+    began = perf_counter()
+    trained = {
+        one.task: one
+        for one in _run(
+            request, "Demonstrations and models", train, _training_cells(request, people), _task_label
+        )
+    }
+    cells = _session_cells(request, people, trained)
+    sessions = _run(request, "Sessions of simulated people", go_through, cells, _session_label)
+    grid_s = perf_counter() - began
+    trials = tuple(trial for session in sessions for trial in session.trials)
+    traces = tuple(trace for session in sessions for trace in session.traces)
+    return Ran(definition, people, trials, traces, trained, analyse(definition, trials), grid_s)
+
+
+def _training_cells(request: Request, people: tuple[Traits, ...]) -> list[TrainingCell]:
+    definition = request.definition
+    if not any(condition.model for condition in definition.conditions):
+        return []
+    return [
+        TrainingCell(definition, task, people, request.sizes, request.seed)
+        for task in definition.tasks
+        if not task.trained_with
+    ]
+
+
+def _session_cells(
+    request: Request, people: tuple[Traits, ...], trained: Mapping[str, Trained]
+) -> list[SessionCell]:
+    definition = request.definition
+    names = [condition.name for condition in definition.conditions]
+    taken = _orders(request, names)
+    return [
+        SessionCell(
+            definition,
+            definition.condition(name),
+            task,
+            one,
+            place,
+            trained.get(task.trained_with or task.name),
+            request.sizes,
+            request.seed,
+        )
+        for one, order in zip(people, taken, strict=True)
+        for place, name in enumerate(order)
+        for task in definition.tasks
+    ]
+
+
+def _orders(request: Request, names: list[str]) -> list[tuple[str, ...]]:
+    fixed = request.definition.orders
+    if fixed:
+        return [fixed[person % len(fixed)] for person in range(request.people)]
+    return orders(names, request.people, generator(request.seed, request.definition.name, Stream.ORDER))
+
+
+def _run(
+    request: Request,
+    what: str,
+    function: Callable[[Cell], Result],
+    cells: Sequence[Cell],
+    label: Callable[[Cell], str],
+) -> list[Result]:
+    if not cells:
+        return []
+    VisibleConsole(stderr=True, quiet=request.quiet).print(f"{what}: {len(cells)} cells.")
+    return run_grid(
+        function, cells, jobs=request.jobs, backend=request.backend, label=label, bars=request.bars
+    )
+
+
+def _task_label(cell: TrainingCell) -> str:
+    return f"models of {cell.task.label}"
+
+
+def _session_label(cell: SessionCell) -> str:
+    return f"simulated person {cell.traits.number + 1}, {cell.condition.name}, {cell.task.label}"

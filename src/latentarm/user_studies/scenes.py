@@ -1,0 +1,22 @@
+"""The tasks that studies are driven at, by name."""
+
+from typing import Final
+
+from latentarm.tasks.catalogue import make_scene_task
+from latentarm.tasks.eating.over_marshmallow import OverMarshmallow
+from latentarm.tasks.scene_task import SceneTask
+
+OVER_MARSHMALLOW: Final = "over_marshmallow"
+"""HARMONIC's: done once the fork is over the chosen marshmallow."""
+
+
+def scene_of(name: str) -> SceneTask:
+    """A task.
+
+    Args:
+        name: `OVER_MARSHMALLOW`, or a name of `latentarm.tasks.catalogue.SCENE_TASKS`.
+
+    Raises:
+        UserError: there is no such task, or it does not load.
+    """
+    return OverMarshmallow() if name == OVER_MARSHMALLOW else make_scene_task(name)
