@@ -21,7 +21,7 @@ import numpy as np
 
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.metrics.mode_switching import switching
-from latentarm.operators.calibration import BEFORE, Calibration
+from latentarm.operators.calibration import BEFORE, CALIBRATED, Calibration
 from latentarm.operators.population import draw_people
 from latentarm.operators.traits import Traits
 from latentarm.robots.catalogue import load_robot
@@ -65,8 +65,13 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=1, help="of each movement by each person")
     parser.add_argument("--rounds", type=int, default=1, help="of fitting the time of a switch")
     parser.add_argument("--out", type=Path, default=Path("calibration.json"))
+    parser.add_argument("--measure", action="store_true", help="fit nothing, and measure what is frozen")
     options = parser.parse_args()
     bench = Bench(options.people, options.seed, options.repeats)
+    if options.measure:
+        bench.fitts(CALIBRATED)
+        bench.share(CALIBRATED)
+        return
 
     low, high = SLOPES_S_PER_BIT
     laws = {one: bench.fitts(Calibration(one, BEFORE.switch_s)) for one in VARIATIONS}
