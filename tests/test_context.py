@@ -33,6 +33,11 @@ COMBINATIONS = [
 ]
 
 
+def four_motions():
+    shown = demonstrations()
+    return replace(shown, episodes=shown.episodes[:4])
+
+
 def moment(episode, sample):
     """What the control loop would be told at one sample of an episode, from poses and a reading."""
     things = episode.extras[ENVIRONMENT][sample].reshape(-1, 7)
@@ -55,7 +60,7 @@ def moment(episode, sample):
     lead=st.lists(st.integers(1, 3), max_size=2),
 )
 def test_the_loop_sees_what_training_saw(features, sample, lead):
-    shown = demonstrations(4)
+    shown = four_motions()
     episode = shown.episodes[0]
     vectors = episode_contexts(episode, features)
     now = moment(episode, sample)
@@ -90,7 +95,7 @@ def test_a_pose_is_the_same_by_its_matrix_and_by_its_quaternion(seed):
 def test_earlier_names_are_those_of_features():
     assert feature_names("state") == feature_names(("state",)) == feature_names("joints") == ("joints",)
     assert feature_names("state_belief") == feature_names(["joints", "belief"]) == ("joints", "belief")
-    shown = demonstrations(4)
+    shown = four_motions()
     for name, kind in (("cae", "state_belief"), ("pca", "state")):
         fits = [
             MODELS[name](**SMALL, context=context).fit(shown, chain=ARM.chain)
@@ -113,11 +118,11 @@ def test_a_context_that_makes_no_sense_is_refused(context, said):
     with pytest.raises(UserError, match=said):
         feature_names(context)
     with pytest.raises(UserError, match="joints first"):
-        PCA(context=context).fit(demonstrations(4))
+        PCA(context=context).fit(four_motions())
 
 
 def test_what_a_dataset_lacks_is_named():
-    shown = demonstrations(4)
+    shown = four_motions()
     for feature, source in (("belief", "belief"), ("gripper", GRIPPER_WIDTH), ("objects", ENVIRONMENT)):
         episodes = tuple(
             replace(one, extras={name: values for name, values in one.extras.items() if name != source})
@@ -136,7 +141,7 @@ def test_what_a_dataset_lacks_is_named():
 
 
 def test_a_dataset_keeps_the_names_of_its_things(tmp_path):
-    shown = demonstrations(4)
+    shown = four_motions()
     write_dataset(shown, tmp_path / "data")
     assert read_dataset(tmp_path / "data").objects == OBJECTS
     with pytest.raises(UserError, match="has 14 entries for 1 things"):
@@ -149,7 +154,7 @@ def test_a_dataset_keeps_the_names_of_its_things(tmp_path):
 
 def test_things_in_the_tools_frame_move_with_the_state():
     """A context holds them in the base frame; what the networks see follows any state."""
-    layout = context_layout(demonstrations(4), ("joints", "objects_in_tool"))
+    layout = context_layout(four_motions(), ("joints", "objects_in_tool"))
     frame = ToolFrame(ARM.chain, layout)
     rng = np.random.default_rng(0)
     states = rng.uniform(-1, 1, (5, JOINTS))
@@ -161,7 +166,7 @@ def test_things_in_the_tools_frame_move_with_the_state():
 
 
 def test_each_feature_has_its_own_normaliser():
-    shown = demonstrations(4)
+    shown = four_motions()
     vectors = np.concatenate([episode_contexts(one, EVERYTHING) for one in shown.episodes])
     layout = context_layout(shown, EVERYTHING)
     framed = ToolFrame(ARM.chain, layout).apply(vectors)
@@ -178,8 +183,8 @@ def test_each_feature_has_its_own_normaliser():
 
 
 def test_a_decoder_heeds_a_thing_that_moved_and_no_thing_that_never_did():
-    model = MODELS["cae"](**SMALL, context=("joints", "objects")).fit(demonstrations(4))
-    context = context_vector(moment(demonstrations(4).episodes[0], 3), ("joints", "objects"))
+    model = MODELS["cae"](**SMALL, context=("joints", "objects")).fit(four_motions())
+    context = context_vector(moment(four_motions().episodes[0], 3), ("joints", "objects"))
     cup, table = context.copy(), context.copy()
     cup[JOINTS] += 0.1
     table[JOINTS + OBJECT] += 0.5
@@ -189,7 +194,7 @@ def test_a_decoder_heeds_a_thing_that_moved_and_no_thing_that_never_did():
 
 
 def test_a_controller_that_looks_at_things_is_told_where_they_are():
-    shown = demonstrations(4)
+    shown = four_motions()
     features = ("joints", "objects")
     controller = LatentController(PCA(context=features).fit(shown).decoder())
     assert controller.objects == OBJECTS
@@ -206,7 +211,7 @@ def test_a_controller_that_looks_at_things_is_told_where_they_are():
 
 
 def test_a_model_that_learned_from_toggles_is_not_driven():
-    shown = demonstrations(4)
+    shown = four_motions()
     toggled = tuple(
         replace(one, extras={"observation.gripper_toggled": one.extras[GRIPPER_WIDTH] > 0.04})
         for one in shown.episodes
@@ -218,7 +223,7 @@ def test_a_model_that_learned_from_toggles_is_not_driven():
 
 def test_a_decoder_sees_what_the_gripper_was_told_and_an_earlier_one_what_it_measures():
     """What is held keeps the fingers apart; told to close they are the same for every thing."""
-    shown = demonstrations(4)
+    shown = four_motions()
     told = tuple(
         replace(
             one, extras={**one.extras, ACTION_GRIPPER: np.where(one.extras[GRIPPER_WIDTH] > 0.04, 0.08, 0.0)}

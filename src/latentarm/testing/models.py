@@ -1,7 +1,7 @@
 """Contract tests of latent action models."""
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -83,11 +83,13 @@ def demonstrations(samples: int = 80) -> Demonstrations:
     return Demonstrations(tuple(ring(rng, samples) for _ in range(12)), 20.0, names, objects=OBJECTS)
 
 
-def fit(model: LatentActionModel, shown: Demonstrations) -> LatentActionModel:
+def fit(
+    model: LatentActionModel, shown: Demonstrations, validation: Sequence[int] | None = None
+) -> LatentActionModel:
     """Fit a model to demonstrations of a known arm; warnings about collapsed dimensions are ignored."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CollapseWarning)
-        return model.fit(shown, chain=planar(JOINTS).chain)
+        return model.fit(shown, validation=validation, chain=planar(JOINTS).chain)
 
 
 @cache
@@ -210,9 +212,7 @@ class ModelContract:
             altered[index] = replace(altered[index], state=3.0 - 7.0 * altered[index].state[::-1])
         briefly: dict[str, Any] = {**SMALL, "epochs": 1}
         plain, changed = (
-            estimator(**briefly).fit(
-                replace(data, episodes=tuple(episodes)), validation=[0, 5], chain=planar(JOINTS).chain
-            )
+            fit(estimator(**briefly), replace(data, episodes=tuple(episodes)), validation=[0, 5])
             for episodes in (data.episodes, altered)
         )
         for tensor, values in plain.trained_.tensors.items():
