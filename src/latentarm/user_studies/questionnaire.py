@@ -65,3 +65,12 @@ def scale(name: str, label: str, agree: tuple[str, ...], disagree: tuple[str, ..
         UserError: there are too few items.
     """
     return Scale(name, label, (*map(Item, agree), *(Item(text, True) for text in disagree)))
+
+
+PREFER: Final = scale(
+    "prefer",
+    "Prefer",
+    ("I would use this control again.", "I liked this control."),
+    ("I would rather not use this control.", "I disliked this control."),
+)
+"""Asked alike wherever people compare controls."""

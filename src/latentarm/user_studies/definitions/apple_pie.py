@@ -6,7 +6,7 @@ from latentarm.user_studies.definition import Condition, Definition, StudyTask
 from latentarm.user_studies.definitions.harmonic import NO_INPUT
 from latentarm.user_studies.hypothesis import Claim, Hypothesis, above, below
 from latentarm.user_studies.printed import Printed
-from latentarm.user_studies.questionnaire import scale
+from latentarm.user_studies.questionnaire import PREFER, scale
 
 DIRECT: Final = "End-Effector"
 LATENT: Final = "cVAE"
@@ -42,12 +42,7 @@ SCALES: Final = (
         ("I could place the tool exactly.", "Small corrections worked at once."),
         ("I kept missing the place that I wanted.", "Pouring exactly was out of my control."),
     ),
-    scale(
-        "prefer",
-        "Prefer",
-        ("I would use this control again.", "I liked this control."),
-        ("I would rather not use this control.", "I disliked this control."),
-    ),
+    PREFER,
 )
 
 DEFINITION: Final = Definition(

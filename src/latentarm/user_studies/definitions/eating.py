@@ -6,7 +6,7 @@ from latentarm.user_studies.definition import Condition, Definition, Factor, Stu
 from latentarm.user_studies.definitions.harmonic import NO_INPUT
 from latentarm.user_studies.hypothesis import Claim, Hypothesis, above, below
 from latentarm.user_studies.printed import Printed
-from latentarm.user_studies.questionnaire import scale
+from latentarm.user_studies.questionnaire import PREFER, scale
 
 R, R_SA, LA, LA_SA = "R", "R+SA", "LA", "LA+SA"
 HELPED: Final = (R_SA, LA_SA)
@@ -66,12 +66,7 @@ SCALES: Final = (
         ("I knew at once what the stick would do.", "The control felt obvious."),
         ("I had to think about what the stick would do.", "The control confused me."),
     ),
-    scale(
-        "prefer",
-        "Prefer",
-        ("I would use this control again.", "I liked this control."),
-        ("I would rather not use this control.", "I disliked this control."),
-    ),
+    PREFER,
 )
 
 DEFINITION: Final = Definition(

@@ -176,7 +176,7 @@ class ArmState(Message):
         help: how much the robot helps with learned motions; None where it cannot.
         profile: whose alignment.
         tool: the tool's position, m.
-        gripper: as it was last read; None where there is none, or before it was read.
+        gripper: as it was last read; None if the arm has no gripper, or before the first reading.
         task: how far it has come.
         things: where they are; None in an empty scene, and where they are not told again.
         ghosts: where each direction would take the tool now; a `State` has None while the last ones hold.
