@@ -99,7 +99,14 @@ def test_the_protocols_are_those_of_the_paper() -> None:
     assert all(task.demonstrations_min < 7 for task in DEFINITIONS["apple_pie"].tasks)
     assert sum(task.demonstrations_min for task in DEFINITIONS["eating"].tasks) == 20
     assert DEFINITIONS["eating"].condition("LA+SA").context == ("joints", "belief")
-    assert [condition.weight for condition in DEFINITIONS["harmonic"].conditions] == [0, 1 / 3, 2 / 3, 1, 0]
+    assert [condition.weight for condition in DEFINITIONS["harmonic"].conditions] == [
+        0,
+        1 / 3,
+        2 / 3,
+        1,
+        0,
+        0,
+    ]
     assert DEFINITIONS["case_study"].orders == (("End-Effector", "LA+SA"), ("LA+SA", "End-Effector"))
 
 

@@ -19,6 +19,9 @@ latent actions."""
 Assists = Literal["none", "interpolation", "blending"]
 """Nobody; HARMONIC's interpolation with a fixed weight; Algorithm 1 of the paper (equations 2 and 3)."""
 
+Design = Literal["within", "between"]
+"""Each person meets every condition, in an order of their own; or one condition alone."""
+
 Aligns = Literal["none", "no_priors", "all_priors"]
 """z = u; the paper's network f learned from answers alone; and with its three priors."""
 
@@ -122,7 +125,7 @@ class Definition:
         about: what is asked, in a sentence.
         people: how many go through it.
         papers_people: who went through the paper's, in words.
-        conditions: in the order of tables; each person has all of them.
+        conditions: in the order of tables.
         tasks: in the order in which people do them.
         orders: of the conditions, person by person, repeated as needed; a seeded Williams design where empty.
         practice_min: minutes of practice at most.
@@ -135,6 +138,7 @@ class Definition:
         factors: two of a 2 x 2 design, or none.
         printed: statistics of the paper.
         departures: where this definition differs from what the paper did, each a sentence.
+        design: whether a person meets all conditions or one.
 
     Raises:
         UserError: a claim or an order names what the study does not have.
@@ -159,6 +163,7 @@ class Definition:
     factors: tuple[Factor, ...]
     printed: tuple[Printed, ...]
     departures: tuple[str, ...]
+    design: Design = "within"
 
     def __post_init__(self) -> None:
         names = {condition.name for condition in self.conditions}

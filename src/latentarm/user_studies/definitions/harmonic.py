@@ -35,6 +35,7 @@ DEFINITION: Final = Definition(
         Condition(
             LATENT, "one latent action per axis of the stick, no assistance", "latent", "cvae", ("joints",)
         ),
+        Condition("R", "the stick retargeted to the 6-DoF twist of the end-effector", "retargeting"),
     ),
     tasks=(
         StudyTask(
@@ -83,7 +84,9 @@ DEFINITION: Final = Definition(
     departures=(
         "The paper compares two groups of people: its own ten with cVAE, and HARMONIC's 24 with the other"
         " four"
-        " conditions. Here the same people have all five conditions.",
+        " conditions. Here the same people have all conditions.",
+        "Retargeting (R, of section 9.3) is a condition here, so that the same people drive with every level"
+        " of help, with retargeting and with latent actions. No hypothesis is about it.",
         "The paper says that High Assist gives assistance twice the weight of the person. The weights 0,"
         " 1/3 and 1"
         " of the other levels are read from that.",
@@ -93,6 +96,5 @@ DEFINITION: Final = Definition(
         "The paper's trials end when the person says that the fork is above the marshmallow. Here they"
         " end when it"
         " is, and fail after the task's limit; the fork is over the right marshmallow or the trial goes on.",
-        "Five conditions are balanced over ten orders: with twelve people two orders occur twice.",
     ),
 )
