@@ -4,7 +4,9 @@ import inspect
 from collections.abc import Callable
 from typing import Final, Protocol, cast
 
+from latentarm.arms.address import is_address
 from latentarm.arms.contract import Arm, SceneArm
+from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.errors import UserError
 from latentarm.plugins import Catalogue
 from latentarm.robots.robot import Robot
@@ -67,15 +69,17 @@ def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], flo
     """An arm of the catalogue; it is not connected yet.
 
     Args:
-        name: a name in `ARMS`.
+        name: a name in `ARMS`, or the address of a real arm.
         robot: whose joints these are.
-        state: (n,), where a simulated arm starts, rad.
+        state: (n,), where a simulated arm starts, rad; a real arm is where it is.
         now_s: the clock that readings are timed by, s; never goes back. A simulated arm moves as it goes on.
 
     Raises:
         UserError: there is no such arm, it does not load, it cannot be made for this robot, or it is not an
         arm.
     """
+    if is_address(name):
+        return make_real_arm(name, robot, now_s)
     return _checked(name, ARMS.find(name, "--arm")(robot, state, now_s))
 
 

@@ -1,0 +1,68 @@
+"""Where a real arm is: ``SCHEME://HOST[:PORT][?option=value&...]``."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, final
+from urllib.parse import parse_qsl, urlsplit
+
+from latentarm.errors import UserError
+
+MARK: Final = "://"
+"""What tells the address of a real arm from the name of a simulated one."""
+
+
+@final
+@dataclass(frozen=True)
+class ArmAddress:
+    """The address of a real arm.
+
+    Attributes:
+        scheme: the driver, a name of `latentarm.arms.real_catalogue.REAL_ARMS`.
+        host: a host name, an IP address, or a path where the driver wants one.
+        port: None for the driver's usual one.
+        options: of the driver, by name.
+    """
+
+    scheme: str
+    host: str
+    port: int | None
+    options: Mapping[str, str]
+
+    def only(self, *names: str) -> Mapping[str, str]:
+        """The options, none of which is unknown.
+
+        Args:
+            names: that the driver knows.
+
+        Raises:
+            UserError: there is another one.
+        """
+        unknown = sorted(set(self.options) - set(names))
+        if unknown:
+            known = ", ".join(names) or "no options"
+            raise UserError(f"--arm {self.scheme} does not know the option {unknown[0]}: it takes {known}.")
+        return self.options
+
+
+def is_address(name: str) -> bool:
+    """Whether ``--arm`` names a real arm."""
+    return MARK in name
+
+
+def parse_address(text: str) -> ArmAddress:
+    """Read an address.
+
+    Raises:
+        UserError: it is not one.
+    """
+    try:
+        parts = urlsplit(text)
+        host, port = parts.hostname or parts.path, parts.port
+        options = parse_qsl(parts.query, keep_blank_values=True, strict_parsing=bool(parts.query))
+    except ValueError as error:
+        raise UserError(f"--arm {text} is not an address ({error}): write SCHEME://HOST:PORT.") from error
+    if not parts.scheme or not host or parts.username is not None or parts.fragment:
+        raise UserError(f"--arm {text} is not an address: write SCHEME://HOST, such as franka://172.16.0.2.")
+    if len(dict(options)) < len(options):
+        raise UserError(f"--arm {text} gives an option twice.")
+    return ArmAddress(parts.scheme, host, port, dict(options))

@@ -1,0 +1,59 @@
+"""The real arms by the scheme of their address: ours, and those that other distributions register."""
+
+from collections.abc import Callable
+from typing import Final, Protocol, cast
+
+from latentarm.arms.address import ArmAddress, parse_address
+from latentarm.arms.real import RealArm
+from latentarm.errors import UserError
+from latentarm.plugins import Catalogue
+from latentarm.robots.robot import Robot
+
+
+class RealArmFactory(Protocol):
+    """What makes the driver of a real arm; its class does."""
+
+    def __call__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> RealArm:
+        """A driver that is not connected.
+
+        Args:
+            robot: what the arm is.
+            address: where it is.
+            now_s: the clock that readings are timed by, s; never goes back.
+
+        Raises:
+            UserError: an option of the address is unknown or out of range, or the manufacturer's library is
+                not installed.
+        """
+        ...
+
+
+def _factory(name: str, thing: object) -> RealArmFactory:
+    if not callable(thing):
+        raise TypeError(f"{thing!r} is not a class or function that makes the driver of an arm")
+    return cast(RealArmFactory, thing)
+
+
+REAL_ARMS: Final = Catalogue("latentarm.real_arms", "driver", {}, _factory)
+
+
+def make_real_arm(address: str, robot: Robot, now_s: Callable[[], float]) -> RealArm:
+    """The driver of a real arm; it is not connected yet.
+
+    Args:
+        address: such as ``franka://172.16.0.2``.
+        robot: what the arm is.
+        now_s: the clock that readings are timed by, s; never goes back.
+
+    Raises:
+        UserError: the address names no driver, or the driver cannot be made.
+    """
+    where = parse_address(address)
+    return _checked(address, REAL_ARMS.find(where.scheme, f"--arm {address}")(robot, where, now_s))
+
+
+def _checked(address: str, arm: object) -> RealArm:
+    """A plug-in may break the contract."""
+    if not isinstance(arm, RealArm):
+        raise UserError(f"--arm {address} made {type(arm).__name__}, not a latentarm.arms.real.RealArm.")
+    return arm
