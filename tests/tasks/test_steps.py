@@ -78,7 +78,26 @@ def test_a_step_that_is_not_done_after_its_last_waypoint_is_tried_again(wait_s):
     progress.update(now(1.0 + 0.9 * patience_s, 1.0))
     assert (progress.waypoint, progress.tries) == (last, 0)
     progress.update(now(1.0 + patience_s, 1.0))
-    assert (progress.waypoint, progress.waits, progress.tries) == (first, False, 1)
+    assert (progress.waits, progress.tries) == (False, 1)
+    assert progress.waypoint.pose is first.pose
+
+
+def test_people_come_closer_when_they_try_a_step_again():
+    there = point(0.0, wait_s=0.0)
+    progress = Progress([done_when_gripped("cup", there), done_when_gripped("lid", there)])
+    progress.update(now(0.0, 0.015))  # near enough at first, and the step is not done from there
+    progress.update(now(RETRY_S, 0.015))
+    assert (progress.careful, progress.waypoint.within_m) == (True, 0.01)
+    progress.update(now(2.0, 0.015))
+    assert not progress.waits, "no longer near enough"
+    progress.update(now(3.0, 0.009))
+    assert progress.waits
+    closer = progress.waypoint
+    progress.update(now(3.0 + RETRY_S, 0.009))
+    assert progress.waypoint is closer, "and no closer than that"
+    progress.update(now(5.0, 0.009, "cup"))
+    assert progress.waypoint is there
+    assert not progress.careful
 
 
 def test_a_wait_is_over_when_the_step_is_done():

@@ -15,7 +15,7 @@ from latentarm.user_studies.report import report
 from latentarm.user_studies.report.figures import figure_names
 from latentarm.user_studies.report.report import PAGE, PDF, report_files, write_report
 from latentarm.user_studies.run import Request, send_people
-from latentarm.user_studies.session import choices_of, together
+from latentarm.user_studies.session import choices_of, in_the_end, together
 from latentarm.user_studies.sizes import PRESETS, Sizes
 
 TINY = Sizes("tiny", trial_s=0.1, most_trials=1)
@@ -77,11 +77,25 @@ def test_figures_of_several_drives_are_sums_and_means() -> None:
         {"time_s": 10.0, "success_rate": 1.0, "steps_done": 1.0, "preference_alignment": 1.0},
         {"time_s": 30.0, "success_rate": 0.0, "steps_done": 0.5, "preference_alignment": 0.0},
     ]
-    assert together(drives, [10.0, 30.0]) == {
+    assert together(drives) == {
         "time_s": 40.0,
         "success_rate": 0.0,
         "steps_done": 0.75,
         "preference_alignment": 0.25,
+    }
+
+
+def test_figures_of_attempts_are_what_was_reached_in_the_end_and_what_it_took() -> None:
+    attempts = [
+        {"time_s": 30.0, "success_rate": 0.0, "steps_done": 0.5, "path_length": 2.0},
+        {"time_s": 10.0, "success_rate": 1.0, "steps_done": 1.0, "path_length": 1.0},
+    ]
+    assert in_the_end(attempts) == {
+        "attempts": 2.0,
+        "time_s": 40.0,
+        "success_rate": 1.0,
+        "steps_done": 1.0,
+        "path_length": 3.0,
     }
 
 

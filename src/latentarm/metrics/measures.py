@@ -248,6 +248,7 @@ MEASURES: Final[dict[str, Measure]] = {
     "input_magnitude": Measure(
         "s", "input magnitude", "lower", "integral of ‖u‖ over time, seconds of full deflection of one axis"
     ),
+    "attempts": Measure("1", "attempts", "lower", "how often a task was begun in a trial"),
     "mode_switches": Measure("1", "mode switches", "lower", "how often the controller's mode changed"),
     "stops": Measure("1", "stops", "lower", "how often the arm was stopped and had to be enabled again"),
     "path_length": Measure("m", "path length", "lower", "length of the tool's path"),

@@ -308,7 +308,8 @@ class _Watch:
 
     def _stuck(self, waypoint: Waypoint, state: SceneState) -> bool:
         missed = waypoint.missed_by(state)
-        if waypoint is not self._waypoint or missed < self._nearest - NEARER or self.progress.waits:
+        waits = self.progress.waits and not self.progress.careful
+        if waypoint is not self._waypoint or missed < self._nearest - NEARER or waits:
             self._waypoint, self._nearest, self._nearer_s = waypoint, missed, state.time_s
         return state.time_s - self._nearer_s > STUCK_S
 

@@ -1,7 +1,7 @@
 """A task with things as steps that tick off one after the other."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal, final
 
 import numpy as np
@@ -66,6 +66,10 @@ class Waypoint:
         pose = self.pose(state)
         return max(self._distance(state, pose), self._turn(state, pose))
 
+    def closer(self, share: float) -> "Waypoint":
+        """The same with a share of its tolerances, in (0, 1]."""
+        return replace(self, within_m=share * self.within_m, within_rad=share * self.within_rad)
+
     def _distance(self, state: SceneState, pose: Pose) -> float:
         """From the tool to a pose, in `within_m`."""
         return float(np.linalg.norm(state.tool.position - pose.position)) / self.within_m
@@ -85,7 +89,8 @@ class TaskStep:
         thing: name of the thing that it is done to, or where it is done.
         name: both in words.
         done: whether it has been done.
-        waypoints: how a person does it; tried again from the first if it is not done after the last.
+        waypoints: how a person does it; tried again from the first, with more care, if it is not done after
+            the last.
         holds: name of what must be in the hand or on the fork until it is done, which an earlier step took;
             None for nothing.
     """
@@ -101,6 +106,9 @@ class TaskStep:
 RETRY_S: Final = 1.0
 """A step that is not done so long after its last waypoint is tried again, s."""
 
+CAREFUL: Final = 0.5
+"""Share of a waypoint's tolerances that counts once a step is tried again."""
+
 
 @final
 class Progress:
@@ -115,8 +123,10 @@ class Progress:
         self._steps = tuple(steps)
         self._failures = tuple(failures)
         self._done = self._waypoint = self._tries = 0
+        self._careful = False
         self._arrived_s: float | None = None
         self._failure: Mishap | None = None
+        self._at = self._next()
 
     @property
     def steps(self) -> tuple[TaskStep, ...]:
@@ -151,13 +161,17 @@ class Progress:
     @property
     def waypoint(self) -> Waypoint | None:
         """Where the tool is to go now; None where nothing is left to do."""
-        step = self.step
-        return None if step is None else step.waypoints[self._waypoint]
+        return self._at
 
     @property
     def tries(self) -> int:
         """How often a step was tried again."""
         return self._tries
+
+    @property
+    def careful(self) -> bool:
+        """Whether the step is being tried again."""
+        return self._careful
 
     @property
     def asks(self) -> GripperAsk | None:
@@ -180,10 +194,11 @@ class Progress:
             self._failure = next((found for fails in self._failures if (found := fails(state))), None)
         while (step := self.step) is not None and step.done(state):
             self._done += 1
-            self._waypoint, self._arrived_s = 0, None
-        if step is None:
+            self._waypoint, self._careful, self._arrived_s = 0, False, None
+            self._at = self._next()
+        if step is None or self._at is None:
             return
-        waypoint = step.waypoints[self._waypoint]
+        waypoint = self._at
         if self._arrived_s is None:
             if not waypoint.reached(state):
                 return
@@ -192,5 +207,15 @@ class Progress:
         if state.time_s - self._arrived_s < (max(waypoint.wait_s, RETRY_S) if last else waypoint.wait_s):
             return
         self._arrived_s = None
+        before = self._waypoint, self._careful
         self._waypoint = 0 if last else self._waypoint + 1
         self._tries += last
+        self._careful = self._careful or last
+        if (self._waypoint, self._careful) != before:
+            self._at = self._next()
+
+    def _next(self) -> Waypoint | None:
+        if self.step is None:
+            return None
+        waypoint = self.step.waypoints[self._waypoint]
+        return waypoint.closer(CAREFUL) if self._careful else waypoint

@@ -83,6 +83,9 @@ class StudyTask:
         queries: motions that people are asked about before it, where a condition aligns.
         demonstrations_min: minutes of demonstrations from which its model learns.
         trained_with: name of the task whose model it shares; its own where empty.
+        trial_s: how long people have for a trial, or for each choice where `all_choices` is set, s: after a
+            failure everything is set up anew and they begin again, until then. 0 is one attempt, with the
+            time limit of the scene's task.
     """
 
     name: str
@@ -95,6 +98,7 @@ class StudyTask:
     queries: int = 0
     demonstrations_min: float = 0.0
     trained_with: str = ""
+    trial_s: float = 0.0
 
 
 @final

@@ -12,6 +12,7 @@ from latentarm.operators.person import Person
 from latentarm.operators.traits import Traits
 from latentarm.simulation.task_drive import TaskTrace, drive_task
 from latentarm.studies.streams import generator
+from latentarm.tasks.scene_task import SceneTask
 from latentarm.user_studies.conditions import setup_of
 from latentarm.user_studies.definition import Condition, Definition, StudyTask
 from latentarm.user_studies.limited_time import LimitedTime
@@ -21,7 +22,11 @@ from latentarm.user_studies.sizes import Sizes, Stream
 from latentarm.user_studies.trace import Trace, trace_of
 from latentarm.user_studies.training import Trained
 
+LEAST_S: Final = 1.0
+"""People begin no attempt for which less time than this is left, s."""
+
 SUMMED: Final = (
+    "attempts",
     "time_s",
     "idle_s",
     "input_magnitude",
@@ -77,8 +82,8 @@ class Session:
 def go_through(cell: SessionCell) -> Session:
     """Let the person do all trials of the task.
 
-    A trial's scene, start and chances depend on the seed, the person, the task and its number alone: they
-    are the same in every condition.
+    The scene, start and chances of an attempt depend on the seed, the person, the task and the numbers of
+    trial and attempt alone: they are the same in every condition.
 
     Raises:
         UserError: the arm cannot be used, or a model does not fit it.
@@ -88,13 +93,17 @@ def go_through(cell: SessionCell) -> Session:
     with threadpool_limits(limits=1):
         for number in range(min(cell.task.trials, cell.sizes.most_trials)):
             driven = [
-                _drive(cell, number, choice) for choice in choices_of(cell.task, cell.traits.number, number)
+                _attempts(cell, number, choice)
+                for choice in choices_of(cell.task, cell.traits.number, number)
             ]
-            measured = [_measured(cell.task, trace) for trace in driven]
-            trials.append(_trial(cell, number, together(measured, [one["time_s"] for one in measured])))
+            measured = [
+                in_the_end([_measured(cell.task, attempt) for attempt in attempts]) for attempts in driven
+            ]
+            trials.append(_trial(cell, number, together(measured)))
             traces += [
-                trace_of(cell.traits.number, cell.condition.name, cell.task, number, trace)
-                for trace in driven
+                trace_of(cell.traits.number, cell.condition.name, cell.task, number, attempt)
+                for attempts in driven
+                for attempt in attempts
             ]
     return Session(tuple(trials), tuple(traces))
 
@@ -109,13 +118,23 @@ def choices_of(task: StudyTask, person: int, number: int) -> tuple[int, ...]:
     return (task.choices[(person + number) % len(task.choices)],)
 
 
-def together(measured: Sequence[dict[str, float]], time_s: Sequence[float]) -> dict[str, float]:
+def in_the_end(attempts: Sequence[dict[str, float]]) -> dict[str, float]:
+    """The figures of one or more attempts at the same: how far the person came in the end, and what it took.
+
+    Args:
+        attempts: figures of each, by name, in order.
+    """
+    best = {name: max(one[name] for one in attempts) for name in ("success_rate", "steps_done")}
+    return {**together(attempts), **best, "attempts": float(len(attempts))}
+
+
+def together(measured: Sequence[dict[str, float]]) -> dict[str, float]:
     """The figures of a trial of several drives.
 
     Args:
-        measured: figures of each drive, by name.
-        time_s: how long each took, s; means over time weigh by it.
+        measured: figures of each drive, by name; means over time weigh by its duration.
     """
+    time_s = [one["time_s"] for one in measured]
     found: dict[str, float] = {}
     for name in measured[0]:
         values = np.array([one[name] for one in measured])
@@ -130,10 +149,22 @@ def together(measured: Sequence[dict[str, float]], time_s: Sequence[float]) -> d
     return found
 
 
-def _drive(cell: SessionCell, number: int, choice: int) -> TaskTrace:
-    task = LimitedTime(scene_of(cell.task.scene), cell.sizes.trial_s)
+def _attempts(cell: SessionCell, number: int, choice: int) -> list[TaskTrace]:
+    """One drive, and where the trial's time allows it another one after each that failed."""
+    scene = scene_of(cell.task.scene)
+    left_s = min(cell.task.trial_s or scene.time_limit_s, cell.sizes.trial_s)
+    driven = [_drive(cell, LimitedTime(scene, left_s), number, choice, 0)]
+    while cell.task.trial_s and not driven[-1].figures.success:
+        left_s -= driven[-1].figures.time_s
+        if left_s < LEAST_S:
+            break
+        driven.append(_drive(cell, LimitedTime(scene, left_s), number, choice, len(driven)))
+    return driven
+
+
+def _drive(cell: SessionCell, task: SceneTask, number: int, choice: int, attempt: int) -> TaskTrace:
     setup = setup_of(cell.condition, task, _person(cell, number), cell.trained, cell.traits.number)
-    use = (Stream.TRIALS, cell.traits.number, number)
+    use = (Stream.TRIALS, cell.traits.number, number, attempt)
     return drive_task(setup, choice, generator(cell.seed, f"{cell.definition.name} {cell.task.name}", *use))
 
 

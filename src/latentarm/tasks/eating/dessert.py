@@ -155,13 +155,14 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
     )
     centre = np.array([*OWN_M, STAND_M + MARSHMALLOW_HALF_M])
     laid = Placed(MARSHMALLOW, centre, np.array([0.8 * SMALL_M, 0.8 * SMALL_M, 0.015]), let_go=False)
+    iced = CarriedOver(MARSHMALLOW, "icing", ICING_RADIUS_M)
     swept = Swept(MARSHMALLOW, "icing", WET, SWEEP_M)
     with_it = partial(TaskStep, holds=MARSHMALLOW)
     dipped = Interior(rice.radius_m, rice.bottom_m, rice.bottom_m + 0.025)
     return (
         above(MARSHMALLOW),
         stab(MARSHMALLOW),
-        with_it("above", "icing", "over the icing", CarriedOver(MARSHMALLOW, "icing", 0.05), through[:1]),
+        with_it("above", "icing", "over the icing", iced, through[:1]),
         with_it("scooped", "icing", "drawn through the icing", swept, through),
         with_it("above", "rice bowl", "over the rice", CarriedOver(MARSHMALLOW, "rice bowl", 0.03), into[:1]),
         with_it("dipped", "rice bowl", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),

@@ -3,7 +3,7 @@
 from typing import Final
 
 from latentarm.user_studies.definition import Aligns, Condition, Definition, StudyTask
-from latentarm.user_studies.definitions.harmonic import NO_INPUT
+from latentarm.user_studies.definitions.shared import AGAIN, NO_INPUT
 from latentarm.user_studies.hypothesis import Hypothesis, below
 from latentarm.user_studies.printed import Printed
 from latentarm.user_studies.questionnaire import Scale, scale
@@ -15,6 +15,9 @@ QUERIES: Final = {"avoid": 7, "pour": 10, "reach_and_pour": 30}
 """Motions that people are asked about before each task."""
 
 LABELS: Final = {"avoid": "Avoid", "pour": "Pour", "reach_and_pour": "Reach & Pour"}
+
+
+TRIAL_S: Final = 180.0
 
 
 def _condition(name: str, about: str, aligns: Aligns) -> Condition:
@@ -40,14 +43,23 @@ DEFINITION: Final = Definition(
         ),
     ),
     tasks=tuple(
-        StudyTask(name, LABELS[name], name, trials=1, choices=(0,), queries=queries, demonstrations_min=7.0)
+        StudyTask(
+            name,
+            LABELS[name],
+            name,
+            trials=1,
+            choices=(0,),
+            queries=queries,
+            demonstrations_min=7.0,
+            trial_s=TRIAL_S,
+        )
         for name, queries in QUERIES.items()
     ),
     orders=(),
     practice_min=0.0,
     practice="none is stated; people answer the questions before each task",
     input="one stick with two axes",
-    measures=("success_rate", "steps_done", *MEASURED, "input_magnitude", "idle_s"),
+    measures=("success_rate", "attempts", "steps_done", *MEASURED, "input_magnitude", "idle_s"),
     questionnaire=(
         _scale(
             "aligned",
@@ -111,6 +123,7 @@ DEFINITION: Final = Definition(
         for other in BASELINES
     ),
     departures=(
+        AGAIN,
         "The paper does not say from how much its models learned: here 7 minutes of demonstrations of"
         " each task.",
         "The paper's text says that All Priors outperforms both baselines across tasks and measures, and"

@@ -3,13 +3,15 @@
 from typing import Final
 
 from latentarm.user_studies.definition import Condition, Definition, StudyTask
-from latentarm.user_studies.definitions.harmonic import NO_INPUT
+from latentarm.user_studies.definitions.shared import AGAIN, NO_INPUT
 from latentarm.user_studies.hypothesis import Claim, Hypothesis, above, below
 from latentarm.user_studies.printed import Printed
 from latentarm.user_studies.questionnaire import PREFER, scale
 
 DIRECT: Final = "End-Effector"
 LATENT: Final = "cVAE"
+
+PART_S: Final = 240.0
 
 SCALES: Final = (
     scale(
@@ -61,9 +63,24 @@ DEFINITION: Final = Definition(
         Condition(LATENT, "one stick, one latent action per axis", "latent", "cvae", ("joints", "gripper")),
     ),
     tasks=(
-        StudyTask("parts", "Parts", "apple_pie", trials=3, choices=(0, 1, 2), demonstrations_min=6.9),
         StudyTask(
-            "whole", "Whole", "apple_pie", trials=1, choices=(0, 1, 2), all_choices=True, trained_with="parts"
+            "parts",
+            "Parts",
+            "apple_pie",
+            trials=3,
+            choices=(0, 1, 2),
+            demonstrations_min=6.9,
+            trial_s=PART_S,
+        ),
+        StudyTask(
+            "whole",
+            "Whole",
+            "apple_pie",
+            trials=1,
+            choices=(0, 1, 2),
+            all_choices=True,
+            trained_with="parts",
+            trial_s=PART_S,
         ),
     ),
     orders=(),
@@ -72,6 +89,7 @@ DEFINITION: Final = Definition(
     input="two sticks with two axes each, or one of them",
     measures=(
         "success_rate",
+        "attempts",
         "steps_done",
         "time_s",
         "input_magnitude",
@@ -129,6 +147,7 @@ DEFINITION: Final = Definition(
         Printed("paired t", "prefer", (LATENT,), (DIRECT,), "not significant", None, False),
     ),
     departures=(
+        AGAIN,
         "The arm goes back to its home between the three parts, in the whole recipe too: the whole is the"
         " three parts"
         " in one arrangement, their figures summed. The paper's whole has no breaks.",

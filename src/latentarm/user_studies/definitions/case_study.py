@@ -5,11 +5,14 @@ from typing import Final
 
 from latentarm.user_studies.definition import Condition, Definition
 from latentarm.user_studies.definitions.eating import DESSERT, ENTREE, LA_SA, LATENT_HELPED
-from latentarm.user_studies.definitions.harmonic import NO_INPUT
+from latentarm.user_studies.definitions.shared import AGAIN, NO_INPUT
 from latentarm.user_studies.hypothesis import Hypothesis, below
 from latentarm.user_studies.printed import Printed
 
 DIRECT: Final = "End-Effector"
+
+TRIAL_S: Final = 360.0
+"""More than five minutes, which the paper's people took over the Dessert with End-Effector, s."""
 
 DEFINITION: Final = Definition(
     name="case_study",
@@ -24,13 +27,14 @@ DEFINITION: Final = Definition(
         Condition(DIRECT, "two sticks, one for linear and one for angular motion", "two_sticks"),
         LATENT_HELPED,
     ),
-    tasks=(replace(DESSERT, demonstrations_min=10.0), replace(ENTREE, demonstrations_min=10.0)),
+    tasks=(replace(DESSERT, trial_s=TRIAL_S), replace(ENTREE, trial_s=TRIAL_S)),
     orders=((DIRECT, LA_SA), (LA_SA, DIRECT)),
     practice_min=5.0,
     practice="before each condition",
     input="a virtual stick on a page, drawn over a grid, next to two live views of the arm",
     measures=(
         "success_rate",
+        "attempts",
         "steps_done",
         "time_s",
         "idle_s",
@@ -64,6 +68,7 @@ DEFINITION: Final = Definition(
         ),
     ),
     departures=(
+        AGAIN,
         "The help of LA+SA is that of Algorithm 1, as in section 9.3 here.",
         "The paper's two people are described one by one and nothing is tested. Twelve simulated people"
         " take turns"

@@ -3,7 +3,7 @@
 from typing import Final
 
 from latentarm.user_studies.definition import Condition, Definition, Factor, StudyTask
-from latentarm.user_studies.definitions.harmonic import NO_INPUT
+from latentarm.user_studies.definitions.shared import AGAIN, NO_INPUT
 from latentarm.user_studies.hypothesis import Claim, Hypothesis, above, below
 from latentarm.user_studies.printed import Printed
 from latentarm.user_studies.questionnaire import PREFER, scale
@@ -13,6 +13,8 @@ HELPED: Final = (R_SA, LA_SA)
 UNHELPED: Final = (R, LA)
 OTHERS: Final = (R, R_SA, LA)
 
+TRIAL_S: Final = 240.0
+
 ENTREE: Final = StudyTask(
     "entree",
     "Entree",
@@ -21,6 +23,7 @@ ENTREE: Final = StudyTask(
     choices=(0,),
     plates=("dish", "own plate"),
     demonstrations_min=10.0,
+    trial_s=TRIAL_S,
 )
 DESSERT: Final = StudyTask(
     "dessert",
@@ -30,6 +33,7 @@ DESSERT: Final = StudyTask(
     choices=(0,),
     plates=("plate", "icing", "rice bowl", "own plate"),
     demonstrations_min=10.0,
+    trial_s=TRIAL_S,
 )
 
 LATENT_HELPED: Final = Condition(
@@ -89,6 +93,7 @@ DEFINITION: Final = Definition(
     input="one stick with two axes",
     measures=(
         "success_rate",
+        "attempts",
         "steps_done",
         "time_s",
         "idle_s",
@@ -136,6 +141,7 @@ DEFINITION: Final = Definition(
         ),
     ),
     departures=(
+        AGAIN,
         "The paper's shared autonomy is that of Javdani et al. (2018), whose goals are over the plates: it"
         " pulls the fork back up while a person stabs. Here both SA conditions have the help of Algorithm 1:"
         " equations 2 and 3, with an alpha of 0.15 that fades as the stick is let go.",

@@ -3,14 +3,12 @@
 from typing import Final
 
 from latentarm.user_studies.definition import Condition, Definition, StudyTask
-from latentarm.user_studies.exclusion import Exclusion
+from latentarm.user_studies.definitions.shared import NO_INPUT
 from latentarm.user_studies.hypothesis import Hypothesis, above, below
 from latentarm.user_studies.printed import Printed
 
 ASSISTED: Final = ("No Assist", "Low Assist", "High Assist", "Full Assist")
 LATENT: Final = "cVAE"
-
-NO_INPUT: Final = Exclusion("input_magnitude", "less", 0.05, "the stick was hardly touched")
 
 
 def _assisted(name: str, weight: float, share: str) -> Condition:

@@ -42,6 +42,11 @@ def task_words(task: StudyTask) -> str:
     parts = [f"{task.label}: {trials}"]
     if task.all_choices:
         parts.append("each of all parts one after the other, their figures summed")
+    if task.trial_s:
+        parts.append(
+            f"after a failure everything is set up anew and people begin again, for {task.trial_s:g} s"
+            f" {'per part' if task.all_choices else 'in all'}"
+        )
     if task.queries:
         parts.append(f"{task.queries} alignment queries before it")
     if task.demonstrations_min:
