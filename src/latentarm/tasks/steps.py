@@ -34,6 +34,14 @@ Failure = Callable[[SceneState], Mishap | None]
 """What has gone wrong for good, or None."""
 
 
+CAREFUL: Final = 0.5
+"""Share of a waypoint's tolerances that counts once a step is tried again."""
+
+FINE_M: Final = 0.01
+FINE_RAD: Final = float(np.deg2rad(7.5))
+"""Tolerances that are no larger stay as they are: what was missed there is not for want of care."""
+
+
 @final
 @dataclass(frozen=True, eq=False)
 class Waypoint:
@@ -66,9 +74,13 @@ class Waypoint:
         pose = self.pose(state)
         return max(self._distance(state, pose), self._turn(state, pose))
 
-    def closer(self, share: float) -> "Waypoint":
-        """The same with a share of its tolerances, in (0, 1]."""
-        return replace(self, within_m=share * self.within_m, within_rad=share * self.within_rad)
+    def closer(self) -> "Waypoint":
+        """The same with smaller tolerances, for another try."""
+        return replace(
+            self,
+            within_m=min(self.within_m, max(CAREFUL * self.within_m, FINE_M)),
+            within_rad=min(self.within_rad, max(CAREFUL * self.within_rad, FINE_RAD)),
+        )
 
     def _distance(self, state: SceneState, pose: Pose) -> float:
         """From the tool to a pose, in `within_m`."""
@@ -105,9 +117,6 @@ class TaskStep:
 
 RETRY_S: Final = 1.0
 """A step that is not done so long after its last waypoint is tried again, s."""
-
-CAREFUL: Final = 0.5
-"""Share of a waypoint's tolerances that counts once a step is tried again."""
 
 
 @final
@@ -218,4 +227,4 @@ class Progress:
         if self.step is None:
             return None
         waypoint = self.step.waypoints[self._waypoint]
-        return waypoint.closer(CAREFUL) if self._careful else waypoint
+        return waypoint.closer() if self._careful else waypoint
