@@ -4,7 +4,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from latentarm.controllers.end_effector import TWO_STICKS, EndEffectorController
+from latentarm.controllers.axis_modes import TWO_STICKS
+from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
 from latentarm.controllers.retargeting import RetargetingController
 from latentarm.robots.catalogue import load_robot

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from latentarm.controllers.end_effector import TWO_STICKS, AxisModes, EndEffectorController
+from latentarm.controllers.axis_modes import TWO_STICKS, AxisModes
+from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.retargeting import RetargetingController, RetargetingCosts
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot

@@ -10,7 +10,8 @@ from latentarm.assistance.catalogue import BELIEFS, published_assistance, publis
 from latentarm.assistance.goal_blending import blending
 from latentarm.commands.drive_options import MODE_SWITCHED, DriveOptions
 from latentarm.control.controller import Controller
-from latentarm.controllers.end_effector import TWO_STICKS, EndEffectorController
+from latentarm.controllers.axis_modes import TWO_STICKS
+from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import latent_controller
 from latentarm.controllers.retargeting import RetargetingController
 from latentarm.errors import UserError

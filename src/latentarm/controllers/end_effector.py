@@ -1,12 +1,10 @@
-"""Today's way: a few axes of the end-effector at a time, and a button that switches which."""
+"""Today's way: mode-switched control of the end-effector, by resolved rates."""
 
-from dataclasses import dataclass
-from typing import Final, final
+from typing import final
 
 import numpy as np
 
-from latentarm.control.controller import Controller
-from latentarm.errors import UserError
+from latentarm.controllers.axis_modes import PAIRS, AxisController, AxisModes
 from latentarm.kinematics.resolved_rates import Damping, joint_velocities
 from latentarm.models.enclosure import linear_enclosure
 from latentarm.robots.robot import Robot
@@ -14,58 +12,7 @@ from latentarm.types import Context, FloatArray
 
 
 @final
-@dataclass(frozen=True)
-class AxisModes:
-    """Which axes of the end-effector the person's inputs drive in each mode.
-
-    Attributes:
-        names: of the modes.
-        axes: for each mode, the row of the twist (x, y, z, roll, pitch, yaw) that each of the d input axes
-            drives.
-
-    Raises:
-        UserError: there is no mode, modes have different numbers of axes, or a row is not one of the six.
-    """
-
-    names: tuple[str, ...]
-    axes: tuple[tuple[int, ...], ...]
-
-    def __post_init__(self) -> None:
-        if not self.axes or len(self.names) != len(self.axes) or len({len(one) for one in self.axes}) != 1:
-            raise UserError("End-effector control needs modes, each with a name and the same number of axes.")
-        if not self.axes[0] or not {row for one in self.axes for row in one} <= set(range(6)):
-            raise UserError("A mode's axes are rows of the twist, 0 to 5.")
-
-    def twists(self, mode: int, scale: FloatArray, rotation: FloatArray) -> FloatArray:
-        """What a full input along each axis asks of the tool.
-
-        Args:
-            mode: index into `names`.
-            scale: (6,), speed along and about each axis, m/s and rad/s.
-            rotation: (..., 3, 3), of the tool.
-
-        Returns:
-            (..., d, 6), m/s and rad/s, in the base frame; turns are asked for in the tool's.
-        """
-        rows = self.axes[mode]
-        directions = np.zeros((len(rows), 6))
-        for direction, row in zip(directions, rows, strict=True):
-            direction[row] = scale[row]
-        turns = directions[:, 3:] @ rotation.mT
-        shifts = np.broadcast_to(directions[:, :3], turns.shape)
-        return np.concatenate([shifts, turns], axis=-1)
-
-
-PAIRS: Final = AxisModes(("x-y", "z-yaw", "roll-pitch"), ((0, 1), (2, 5), (3, 4)))
-"""One stick of two axes and three modes, those of HARMONIC (Newman et al.): the paper's first study."""
-
-TWO_STICKS: Final = AxisModes(("linear", "angular"), ((0, 1, 2), (3, 4, 5)))
-"""A stick of two axes, another of one, and a button that toggles between linear and angular motion: the
-paper's End-Effector (section 9.2)."""
-
-
-@final
-class EndEffectorController(Controller):
+class EndEffectorController(AxisController):
     """Mode-switched control of the tool.
 
     Translations are along the axes of the base frame. Turns are about the axes of the tool frame
@@ -91,34 +38,12 @@ class EndEffectorController(Controller):
         damping: Damping | None = None,
         modes: AxisModes = PAIRS,
     ) -> None:
-        for name, value in (("linear_speed", linear_speed), ("angular_speed", angular_speed)):
-            if not 0 < value < np.inf:
-                raise UserError(f"The end-effector's {name} must be positive and finite, not {value}.")
-        self._chain = robot.chain
+        super().__init__(robot, linear_speed, angular_speed, modes)
         self._damping = damping or Damping()
-        self._scale = np.array([linear_speed] * 3 + [angular_speed] * 3)
-        self._modes = modes
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        """Names of the groups of axes."""
-        return self._modes.names
-
-    @property
-    def input_dim(self) -> int:
-        """As many axes as a mode has."""
-        return len(self._modes.axes[0])
-
-    def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        """The input as it is: there is nothing to align."""
-        return u
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
         """Joint velocities that move the tool along the mode's axes, (..., n), rad/s."""
-        transforms = self._chain.link_transforms(context.state)
-        pose = self._chain.tool_pose(transforms)
-        twists = self._modes.twists(mode, self._scale, pose.rotation)
-        jacobian = self._chain.jacobian_at(transforms, pose)
+        twists, jacobian = self._twists_and_jacobian(context.state, mode)
         return np.vecmat(z, joint_velocities(twists, jacobian, self._damping))
 
     def speed_bound(self, context: Context, mode: int) -> float:

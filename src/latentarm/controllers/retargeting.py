@@ -10,8 +10,7 @@ from typing import final
 
 import numpy as np
 
-from latentarm.control.controller import Controller
-from latentarm.controllers.end_effector import PAIRS, AxisModes
+from latentarm.controllers.axis_modes import PAIRS, AxisController, AxisModes
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray
@@ -46,7 +45,7 @@ class RetargetingCosts:
 
 
 @final
-class RetargetingController(Controller):
+class RetargetingController(AxisController):
     """The stick moves a target pose, and the arm follows it as well as its joints allow.
 
     The stick's offset is the target's twist: held for a moment, it carries the target on from where the
@@ -82,37 +81,17 @@ class RetargetingController(Controller):
         modes: AxisModes = PAIRS,
         costs: RetargetingCosts | None = None,
     ) -> None:
-        for name, value in (("linear_speed", linear_speed), ("angular_speed", angular_speed)):
-            if not 0 < value < np.inf:
-                raise UserError(f"Retargeting's {name} must be positive and finite, not {value}.")
-        self._chain = robot.chain
+        super().__init__(robot, linear_speed, angular_speed, modes)
         self._limits = robot.limits
-        self._scale = np.array([linear_speed] * 3 + [angular_speed] * 3)
-        self._modes = modes
         self._costs = costs or RetargetingCosts()
         self._weights = np.array([1.0] * 3 + [self._costs.rotation_m] * 3)
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        """Names of the groups of axes."""
-        return self._modes.names
-
-    @property
-    def input_dim(self) -> int:
-        """As many axes as a mode has."""
-        return len(self._modes.axes[0])
-
-    def latent(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
-        """The input as it is: there is nothing to align."""
-        return u
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
         """Joint velocities that follow the target best, (..., n), rad/s."""
         costs, state = self._costs, context.state
-        transforms = self._chain.link_transforms(state)
-        pose = self._chain.tool_pose(transforms)
-        twist = np.vecmat(z, self._modes.twists(mode, self._scale, pose.rotation))
-        matched = self._weights[:, None] * self._chain.jacobian_at(transforms, pose)
+        twists, jacobian = self._twists_and_jacobian(state, mode)
+        twist = np.vecmat(z, twists)
+        matched = self._weights[:, None] * jacobian
         wanted = np.vecmat(self._weights * twist, matched)
         normal = matched.mT @ matched + costs.effort * np.eye(state.shape[-1])
         first = np.linalg.solve(normal, wanted[..., None])[..., 0]

@@ -12,7 +12,8 @@ from latentarm.assistance.catalogue import published_belief
 from latentarm.assistance.goal_blending import blending
 from latentarm.assistance.interpolation import Interpolation
 from latentarm.control.controller import Controller
-from latentarm.controllers.end_effector import TWO_STICKS, EndEffectorController
+from latentarm.controllers.axis_modes import TWO_STICKS
+from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
 from latentarm.controllers.retargeting import RetargetingController
 from latentarm.operators.person import Person
