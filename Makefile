@@ -55,11 +55,11 @@ message-types: $(VENV)/installed-dev ## Write the types of the page's messages f
 test: check ## Everything that must hold, in minutes.
 	$(BIN)/node --test 'tests/web/js/*.test.js'
 	$(PYTEST) -m "not slow and not clock" $(PARALLEL)
-	$(PYTEST) -m "not slow and clock" tests/web
+	$(PYTEST) -m "not slow and clock" tests/arms tests/web
 
 test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of approaches.
 	$(PYTEST) -m "not clock and not browser" $(PARALLEL)
-	$(PYTEST) -m "clock or browser" tests/web
+	$(PYTEST) -m "clock or browser" tests/arms tests/web
 
 test-thorough: $(VENV)/installed-dev ## 10,000 Hypothesis examples for motion and geometry, 2,000 drives (hours; nightly).
 	$(BIN)/python -m pytest --hypothesis-profile=thorough tests/control tests/kinematics tests/robots

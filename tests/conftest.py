@@ -19,11 +19,16 @@ settings.load_profile("latentarm")
 LONGEST_FIRST = ("plugins", "studies", "models", "parallel", "cli", "docs", "simulation", "control")
 """Folders whose files take longest: a worker that begins one last would keep the others waiting."""
 
+REAL_TIME = ("arms", "web")
+"""Folders whose tests may be marked ``clock``: they run afterwards, with the whole machine."""
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
-        if item.get_closest_marker("clock") and HERE / "web" not in item.path.parents:
-            raise pytest.UsageError(f"{item.nodeid}: make test looks for `clock` only in tests/web.")
+        if item.get_closest_marker("clock") and item.path.relative_to(HERE).parts[0] not in REAL_TIME:
+            raise pytest.UsageError(
+                f"{item.nodeid}: make test looks for `clock` only in tests/{' and tests/'.join(REAL_TIME)}."
+            )
     rank = {name: index for index, name in enumerate(LONGEST_FIRST)}
     items.sort(key=lambda item: rank.get(item.path.relative_to(HERE).parts[0], len(rank)))
 

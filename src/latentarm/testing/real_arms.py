@@ -1,0 +1,382 @@
+"""Contract tests of real arms, over wall-clock time, against a stand-in for the arm."""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from statistics import median
+
+import numpy as np
+import pytest
+
+from latentarm.arms.contract import check_arm
+from latentarm.arms.real import RealArm
+from latentarm.control.clock import MonotonicClock
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
+from latentarm.testing.arm_laws import ArmLaws
+from latentarm.testing.killed import Driving
+from latentarm.types import Command, FloatArray, GripperCommand
+
+HOLD_S = 0.05
+"""How long a command of these tests lasts, as on the page, s."""
+
+RATE_HZ = 100.0
+"""How often they send one, if the arm takes so many."""
+
+QUICK_S = 0.005
+"""A call that does not wait for the arm takes no longer than this, s."""
+
+
+class StandIn(ABC):
+    """What answers in place of an arm, as it is from the arm's side of the network.
+
+    Tests of what a stand-in cannot do are skipped: it overrides what it can.
+    """
+
+    @abstractmethod
+    def positions(self) -> FloatArray:
+        """(n,), where the joints are, as the arm itself knows it, rad."""
+
+    def press_emergency_stop(self) -> None:
+        """Somebody presses the button on the arm."""
+        pytest.skip("this stand-in has no emergency stop")
+
+    def release_emergency_stop(self) -> None:
+        """The button is released."""
+        pytest.skip("this stand-in has no emergency stop")
+
+    def break_down(self) -> None:
+        """The arm stops by itself with a fault that can be recovered from, as after a collision."""
+        pytest.skip("this stand-in has no faults")
+
+    def cut(self) -> None:
+        """Nothing passes between the driver and the arm any more, as when a cable is pulled out."""
+        pytest.skip("the way to this stand-in cannot be cut")
+
+    def repair(self) -> None:
+        """The cable is plugged in again."""
+        pytest.skip("the way to this stand-in cannot be cut")
+
+
+class RealArmContract(ArmLaws):
+    """Tests of the driver of a real arm; they take real time, so they are marked ``clock``.
+
+    Override the fixtures ``stand_in`` and ``make``, and ``robot`` if the arm is not a Panda; ``refused`` and
+    ``address`` where there is something for them::
+
+        class TestTheirArm(RealArmContract):
+            @pytest.fixture(scope="class")
+            @classmethod
+            def stand_in(cls):
+                with their_server() as server:
+                    yield server
+
+            @pytest.fixture
+            def make(self, stand_in, robot):
+                where = parse_address(f"theirs://127.0.0.1:{stand_in.port}")
+                return lambda: TheirArm(robot, where, MonotonicClock().now_s)
+
+    Attributes:
+        tolerance_rad: a joint that has moved no farther than this stands still, rad.
+        settling_s: from the end of a command until the arm is at rest, beyond ``spec.stops_after_s``, s.
+        waits_s: the longest that anything may take which the person waits for, such as enabling, s.
+        arrives: least and most share of a commanded motion that is made; a slow simulation makes less of it.
+        gripper_s: the gripper opens or closes by half within this time, s.
+    """
+
+    pytestmark = pytest.mark.clock
+
+    tolerance_rad = 2e-3
+    settling_s = 0.5
+    waits_s = 5.0
+    arrives = (0.3, 1.3)
+    gripper_s = 5.0
+
+    @pytest.fixture
+    def stand_in(self) -> StandIn:
+        """What answers in place of the arm; it may serve all tests of the class."""
+        raise NotImplementedError("override the fixture `stand_in`")
+
+    @pytest.fixture
+    def make(self, stand_in: StandIn, robot: Robot) -> Callable[[], RealArm]:
+        """Makes a driver for the stand-in that is not connected, with the clock of `MonotonicClock`."""
+        raise NotImplementedError("override the fixture `make`")
+
+    @pytest.fixture
+    def refused(self) -> Callable[[], RealArm]:
+        """Makes a driver for something that must be refused, such as an arm with old firmware."""
+        pytest.skip("nothing is refused here")
+
+    @pytest.fixture
+    def address(self) -> str:
+        """The address of the stand-in, to be driven from another process; its scheme is registered."""
+        pytest.skip("the stand-in cannot be driven from another process")
+
+    @pytest.fixture
+    def new_arm(self, make: Callable[[], RealArm]) -> Iterator[RealArm]:
+        """A driver that has just been made."""
+        arm = make()
+        yield arm
+        arm.close()
+
+    @pytest.fixture
+    def arm(self, new_arm: RealArm) -> RealArm:
+        """The same driver, connected and enabled."""
+        new_arm.connect()
+        self._enable(new_arm)
+        return new_arm
+
+    @pytest.fixture
+    def velocity(self, robot: Robot, stand_in: StandIn) -> FloatArray:
+        """(n,), away from the nearest limits at different slow speeds, rad/s."""
+        middle = (robot.limits.lower + robot.limits.upper) / 2
+        return np.linspace(0.05, 0.1, robot.dof) * np.where(stand_in.positions() < middle, 1.0, -1.0)
+
+    def test_it_says_what_it_is(self, new_arm: RealArm, robot: Robot) -> None:
+        check_arm(new_arm.spec, robot)
+        assert not new_arm.spec.simulated
+        assert new_arm.spec.rate_hz > 0.0
+
+    def test_looking_finds_something_and_changes_nothing(self, new_arm: RealArm, stand_in: StandIn) -> None:
+        before = stand_in.positions()
+        found = new_arm.look()
+        assert not found.refusals
+        assert found.facts
+        assert all(fact.name and fact.value for fact in found.facts)
+        assert new_arm.status().phase == "off"
+        assert [fact.name for fact in new_arm.look().facts] == [fact.name for fact in found.facts]
+        new_arm.connect()
+        assert new_arm.status().phase == "disabled"
+        self._still(stand_in, before)
+
+    def test_what_looking_refuses_connecting_refuses_with_the_same_sentence(
+        self, refused: Callable[[], RealArm]
+    ) -> None:
+        arm = refused()
+        try:
+            said: tuple[str, ...] = arm.look().refusals
+        except UserError as error:
+            said = (str(error),)
+        assert said
+        assert all(sentence.endswith(".") for sentence in said)
+        with pytest.raises(UserError) as error:
+            arm.connect()
+        assert str(error.value) in said
+        assert arm.status().phase == "off"
+        arm.close()
+
+    def test_nothing_moves_it_before_it_is_enabled(
+        self, new_arm: RealArm, robot: Robot, stand_in: StandIn, velocity: FloatArray
+    ) -> None:
+        before = stand_in.positions()
+        new_arm.send(self._command(velocity, robot))
+        new_arm.connect()
+        assert new_arm.status().phase == "disabled"
+        for _ in range(10):
+            new_arm.send(self._command(velocity, robot))
+            time.sleep(0.01)
+        self._enable(new_arm)
+        self._still(stand_in, before)
+        assert new_arm.status().phase == "ready"
+
+    def test_it_moves_as_it_is_told_and_reads_where_it_is(
+        self, arm: RealArm, stand_in: StandIn, velocity: FloatArray
+    ) -> None:
+        before = stand_in.positions()
+        began_s = time.monotonic()
+        self._drive(arm, velocity, 0.5)
+        assert arm.status().phase == "moving"
+        told_s = time.monotonic() - began_s
+        after = self._at_rest(arm, stand_in)
+        share = (after - before) / (velocity * told_s)
+        assert (share >= self.arrives[0]).all(), share
+        assert (share <= self.arrives[1]).all(), share
+        np.testing.assert_allclose(arm.read().q, after, atol=self.tolerance_rad)
+
+    def test_its_readings_say_when_they_were_taken(self, arm: RealArm) -> None:
+        clock, before = MonotonicClock(), arm.read()
+        for _ in range(5):
+            self._wait_for(lambda known=before: arm.read().sequence > known.sequence)
+            reading = arm.read()
+            assert before.time_s <= reading.time_s <= clock.now_s() + 1e-3
+            assert clock.now_s() - reading.time_s < 0.1
+            before = reading
+
+    def test_a_command_runs_out(self, arm: RealArm, stand_in: StandIn, velocity: FloatArray) -> None:
+        before = stand_in.positions()
+        arm.send(Command(velocity, duration_s=HOLD_S))
+        after = self._at_rest(arm, stand_in)
+        lasts_s = HOLD_S + (arm.spec.stops_after_s or 0.0) + self.settling_s
+        assert (np.abs(after - before) <= np.abs(velocity) * lasts_s + self.tolerance_rad).all()
+        assert arm.status().phase == "ready"
+
+    def test_stop_forgets_the_command(self, arm: RealArm, stand_in: StandIn, velocity: FloatArray) -> None:
+        self._drive(arm, velocity, 0.2)
+        arm.send(Command(velocity, duration_s=10.0))
+        arm.stop()
+        self._at_rest(arm, stand_in)
+        assert arm.status().phase == "ready"
+
+    @pytest.mark.parametrize("how", ["disable", "close"])
+    def test_disabling_and_closing_stop_it_for_good(
+        self, arm: RealArm, stand_in: StandIn, velocity: FloatArray, how: str
+    ) -> None:
+        self._drive(arm, velocity, 0.2)
+        getattr(arm, how)()
+        getattr(arm, how)()
+        rested = self._at_rest(arm, stand_in)
+        assert arm.status().phase == {"disable": "disabled", "close": "off"}[how]
+        sequence = arm.read().sequence
+        # What comes again after a lost connection never moves by itself, nor by what it is sent too early.
+        arm.connect()
+        assert arm.status().phase == "disabled"
+        arm.send(Command(velocity, duration_s=10.0))
+        self._enable(arm)
+        self._still(stand_in, rested)
+        assert arm.read().sequence > sequence
+        self._drive(arm, velocity, 0.3)
+        assert (np.abs(stand_in.positions() - rested) > self.tolerance_rad).all()
+
+    def test_no_call_waits_for_the_arm(self, arm: RealArm, robot: Robot, velocity: FloatArray) -> None:
+        calls: dict[str, Callable[[], object]] = {
+            "read": arm.read,
+            "status": arm.status,
+            "send": lambda: arm.send(self._command(velocity, robot)),
+            "stop": arm.stop,
+            "disable": arm.disable,
+            "recover": arm.recover,
+            "enable": arm.enable,
+        }
+        for name, call in calls.items():
+            took_s: list[float] = []
+            for _ in range(9):
+                began_s = time.perf_counter()
+                call()
+                took_s.append(time.perf_counter() - began_s)
+                time.sleep(0.002)
+            assert median(took_s) <= QUICK_S, name
+
+    def test_nobody_can_reach_into_its_readings(self, arm: RealArm, stand_in: StandIn) -> None:
+        reading = arm.read()
+        if reading.q.flags.writeable:
+            reading.q[:] = 9.0
+        self._wait_for(lambda: arm.read().sequence > reading.sequence)
+        np.testing.assert_allclose(arm.read().q, stand_in.positions(), atol=self.tolerance_rad)
+
+    def test_an_emergency_stop_stops_it_until_somebody_enables_it_again(
+        self, arm: RealArm, stand_in: StandIn, velocity: FloatArray
+    ) -> None:
+        self._drive(arm, velocity, 0.2)
+        stand_in.press_emergency_stop()
+        try:
+            self._wait_for(lambda: arm.status().phase == "emergency_stop")
+            assert arm.status().reason.endswith(".")
+            self._drive(arm, velocity, 0.2)
+            rested = self._at_rest(arm, stand_in)
+        finally:
+            stand_in.release_emergency_stop()
+        self._wait_for(lambda: arm.status().phase != "emergency_stop")
+        self._waits_to_be_enabled(arm, stand_in, velocity, rested)
+
+    def test_after_a_fault_it_moves_only_when_it_was_enabled_again(
+        self, arm: RealArm, stand_in: StandIn, velocity: FloatArray
+    ) -> None:
+        self._drive(arm, velocity, 0.2)
+        stand_in.break_down()
+        self._wait_for(lambda: arm.status().phase == "fault")
+        assert arm.status().reason.endswith(".")
+        assert arm.status().recoverable
+        self._drive(arm, velocity, 0.2)
+        self._waits_to_be_enabled(arm, stand_in, velocity, self._at_rest(arm, stand_in))
+
+    def test_cut_off_it_rests_and_nothing_old_moves_it_afterwards(
+        self, arm: RealArm, stand_in: StandIn, velocity: FloatArray
+    ) -> None:
+        self._drive(arm, velocity, 0.2)
+        stand_in.cut()
+        try:
+            newest = arm.read().time_s
+            self._drive(arm, velocity, 0.3)
+            rested = self._at_rest(arm, stand_in)
+            # The loop stops for either: readings that are old, or an arm that takes no commands.
+            assert not arm.status().takes_commands or arm.read().time_s < newest + 0.2
+        finally:
+            stand_in.repair()
+        self._still(stand_in, rested)
+        arm.close()
+        arm.connect()
+        assert arm.status().phase == "disabled"
+        self._still(stand_in, rested)
+
+    def test_it_rests_when_the_process_that_drives_it_is_killed(
+        self, address: str, robot: Robot, stand_in: StandIn, velocity: FloatArray, make: Callable[[], RealArm]
+    ) -> None:
+        stops_after_s = make().spec.stops_after_s or 0.0
+        before = stand_in.positions()
+        with Driving(address, robot, velocity, HOLD_S) as driving:
+            self._wait_for(lambda: driving.driving and (stand_in.positions() != before).any(), within_s=60.0)
+            driving.kill()
+            time.sleep(HOLD_S + stops_after_s + self.settling_s)
+            self._still(stand_in, stand_in.positions())
+
+    def test_its_gripper_goes_where_it_is_told(self, arm: RealArm, robot: Robot) -> None:
+        if robot.gripper is None:
+            pytest.skip("the robot has no gripper")
+        half_m = robot.gripper.width_m / 2.0
+        told = GripperCommand(half_m, 0.05, 5.0)
+        arm.send(Command(np.zeros(robot.dof), HOLD_S, gripper=told))
+
+        def there() -> bool:
+            found = arm.read().gripper
+            return found is not None and abs(found.width_m - half_m) < 0.1 * half_m
+
+        self._wait_for(there, self.gripper_s)
+
+    def _waits_to_be_enabled(
+        self, arm: RealArm, stand_in: StandIn, velocity: FloatArray, rested: FloatArray
+    ) -> None:
+        """After a stop by the arm itself: neither time, commands nor recovering move it; enabling lets it."""
+        self._drive(arm, velocity, 0.2)
+        if arm.status().phase == "fault":
+            arm.recover()
+        self._wait_for(lambda: arm.status().phase == "disabled")
+        self._drive(arm, velocity, 0.2)
+        self._still(stand_in, rested)
+        self._enable(arm)
+        self._still(stand_in, rested)
+        self._drive(arm, velocity, 0.3)
+        assert (np.abs(stand_in.positions() - rested) > self.tolerance_rad).any()
+
+    def _command(self, velocity: FloatArray, robot: Robot) -> Command:
+        """A long command, with one for the gripper where there is one."""
+        gripper = None if robot.gripper is None else GripperCommand(0.0, 0.05, 5.0)
+        return Command(velocity, duration_s=1.0, gripper=gripper)
+
+    def _enable(self, arm: RealArm) -> None:
+        arm.enable()
+        self._wait_for(lambda: arm.status().takes_commands)
+
+    def _drive(self, arm: RealArm, velocity: FloatArray, for_s: float) -> None:
+        period_s = 1.0 / min(arm.spec.rate_hz, RATE_HZ)
+        until_s = time.monotonic() + for_s
+        while time.monotonic() < until_s:
+            arm.send(Command(velocity, duration_s=max(HOLD_S, 2.5 * period_s)))
+            arm.read()
+            time.sleep(period_s)
+
+    def _at_rest(self, arm: RealArm, stand_in: StandIn) -> FloatArray:
+        """Where the arm has come to rest, as soon after the last command as it must, (n,), rad."""
+        time.sleep(HOLD_S + (arm.spec.stops_after_s or 0.0) + self.settling_s)
+        return self._still(stand_in, stand_in.positions())
+
+    def _still(self, stand_in: StandIn, where: FloatArray) -> FloatArray:
+        time.sleep(0.15)
+        found = stand_in.positions()
+        np.testing.assert_allclose(found, where, atol=self.tolerance_rad)
+        return found
+
+    def _wait_for(self, what: Callable[[], bool], within_s: float | None = None) -> None:
+        end_s = time.monotonic() + (within_s or self.waits_s)
+        while not what():
+            assert time.monotonic() < end_s, "it never came to that"
+            time.sleep(0.005)
