@@ -34,7 +34,14 @@ def _factory(name: str, thing: object) -> RealArmFactory:
     return cast(RealArmFactory, thing)
 
 
-REAL_ARMS: Final = Catalogue("latentarm.real_arms", "driver", {}, _factory)
+REAL_ARMS: Final = Catalogue(
+    "latentarm.real_arms",
+    "driver",
+    {
+        "ros2": "latentarm.arms.ros2.arm:Ros2Arm",
+    },
+    _factory,
+)
 
 
 def make_real_arm(address: str, robot: Robot, now_s: Callable[[], float]) -> RealArm:

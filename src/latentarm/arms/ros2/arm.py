@@ -1,0 +1,317 @@
+"""Any arm behind ros2_control: Kinova, UR and others."""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.arms.address import ArmAddress
+from latentarm.arms.contract import ArmSpec, ArmStatus
+from latentarm.arms.real import Findings, RealArm
+from latentarm.arms.ros2.feed import JointFeed
+from latentarm.arms.ros2.gripper import Ros2Gripper
+from latentarm.arms.ros2.inspection import inspect
+from latentarm.arms.ros2.joint_states import Measured
+from latentarm.arms.ros2.link import Link, check_installed
+from latentarm.arms.ros2.options import read_options
+from latentarm.arms.ros2.session import Session
+from latentarm.errors import UserError
+from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.robots.robot import Robot
+from latentarm.types import Command, GripperReading, Reading
+
+RATE_HZ: Final = 100.0
+"""The watchdog commands the controller so often."""
+
+STOPS_AFTER_S: Final = 0.09
+"""The watchdog brakes so soon after a command has run out; one that takes longer is refused, s."""
+
+LONGEST_S: Final = 0.5
+"""No command is sent for longer than this: the watchdog would cut it short, s."""
+
+HEARTBEAT_S: Final = 0.05
+"""The watchdog hears from us at least so often, s."""
+
+CLAIM_S: Final = 1.0
+"""For how long the watchdog may take to give us the arm, s."""
+
+
+@final
+@dataclass(frozen=True)
+class _Open:
+    """One connection, and everything that goes with it."""
+
+    link: Link
+    session: Session
+    feed: JointFeed
+    gripper: Ros2Gripper | None
+
+    def close(self) -> None:
+        """Give the arm back and end the connection."""
+        self.session.tell("release")
+        self.link.close()
+
+
+@final
+class Ros2Arm(RealArm):
+    """The driver of an arm behind ros2_control, over rosbridge.
+
+    Commands go to the watchdog next to the arm, which passes them on to the controller and stops the arm
+    when they end. A thread keeps the watchdog informed that this process lives, and opens a lost connection
+    again once `recover` was called.
+
+    Args:
+        robot: what the arm is.
+        address: of rosbridge, with the options of `Ros2Options`.
+        now_s: the clock that readings are timed by, s; never goes back.
+
+    Raises:
+        UserError: an option is unknown or wrong, or roslibpy is not installed.
+    """
+
+    def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
+        check_installed()
+        self._options = read_options(address, robot)
+        self._gripper = robot.gripper
+        self._dof = robot.dof
+        self._now_s = now_s
+        self._spec = ArmSpec(
+            robot.joint_names, RATE_HZ, STOPS_AFTER_S, simulated=False, gripper=robot.gripper
+        )
+        self._open: _Open | None = None
+        self._lost = ""
+        self._fault = ""
+        self._arming: int | None = None
+        self._enablings = 0
+        self._reading: Reading | None = None
+        self._measured: Measured | None = None
+        self._reconnect = threading.Event()
+        self._ended = threading.Event()
+        self._heart: threading.Thread | None = None
+
+    @property
+    def spec(self) -> ArmSpec:
+        """See the base class."""
+        return self._spec
+
+    def look(self) -> Findings:
+        """See the base class.
+
+        Raises:
+            RuntimeError: the arm is connected.
+        """
+        if self._open is not None:
+            raise RuntimeError("an arm is looked at before it is connected")
+        opened = self._opened()
+        try:
+            return inspect(opened.link, opened.session, opened.feed, self._options)
+        finally:
+            opened.link.close()
+
+    def connect(self) -> None:
+        """See the base class."""
+        if self._open is not None and not self._out_of_reach():
+            return
+        self.close()
+        self._open = self._claimed()
+        self._take_reading()
+        self._ended.clear()
+        self._heart = threading.Thread(target=self._beat, name="latentarm-ros2", daemon=True)
+        self._heart.start()
+
+    def close(self) -> None:
+        """See the base class."""
+        self._ended.set()
+        self._arming = None
+        if self._heart is not None:
+            self._heart.join()
+            self._heart = None
+        if self._open is not None:
+            self._open.close()
+        self._open, self._lost, self._fault = None, "", ""
+        self._reconnect.clear()
+
+    def read(self) -> Reading:
+        """See the base class."""
+        self._take_reading()
+        if self._reading is None:
+            raise RuntimeError("an arm has no reading before it is connected")
+        return self._reading
+
+    def status(self) -> ArmStatus:
+        """See the base class."""
+        opened = self._open
+        if opened is None:
+            return ArmStatus("off", "The arm is not connected.")
+        lost = self._lost or self._out_of_reach()
+        state = opened.session.state
+        if lost or state is None:
+            return ArmStatus("fault", lost, recoverable=True)
+        if state.stop_pressed:
+            return ArmStatus("emergency_stop", "The emergency stop on the arm is pressed.")
+        if self._fault or opened.feed.jumped:
+            said = self._fault or "The clock of the joint states has jumped."
+            return ArmStatus("fault", said, recoverable=True)
+        if state.phase == "latched":
+            return ArmStatus("fault", state.reason, recoverable=True)
+        if self._arming is not None and state.phase == "armed" and state.arming == self._arming:
+            said = "" if opened.gripper is None else opened.gripper.failure
+            newest = opened.feed.newest
+            moves = newest is not None and np.abs(newest[0].dq).max() > STILL_RAD_S
+            return ArmStatus("moving" if moves else "ready", said)
+        return ArmStatus("disabled", state.obstacle or "The arm is not enabled yet.")
+
+    def enable(self) -> None:
+        """See the base class."""
+        if self._open is not None and self.status().phase == "disabled":
+            if self._arming is None:
+                self._enablings += 1
+                self._arming = self._enablings
+            self._open.session.tell("enable", arming=self._arming)
+
+    def disable(self) -> None:
+        """See the base class."""
+        self._arming = None
+        if self._open is not None:
+            self._open.session.tell("disable")
+            self._halt_gripper(self._open)
+
+    def recover(self) -> None:
+        """See the base class."""
+        opened = self._open
+        if opened is None or self.status().phase != "fault":
+            return
+        self._arming = None
+        if self._lost or self._out_of_reach():
+            self._reconnect.set()
+            return
+        self._fault, opened.feed.jumped = "", False
+        opened.session.tell("recover")
+
+    def send(self, command: Command) -> None:
+        """See the base class.
+
+        Raises:
+            ValueError: the velocity has the wrong shape or is not finite, or there is a command for a gripper
+                that the arm does not have: no safety filter sends that.
+        """
+        velocity = np.array(command.velocity, dtype=np.float64)
+        if velocity.shape != (self._dof,) or not np.isfinite(velocity).all():
+            raise ValueError(f"a command needs {self._dof} finite joint velocities")
+        if command.gripper is not None and self._gripper is None:
+            raise ValueError("this arm has no gripper to command")
+        opened = self._open
+        if opened is None or not self.status().takes_commands:
+            return
+        state = opened.session.state
+        if state is None:
+            return
+        # The watchdog has the joints in the controller's order.
+        ordered = [float(velocity[self._options.joints.index(joint)]) for joint in state.joints]
+        opened.session.tell(
+            "command",
+            arming=self._arming,
+            duration=min(max(float(command.duration_s), 0.0), LONGEST_S),
+            velocity=ordered,
+        )
+        if opened.gripper is not None and command.gripper is not None:
+            opened.gripper.command(command.gripper)
+
+    def stop(self) -> None:
+        """See the base class."""
+        if self._open is not None:
+            self._open.session.tell("stop")
+            self._halt_gripper(self._open)
+
+    def _opened(self) -> _Open:
+        """A new connection.
+
+        Raises:
+            UserError: nothing answers.
+        """
+        link = Link(self._options.host, self._options.port)
+        session = Session(link, self._options.watchdog, self._now_s)
+        feed = JointFeed(link, self._options, self._now_s)
+        gripper = None if self._gripper is None else Ros2Gripper(link, self._options, self._gripper)
+        return _Open(link, session, feed, gripper)
+
+    def _claimed(self) -> _Open:
+        """A new connection with an arm that is ours; it is disabled.
+
+        Raises:
+            UserError: nothing answers, or what answers is refused.
+        """
+        opened = self._opened()
+        refusals = inspect(opened.link, opened.session, opened.feed, self._options).refusals
+        if not refusals:
+            opened.session.tell("claim")
+            until_s = self._now_s() + CLAIM_S
+            while not opened.session.ours and self._now_s() < until_s:
+                time.sleep(0.01)
+            if not opened.session.ours:
+                refusals = ("Another client drives the arm: end it there first.",)
+        if refusals:
+            opened.close()
+            raise UserError(refusals[0])
+        return opened
+
+    def _out_of_reach(self) -> str:
+        """Why the arm cannot be reached over this connection, as one sentence; "" where it can."""
+        opened = self._open
+        if opened is None or not opened.link.connected:
+            return "The connection to the arm's computer is lost."
+        if opened.session.silent:
+            return "Nothing comes from the watchdog next to the arm any more."
+        if not opened.session.ours:
+            return "The watchdog has given the arm to somebody else, or was started again."
+        return ""
+
+    def _take_reading(self) -> None:
+        """Make a reading of what was measured since the last one, if anything was."""
+        opened, before = self._open, self._reading
+        newest = None if opened is None else opened.feed.newest
+        if opened is None or newest is None or newest[0] is self._measured:
+            return
+        measured, time_s = newest
+        position = opened.feed.gripper
+        gripper: GripperReading | None = None
+        if opened.gripper is not None and position is not None:
+            gripper = opened.gripper.measured(position)
+        # After a new connection the clocks are reckoned anew: time must not seem to go back.
+        time_s = time_s if before is None else max(time_s, before.time_s)
+        sequence = 0 if before is None else before.sequence + 1
+        self._measured = measured
+        self._reading = Reading(measured.q, measured.dq, time_s, sequence, gripper)
+
+    def _halt_gripper(self, opened: _Open) -> None:
+        if opened.gripper is not None:
+            opened.gripper.halt()
+
+    def _beat(self) -> None:
+        """In a thread of our own, until the arm is closed."""
+        while not self._ended.wait(HEARTBEAT_S):
+            opened = self._open
+            if opened is None:
+                return
+            lost = self._lost or self._out_of_reach()
+            if not lost:
+                if opened.feed.jumped and not self._fault:
+                    self._fault = "The clock of the joint states has jumped."
+                    self._arming = None
+                    opened.session.tell("disable")
+                opened.session.tell("heartbeat")
+            elif not self._lost:
+                # What waits in this connection must never reach the arm.
+                self._lost, self._arming = lost, None
+                opened.link.close()
+            elif self._reconnect.is_set():
+                self._reconnect.clear()
+                try:
+                    self._open = self._claimed()
+                except UserError as error:
+                    self._lost = str(error)
+                else:
+                    self._lost = self._fault = ""

@@ -1,0 +1,131 @@
+"""A connection to rosbridge that is opened once, and never waits once it is open."""
+
+import importlib.util
+import socket
+from collections.abc import Callable, Mapping
+from typing import Any, Final, final
+
+from latentarm.errors import UserError
+
+CONNECTING_S: Final = 3.0
+"""For how long rosbridge may take to answer, s."""
+
+
+def check_installed() -> None:
+    """Check that roslibpy is there.
+
+    Raises:
+        UserError: it is not.
+    """
+    if importlib.util.find_spec("roslibpy") is None:
+        raise UserError("--arm ros2 needs roslibpy: pip install 'latentarm[ros2]'.")
+
+
+@final
+class Link:
+    """A connection to rosbridge, in a thread of roslibpy.
+
+    It is never opened again by itself: roslibpy would then send what it could not send before. A lost link
+    is replaced by a new one. Callbacks run in roslibpy's thread.
+
+    Args:
+        host: where rosbridge is.
+        port: its port.
+
+    Raises:
+        UserError: nothing answers there, or something else than rosbridge.
+    """
+
+    def __init__(self, host: str, port: int) -> None:
+        import roslibpy
+        from roslibpy.core import RosTimeoutError
+
+        self._lib: Any = roslibpy
+        self._topics: dict[str, Any] = {}
+        self._actions: dict[str, Any] = {}
+        try:
+            socket.create_connection((host, port), CONNECTING_S).close()
+        except OSError as error:
+            raise UserError(
+                f"Nothing answers at {host}:{port}: start rosbridge there"
+                " (ros2 launch rosbridge_server rosbridge_websocket_launch.xml)."
+            ) from error
+        self._ros: Any = roslibpy.Ros(host, port, transport="asyncio")
+        self._ros.factory.maxRetries = 0
+        try:
+            self._ros.run(CONNECTING_S)
+        except RosTimeoutError as error:
+            raise UserError(
+                f"What answers at {host}:{port} is not rosbridge: check host and port."
+            ) from error
+
+    @property
+    def connected(self) -> bool:
+        """Whether the connection stands, as far as this side knows."""
+        return bool(self._ros.is_connected)
+
+    def advertise(self, topic: str, kind: str) -> None:
+        """Say that messages of a type will be published on a topic."""
+        self._topics[topic] = self._lib.Topic(self._ros, topic, kind, reconnect_on_close=False)
+        self._topics[topic].advertise()
+
+    def publish(self, topic: str, message: Mapping[str, Any]) -> None:
+        """Send a message on a topic that is advertised; without a connection nothing is sent."""
+        if self.connected:
+            self._topics[topic].publish(message)
+
+    def subscribe(self, topic: str, kind: str, heard: Callable[[Mapping[str, Any]], None]) -> None:
+        """Take the messages of a topic, the newest of which counts."""
+        self._topics[topic] = self._lib.Topic(
+            self._ros, topic, kind, queue_length=1, reconnect_on_close=False
+        )
+        self._topics[topic].subscribe(heard)
+
+    def call(self, service: str, kind: str, timeout_s: float) -> Mapping[str, Any] | None:
+        """Call a service without arguments and wait for its answer; None where none came in time."""
+        from roslibpy.core import RosTimeoutError, ServiceException
+
+        try:
+            return dict(
+                self._lib.Service(self._ros, service, kind).call(
+                    self._lib.ServiceRequest(), timeout=timeout_s
+                )
+            )
+        except (RosTimeoutError, ServiceException):
+            return None
+
+    def send_goal(
+        self,
+        action: str,
+        kind: str,
+        goal: Mapping[str, Any],
+        succeeded: Callable[[Mapping[str, Any]], None],
+        failed: Callable[[Mapping[str, Any]], None],
+    ) -> str | None:
+        """Send a goal to an action server.
+
+        Returns:
+            Its id; None without a connection.
+        """
+        if not self.connected:
+            return None
+        if action not in self._actions:
+            self._actions[action] = self._lib.ActionClient(self._ros, action, kind)
+        client = self._actions[action]
+        sent = client.send_goal(self._lib.Goal(goal), succeeded, _ignore, failed)
+        client.wait_results.pop(sent, None)
+        return str(sent)
+
+    def cancel_goal(self, action: str, goal: str) -> None:
+        """Ask an action server to give up a goal."""
+        if self.connected and action in self._actions:
+            self._actions[action].cancel_goal(goal)
+
+    def close(self) -> None:
+        """End the connection, without waiting for the other side."""
+        if self.connected:
+            self._ros.close()
+
+
+def _ignore(_: object) -> None:
+    """Feedback of an action says nothing that the joint states do not say."""

@@ -1,0 +1,139 @@
+"""What the address of an arm behind ROS 2 says: ``ros2://HOST[:PORT]?controller=NAME&...``."""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, Literal, cast, final, get_args
+
+from latentarm.arms.address import ArmAddress
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
+
+PORT: Final = 9090
+"""The usual port of rosbridge."""
+
+Kind = Literal["velocity", "trajectory"]
+
+_NAME: Final = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]{0,99}(/[A-Za-z_][A-Za-z0-9_]{0,99}){0,9}")
+_JOINT: Final = re.compile(r"[A-Za-z0-9_./-]{1,100}")
+
+
+@final
+@dataclass(frozen=True)
+class Ros2Options:
+    """An address that has been checked. Names of topics, services and actions begin with a slash.
+
+    Attributes:
+        host: where rosbridge is.
+        port: of rosbridge.
+        controller: the controller of the arm.
+        kind: what the controller takes.
+        states: topic of the joint states.
+        watchdog: where the watchdog's topics are.
+        manager: where the controller manager's services are.
+        joints: the n joints' names in ROS, in the order of the robot's joints.
+        gripper: the action of the gripper.
+        gripper_joint: its joint in the joint states; "" without a gripper.
+        gripper_open: position of that joint, and of the action, with the gripper fully open.
+        gripper_closed: the same with the gripper closed.
+    """
+
+    host: str
+    port: int
+    controller: str
+    kind: Kind
+    states: str
+    watchdog: str
+    manager: str
+    joints: tuple[str, ...]
+    gripper: str
+    gripper_joint: str
+    gripper_open: float
+    gripper_closed: float
+
+    @property
+    def where(self) -> str:
+        """The host and port, for messages."""
+        return f"{self.host}:{self.port}"
+
+
+def read_options(address: ArmAddress, robot: Robot) -> Ros2Options:
+    """Check an address.
+
+    Args:
+        address: what was given.
+        robot: what the arm is.
+
+    Raises:
+        UserError: an option is unknown, missing or not what it should be.
+    """
+    given = address.only(
+        "controller",
+        "kind",
+        "states",
+        "watchdog",
+        "manager",
+        "joints",
+        "gripper",
+        "gripper_joint",
+        "gripper_open",
+        "gripper_closed",
+    )
+    if "controller" not in given:
+        raise UserError(
+            "--arm ros2 needs the name of the arm's controller: ros2://HOST:PORT?controller=/NAME."
+        )
+    kind = given.get("kind", "velocity")
+    if kind not in get_args(Kind):
+        raise UserError(f"The option kind of --arm ros2 is velocity or trajectory, not {kind}.")
+    joints = tuple(given["joints"].split(",")) if "joints" in given else robot.joint_names
+    if len(joints) != robot.dof or len(set(joints)) < len(joints) or not all(map(_JOINT.fullmatch, joints)):
+        raise UserError(
+            f"The option joints of --arm ros2 must be {robot.dof} different names with commas between them,"
+            f" one for each joint of {robot.name}."
+        )
+    finger = given.get("gripper_joint", "")
+    if robot.gripper is None and any(name.startswith("gripper") for name in given):
+        raise UserError(f"--arm ros2 names a gripper, and {robot.name} has none.")
+    if robot.gripper is not None and not _JOINT.fullmatch(finger):
+        raise UserError(
+            f"{robot.name} has a gripper: name its joint in the joint states with gripper_joint=NAME."
+        )
+    opened = _figure("gripper_open", given, 0.0 if robot.gripper is None else robot.gripper.width_m)
+    closed = _figure("gripper_closed", given, 0.0)
+    if robot.gripper is not None and opened == closed:
+        raise UserError("The options gripper_open and gripper_closed of --arm ros2 must be different.")
+    return Ros2Options(
+        address.host,
+        address.port or PORT,
+        _graph_name("controller", given["controller"]),
+        cast(Kind, kind),
+        _graph_name("states", given.get("states", "/joint_states")),
+        _graph_name("watchdog", given.get("watchdog", "/latentarm_watchdog")),
+        _graph_name("manager", given.get("manager", "/controller_manager")),
+        joints,
+        _graph_name("gripper", given.get("gripper", "/gripper_controller/gripper_cmd")),
+        finger,
+        opened,
+        closed,
+    )
+
+
+def _graph_name(option: str, text: str) -> str:
+    if not _NAME.fullmatch(text):
+        raise UserError(f"The option {option} of --arm ros2 must be a name of ROS, such as /{option}.")
+    return "/" + text.lstrip("/")
+
+
+def _figure(option: str, given: Mapping[str, str], default: float) -> float:
+    text = given.get(option)
+    if text is None:
+        return default
+    try:
+        figure = float(text)
+    except ValueError:
+        figure = math.nan
+    if not math.isfinite(figure):
+        raise UserError(f"The option {option} of --arm ros2 must be a number, not {text}.")
+    return figure
