@@ -1,0 +1,210 @@
+"""A UFACTORY arm as `latentarm.arms.contract.Arm` wants one."""
+
+import time
+from collections.abc import Callable
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.arms.address import ArmAddress
+from latentarm.arms.contract import ArmSpec, ArmStatus
+from latentarm.arms.real import Findings, RealArm
+from latentarm.arms.xarm.controller import ANSWER_S, LinkLostError
+from latentarm.arms.xarm.driver import Driver
+from latentarm.arms.xarm.findings import basic_facts, find_out, too_different
+from latentarm.arms.xarm.reports import JointReport
+from latentarm.arms.xarm.sdk import load_sdk
+from latentarm.arms.xarm.session import Session, read_options
+from latentarm.arms.xarm.state import TAKES_COMMANDS, Ordered, Shared
+from latentarm.errors import UserError
+from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.robots.robot import Robot
+from latentarm.types import Command, GripperReading, Reading
+
+RATE_HZ: Final = 100.0
+
+_CYCLE_S: Final = 0.02
+"""Of the controller, with what it needs to act on the end of a command, s."""
+
+_JOIN_S: Final = 8.0
+
+
+@final
+class XArm(RealArm):
+    """xArm 5, 6 and 7, 850 and Lite 6.
+
+    Each command leaves with the time that is left of its duration, counted from `send`; the controller ends
+    it by itself. What was not delivered within `latentarm.arms.xarm.controller.ANSWER_S` never is, so a
+    command ends at most that much later.
+
+    Args:
+        robot: what the arm is; its joints are J1, J2, ... in their order.
+        address: ``xarm://HOST[:PORT]``; see `latentarm.arms.xarm.session.Options`.
+        now_s: the clock that readings are timed by, s.
+
+    Raises:
+        UserError: the library is missing, or an option is unknown.
+    """
+
+    def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
+        self._options = read_options(address)
+        self._sdk = load_sdk()
+        self._host = address.host
+        self._robot = robot
+        self._now_s = now_s
+        self._shared = Shared()
+        self._driver: Driver | None = None
+        self._last: tuple[JointReport, GripperReading | None] | None = None
+        self._spec = ArmSpec(
+            robot.joint_names, RATE_HZ, ANSWER_S + _CYCLE_S, simulated=False, gripper=robot.gripper
+        )
+
+    @property
+    def spec(self) -> ArmSpec:
+        """See the base class."""
+        return self._spec
+
+    def look(self) -> Findings:
+        """See the base class."""
+        session: Session | None = None
+        try:
+            session = Session(self._sdk, self._host, self._options, self._robot, self._now_s)
+            if refusals := too_different(session.identity, self._robot):
+                return Findings(basic_facts(session.identity), refusals)
+            session.listen()
+            return find_out(self._sdk, session, self._robot, bare=self._options.bare)
+        except LinkLostError as error:
+            raise UserError(str(error)) from error
+        finally:
+            if session is not None:
+                session.close()
+
+    def connect(self) -> None:
+        """See the base class."""
+        self.close()
+        session = self._open(0 if self._last is None else self._last[0].number, clear=False)
+        self._shared = Shared(condition="disabled")
+        self._driver = Driver(self._sdk, self._robot, self._shared, session, self._reopen)
+        self._driver.start()
+
+    def close(self) -> None:
+        """See the base class."""
+        driver, self._driver = self._driver, None
+        if driver is None:
+            return
+        self._last = self._newest(driver)
+        with self._shared.changed:
+            self._shared.become("off")
+            self._shared.ending = True
+            self._shared.changed.notify_all()
+        driver.join(_JOIN_S)
+
+    def read(self) -> Reading:
+        """See the base class."""
+        if self._driver is not None:
+            self._last = self._newest(self._driver)
+        if self._last is None:
+            raise RuntimeError("the arm was never connected")
+        report, gripper = self._last
+        return Reading(report.q.copy(), report.dq.copy(), report.measured_s, report.number, gripper)
+
+    def status(self) -> ArmStatus:
+        """See the base class."""
+        with self._shared.changed:
+            condition, reason = self._shared.condition, self._shared.reason
+            recoverable = self._shared.recoverable
+        match condition:
+            case "off":
+                return ArmStatus("off", "The arm is not connected.")
+            case "disabled":
+                return ArmStatus("disabled", "The arm is not enabled.")
+            case "enabling":
+                return ArmStatus("disabled", "The arm is being enabled.")
+            case "enabled" | "stopping":
+                return ArmStatus("moving" if self._moves() else "ready")
+            case "fault" | "lost":
+                return ArmStatus("fault", reason, recoverable)
+            case "emergency_stop":
+                return ArmStatus("emergency_stop", reason, recoverable)
+
+    def enable(self) -> None:
+        """See the base class."""
+        with self._shared.changed:
+            if self._shared.condition == "disabled":
+                self._shared.become("enabling")
+                self._shared.requests.add("enable")
+
+    def disable(self) -> None:
+        """See the base class."""
+        with self._shared.changed:
+            if self._shared.condition in (*TAKES_COMMANDS, "enabling"):
+                self._shared.become("disabled")
+                self._shared.requests.add("halt")
+
+    def recover(self) -> None:
+        """See the base class."""
+        with self._shared.changed:
+            if self._shared.condition in ("fault", "lost") and self._shared.recoverable:
+                self._shared.requests.add("recover")
+                self._shared.changed.notify_all()
+
+    def send(self, command: Command) -> None:
+        """See the base class."""
+        velocity = np.array(command.velocity, dtype=np.float64)
+        if velocity.shape != (self._robot.dof,) or not np.isfinite(velocity).all():
+            raise ValueError(f"a command needs {self._robot.dof} finite joint velocities, rad/s")
+        driver = self._driver
+        with self._shared.changed:
+            if driver is None or self._shared.condition not in TAKES_COMMANDS:
+                return
+            self._shared.command = Ordered(velocity, time.monotonic() + command.duration_s)
+            self._shared.changed.notify_all()
+        if command.gripper is not None and driver.session.gripper is not None:
+            driver.session.gripper.send(command.gripper)
+
+    def stop(self) -> None:
+        """See the base class."""
+        with self._shared.changed:
+            self._shared.command = None
+            if self._shared.condition in TAKES_COMMANDS:
+                self._shared.become("stopping")
+                self._shared.requests.add("stop")
+
+    def _moves(self) -> bool:
+        return bool(np.abs(self.read().dq).max() > STILL_RAD_S)
+
+    def _newest(self, driver: Driver) -> tuple[JointReport, GripperReading | None]:
+        session = driver.session
+        return session.report, None if session.gripper is None else session.gripper.reading
+
+    def _reopen(self, number: int) -> Session:
+        return self._open(number, clear=True)
+
+    def _open(self, number: int, *, clear: bool) -> Session:
+        """Another session.
+
+        Args:
+            number: that reports are numbered from.
+            clear: whether an error is cleared: somebody has asked for it.
+
+        Raises:
+            UserError: there is none, or the arm is refused.
+        """
+        session: Session | None = None
+        try:
+            session = Session(self._sdk, self._host, self._options, self._robot, self._now_s)
+            refusals = too_different(session.identity, self._robot)
+            if not refusals:
+                session.listen(number)
+                if clear:
+                    session.controller.clear()
+                refusals = find_out(self._sdk, session, self._robot, bare=self._options.bare).refusals
+            if refusals:
+                raise UserError(refusals[0])
+        except BaseException as error:
+            if session is not None:
+                session.close()
+            if isinstance(error, LinkLostError):
+                raise UserError(str(error)) from error
+            raise
+        return session

@@ -1,0 +1,188 @@
+"""What the arm's controller is asked, and what it answers."""
+
+import statistics
+import time
+from collections.abc import Callable
+from typing import Final, TypeVar, final
+
+import numpy as np
+
+from latentarm.arms.xarm.control_socket import ControlSocket
+from latentarm.arms.xarm.sdk import Sdk
+from latentarm.types import FloatArray
+
+ANSWER_S: Final = 0.08
+"""An answer that takes longer ends the connection, and with it what was not delivered, s."""
+
+SLOW_ANSWER_S: Final = 5.0
+"""Switching on the motors may take so long, s."""
+
+ALL_JOINTS: Final = 8
+JOINT_VELOCITY: Final = 4
+"""The mode that takes joint velocities."""
+
+STATES_THAT_MOVE: Final = (0, 1, 2)
+"""States of an arm that takes commands: ready or moving."""
+
+_READY, _STOP = 0, 4
+_TIMEOUT, _INVALID = 3, 10
+_ANSWERED: Final = (0, 1, 2, 9)
+"""Codes of an answer that counts: fine, an error is set, a warning is set, not ready to move."""
+
+
+T = TypeVar("T", int, float)
+
+
+class LinkLostError(Exception):
+    """The controller cannot be reached, or what it says is no answer.
+
+    The message is one sentence for the person.
+    """
+
+
+class RefusedError(Exception):
+    """The controller did not do what it was asked; one sentence for the person."""
+
+
+@final
+class Controller:
+    """Requests to the controller, one at a time; for a single thread.
+
+    Args:
+        sdk: the manufacturer's library.
+        host: of the controller.
+        port: that takes commands.
+
+    Raises:
+        LinkLostError: nobody answers there.
+
+    Attributes:
+        has_error: whether the newest answer said that an error or a warning is set.
+    """
+
+    def __init__(self, sdk: Sdk, host: str, port: int) -> None:
+        try:
+            self._socket = ControlSocket(host, port, timeout_s=2.0, undelivered_s=ANSWER_S)
+        except OSError as error:
+            raise LinkLostError(
+                f"Nobody answers at {host}, port {port}: check that the controller is switched on, its"
+                f" address and the network cable ({error})."
+            ) from error
+        self._where = host
+        self._commands = sdk.commands(self._socket)
+        self.has_error = False
+
+    def close(self) -> None:
+        """End the connection; what was not delivered never is."""
+        self._socket.abort()
+
+    def version(self) -> str:
+        """Axes, type, serial numbers and firmware in one line."""
+        told = bytes(self._ask(self._commands.get_version, 1, slow=True)[1:])
+        return told.split(b"\0")[0].decode("ascii", "replace")
+
+    def state(self) -> int:
+        """The state: 0 to 2 take commands, from 3 on the arm is stopped."""
+        return self._ask(self._commands.get_state, 1)[1]
+
+    def errors(self) -> tuple[int, int]:
+        """The error and the warning; 0 where there is none."""
+        answer = self._ask(self._commands.get_err_code, 2)
+        return answer[1], answer[2]
+
+    def joints(self, dof: int) -> FloatArray:
+        """(n,), joint angles as commands see them, rad."""
+        return np.array(self._ask(self._commands.get_joint_pos, dof)[1 : dof + 1], dtype=np.float64)
+
+    def switch_on_motors(self) -> None:
+        """Release the brakes."""
+        self._done(
+            self._ask(lambda: self._commands.motion_en(ALL_JOINTS, 1), slow=True), "to switch on the motors"
+        )
+
+    def set_mode(self, mode: int) -> None:
+        """Choose what kind of commands are taken."""
+        self._done(self._ask(lambda: self._commands.set_mode(mode)), f"to go to mode {mode}")
+
+    def take_commands(self) -> None:
+        """Let the arm move when it is told to."""
+        self._done(self._ask(lambda: self._commands.set_state(_READY)), "to take commands")
+
+    def stop(self) -> None:
+        """Stop the arm, and take no commands any more."""
+        self._ask(lambda: self._commands.set_state(_STOP))
+
+    def clear(self) -> None:
+        """Clear error and warning."""
+        self._ask(self._commands.clean_err, slow=True)
+        self._ask(self._commands.clean_war, slow=True)
+
+    def move(self, velocity: FloatArray, duration_s: float) -> None:
+        """Move at a velocity for a time.
+
+        Args:
+            velocity: (n,), rad/s.
+            duration_s: above zero, s: the controller takes 0 for no end.
+        """
+        if not duration_s > 0.0:
+            raise ValueError(f"the duration {duration_s} s would mean no end")
+        speeds = [*velocity.tolist(), *[0.0] * (7 - len(velocity))]
+        self._ask(lambda: self._commands.vc_set_jointv(speeds, 1, duration_s))
+
+    def round_trips(self, times: int = 20) -> tuple[float, float]:
+        """The median and the longest time from a request to its answer, s."""
+        spans: list[float] = []
+        for _ in range(times):
+            begun_s = time.monotonic()
+            self.state()
+            spans.append(time.monotonic() - begun_s)
+        return statistics.median(spans), max(spans)
+
+    def _ask(self, request: Callable[[], list[T]], figures: int = 0, *, slow: bool = False) -> list[T]:
+        """Ask, and check that the answer is one.
+
+        Args:
+            request: asks through the library.
+            figures: how many figures the answer has at least.
+            slow: whether the answer may take a while.
+
+        Raises:
+            LinkLostError: no answer in time, or it is none.
+            RefusedError: the controller says that the request is invalid.
+        """
+        limit_s = SLOW_ANSWER_S if slow else ANSWER_S
+        self._commands.set_timeout(limit_s)
+        try:
+            answer = request()
+            code = int(answer[0])
+        except (IndexError, TypeError, ValueError, OverflowError) as error:
+            self.close()
+            raise LinkLostError(
+                f"What answers at {self._where} does not speak as an xArm does ({error})."
+            ) from error
+        if code == _INVALID:
+            raise RefusedError(
+                "The arm's controller refuses a request: update its firmware in UFACTORY Studio."
+            )
+        if not self._socket.connected:
+            raise LinkLostError(
+                "The arm's controller has ended the connection: check its power and the network cable, then"
+                " enable the arm again."
+            )
+        if code == _TIMEOUT:
+            self.close()
+            raise LinkLostError(
+                f"The arm's controller has not answered for {1000 * limit_s:.0f} ms: check its power and the"
+                " network cable, then enable the arm again."
+            )
+        if code not in _ANSWERED or len(answer) <= figures:
+            self.close()
+            raise LinkLostError(
+                f"What answers at {self._where} does not speak as an xArm does (code {code})."
+            )
+        self.has_error = code in (1, 2)
+        return answer
+
+    def _done(self, answer: list[int], what: str) -> None:
+        if answer[0] == 1:
+            raise RefusedError(f"The arm's controller has an error set and refuses {what}: enable again.")

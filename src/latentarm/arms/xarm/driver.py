@@ -1,0 +1,299 @@
+"""The thread that talks to the arm, so that nothing else waits for it."""
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.arms.xarm.controller import (
+    JOINT_VELOCITY,
+    STATES_THAT_MOVE,
+    LinkLostError,
+    RefusedError,
+)
+from latentarm.arms.xarm.findings import unfit
+from latentarm.arms.xarm.sdk import Sdk
+from latentarm.arms.xarm.session import Session
+from latentarm.arms.xarm.state import Ordered, Request, Shared
+from latentarm.arms.xarm.watch import Watch
+from latentarm.arms.xarm.words import EMERGENCY_STOPS, controller_error, emergency_stop
+from latentarm.errors import UserError
+from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.robots.robot import Robot
+
+_ORDER: Final[tuple[Request, ...]] = ("halt", "stop", "recover", "enable")
+_LOOK_S: Final = 0.01
+_ERRORS_S: Final = 0.1
+"""How often the controller is asked for its error at most, s."""
+
+_RELEASED_S: Final = 0.3
+"""An error of an emergency stop that was cleared and has not come back for so long is over, s."""
+
+_SILENT_S: Final = 0.25
+"""Without a new report for so long, the connection counts as lost, s."""
+
+_SHORTEST_S: Final = 0.002
+"""A command that ends sooner is not worth sending, s."""
+
+_READY_S: Final = 2.0
+_RESTING_S: Final = 1.0
+
+
+@final
+class Driver(threading.Thread):
+    """Carries out what is asked for in `Shared`, and looks at what the arm reports.
+
+    Args:
+        sdk: the manufacturer's library.
+        robot: what the arm is.
+        shared: what it is asked, and what it says.
+        session: open.
+        reopen: opens another session after a lost one, numbering reports from a number on.
+
+    Attributes:
+        session: the one in use.
+    """
+
+    def __init__(
+        self,
+        sdk: Sdk,
+        robot: Robot,
+        shared: Shared,
+        session: Session,
+        reopen: Callable[[int], Session],
+    ) -> None:
+        super().__init__(name="xarm driver", daemon=True)
+        self._sdk = sdk
+        self._robot = robot
+        self._shared = shared
+        self.session = session
+        self._reopen = reopen
+        self._watch = Watch(robot.joint_names)
+        self._drives = False
+        self._stopped_s = 0.0
+        self._resumed_s: float | None = None
+        self._asked_errors_s = 0.0
+
+    def run(self) -> None:
+        """Until the arm is closed."""
+        try:
+            while self._turn():
+                pass
+        finally:
+            self._halt()
+            self.session.close()
+            # Whatever ends this thread, nobody may take the arm for enabled.
+            with self._shared.changed:
+                if not self._shared.ending:
+                    self._shared.become("fault", "The driver of the arm has failed: start again.")
+
+    def _turn(self) -> bool:
+        shared = self._shared
+        request: Request | None = None
+        command: Ordered | None = None
+        with shared.changed:
+            if not self._is_asked():
+                shared.changed.wait(_LOOK_S)
+            if shared.ending:
+                return False
+            request = next((one for one in _ORDER if one in shared.requests), None)
+            if request is not None:
+                shared.requests.discard(request)
+            elif shared.condition == "enabled":
+                command, shared.command = shared.command, None
+        try:
+            if request is not None:
+                self._carry_out(request)
+            elif command is not None:
+                self._move(command)
+            self._look()
+        except LinkLostError as error:
+            self._lost(str(error))
+        except RefusedError as error:
+            self._fault(str(error))
+        return True
+
+    def _is_asked(self) -> bool:
+        shared = self._shared
+        waiting = shared.command is not None and shared.condition == "enabled"
+        return bool(shared.requests) or waiting or shared.ending
+
+    def _carry_out(self, request: Request) -> None:
+        match request:
+            case "halt":
+                self._halt()
+            case "stop":
+                self.session.controller.stop()
+                self._stopped_s, self._resumed_s = time.monotonic(), None
+            case "enable":
+                self._enable()
+            case "recover":
+                self._recover()
+
+    def _move(self, command: Ordered) -> None:
+        left_s = command.ends_s - time.monotonic()
+        if left_s < _SHORTEST_S:
+            return
+        self._watch.commanded(command.velocity, command.ends_s)
+        self.session.controller.move(command.velocity, left_s)
+
+    def _enable(self) -> None:
+        shared, controller = self._shared, self.session.controller
+        if shared.condition != "enabling":
+            return
+        if reason := unfit(self._sdk, self.session, self._robot):
+            self._fault(reason)
+            return
+        controller.switch_on_motors()
+        controller.set_mode(JOINT_VELOCITY)
+        self._drives = True
+        controller.take_commands()
+        if not self._ready_within(_READY_S):
+            if shared.condition == "enabling":
+                self._fault(
+                    "The arm does not become ready: check in UFACTORY Studio that it can be enabled there,"
+                    " then try again."
+                )
+            return
+        if self.session.gripper is not None:
+            self.session.gripper.enable()
+        self._watch.reset(time.monotonic())
+        with shared.changed:
+            if shared.condition == "enabling":
+                shared.become("enabled")
+
+    def _ready_within(self, span_s: float) -> bool:
+        joints, shared = self.session.joints, self._shared
+        with joints.came:
+            return (
+                joints.came.wait_for(
+                    lambda: self._accepts() or shared.condition != "enabling" or shared.ending, span_s
+                )
+                and self._accepts()
+            )
+
+    def _accepts(self) -> bool:
+        report = self.session.report
+        return report.mode == JOINT_VELOCITY and report.state in STATES_THAT_MOVE
+
+    def _recover(self) -> None:
+        shared = self._shared
+        condition = shared.condition
+        if condition not in ("fault", "lost"):
+            return
+        if condition == "lost":
+            self.session.close()
+            try:
+                self.session = self._reopen(self.session.report.number)
+            except UserError as error:
+                self._lost(str(error))
+                return
+        else:
+            self.session.controller.clear()
+            if self._error(self.session.controller.errors()[0]):
+                return
+        self._halt()
+        with shared.changed:
+            if shared.condition == condition:
+                shared.become("disabled")
+
+    def _look(self) -> None:
+        shared, session = self._shared, self.session
+        condition = shared.condition
+        if condition in ("off", "lost"):
+            return
+        now_s = time.monotonic()
+        report = session.report
+        if session.fault:
+            self._halt()
+            self._lost(session.fault)
+        elif now_s - report.arrived_s > _SILENT_S:
+            self._halt()
+            silent_ms = 1000 * (now_s - report.arrived_s)
+            self._lost(
+                f"The arm has reported no new joint angles for {silent_ms:.0f} ms: check its controller"
+                " and the network cable, then enable the arm again."
+            )
+        elif condition == "emergency_stop":
+            self._await_release(now_s)
+        elif condition == "fault" or self._has_error(now_s):
+            return
+        elif condition == "enabled" and (reason := self._watch.fault(report)):
+            if not self._error(session.controller.errors()[0]):
+                self._fault(reason)
+        elif condition == "stopping":
+            self._go_on(now_s)
+
+    def _has_error(self, now_s: float) -> bool:
+        hinted = self.session.status.error != 0 or self.session.controller.has_error
+        if not hinted or now_s - self._asked_errors_s < _ERRORS_S:
+            return False
+        self._asked_errors_s = now_s
+        return self._error(self.session.controller.errors()[0])
+
+    def _await_release(self, now_s: float) -> None:
+        """Whether the button is still pressed: an error that is cleared comes back as long as it is.
+
+        The controller keeps its error after the release, and does not tell one from the other. Clearing it
+        neither switches on the motors nor lets the arm take commands.
+        """
+        if now_s - self._asked_errors_s < _RELEASED_S:
+            return
+        self._asked_errors_s = now_s
+        error, _ = self.session.controller.errors()
+        if error in EMERGENCY_STOPS:
+            self.session.controller.clear()
+        else:
+            self._fault("The emergency stop was released: enable the arm again when it is safe.")
+
+    def _error(self, code: int) -> bool:
+        """Whether the controller has an error; then the arm takes no commands any more."""
+        if code == 0:
+            return False
+        if code in EMERGENCY_STOPS:
+            self._halt()
+            self._asked_errors_s = time.monotonic()
+            self._shared.become("emergency_stop", emergency_stop(code))
+        else:
+            self._fault(controller_error(self._sdk, code))
+        return True
+
+    def _go_on(self, now_s: float) -> None:
+        """Take commands again after a stop, once the arm is at rest."""
+        report, controller = self.session.report, self.session.controller
+        if self._resumed_s is None:
+            rests = np.abs(report.dq).max() <= STILL_RAD_S and report.state not in STATES_THAT_MOVE
+            if rests and report.arrived_s > self._stopped_s:
+                controller.set_mode(JOINT_VELOCITY)
+                controller.take_commands()
+                self._drives, self._resumed_s = True, now_s
+        elif self._accepts():
+            self._watch.reset(now_s)
+            with self._shared.changed:
+                if self._shared.condition == "stopping" and "stop" not in self._shared.requests:
+                    self._shared.become("enabled")
+            return
+        if now_s - self._stopped_s > _RESTING_S:
+            self._fault("The arm does not come to rest: press its emergency stop, and check its controller.")
+
+    def _fault(self, reason: str) -> None:
+        self._halt()
+        self._shared.become("fault", reason, recoverable=True)
+
+    def _lost(self, reason: str) -> None:
+        self._drives = False
+        self.session.controller.close()
+        self._shared.become("lost", reason, recoverable=True)
+
+    def _halt(self) -> None:
+        """Stop the arm for good, if it can be reached; else its last command ends by itself."""
+        if not self._drives:
+            return
+        self._drives = False
+        try:
+            self.session.controller.stop()
+        except (LinkLostError, RefusedError) as error:
+            if self._shared.condition not in ("off", "fault", "emergency_stop"):
+                self._lost(str(error))

@@ -1,0 +1,206 @@
+"""What is found out about an arm before it is driven, and why it is refused."""
+
+import math
+import time
+from typing import Final
+
+import numpy as np
+
+from latentarm.arms.real import Fact, Findings
+from latentarm.arms.xarm.controller import ANSWER_S
+from latentarm.arms.xarm.identity import BOUNDED_COMMANDS, GRIPPER_PORT, Identity
+from latentarm.arms.xarm.sdk import Sdk
+from latentarm.arms.xarm.session import Session
+from latentarm.arms.xarm.words import EMERGENCY_STOPS, controller_error, emergency_stop
+from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.robots.robot import Robot
+
+_SLOW_S: Final = 0.02
+"""An arm whose answers take longer at the median cannot be driven at 50 Hz, s."""
+
+_OUTSIDE_RAD: Final = 0.1
+_APART_RAD: Final = 0.02
+_RATE_OVER_S: Final = 0.1
+_SINGLE: Final = 1e-3
+"""Limits of the controller are single precision: a share by which they may be below the robot's."""
+
+
+def basic_facts(identity: Identity) -> tuple[Fact, ...]:
+    """What is known of an arm that is `too_different`."""
+    return (Fact("arm", identity.name), Fact("firmware", identity.version))
+
+
+def too_different(identity: Identity, robot: Robot) -> tuple[str, ...]:
+    """Why an arm is refused whatever state it is in."""
+    refusals: list[str] = []
+    if identity.firmware < BOUNDED_COMMANDS:
+        refusals.append(
+            f"The controller's firmware {identity.version} drops the duration of a command, so the arm"
+            " would not stop by itself: update it in UFACTORY Studio to 1.8.0 or newer, best 2.1 or newer."
+        )
+    if identity.axes is not None and identity.axes != robot.dof:
+        refusals.append(
+            f"The arm is an {identity.name} with {identity.axes} joints, and {robot.name} has {robot.dof}:"
+            " choose the robot that the arm is."
+        )
+    if robot.gripper is not None and BOUNDED_COMMANDS <= identity.firmware < GRIPPER_PORT:
+        refusals.append(
+            f"With firmware {identity.version} the gripper would hold up the arm's commands: update it in"
+            " UFACTORY Studio to 1.11.0 or newer."
+        )
+    return tuple(refusals)
+
+
+def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Findings:
+    """Look at a connected arm that is not `too_different`.
+
+    Args:
+        sdk: the manufacturer's library.
+        session: connected.
+        robot: what the arm should be.
+        bare: whether somebody said that it carries nothing.
+
+    Raises:
+        LinkLostError: the connection is lost meanwhile.
+    """
+    median_s, worst_s = session.controller.round_trips()
+    number, begun_s = session.report.number, time.monotonic()
+    time.sleep(_RATE_OVER_S)
+    rate_hz = (session.report.number - number) / (time.monotonic() - begun_s)
+    now = unfit(sdk, session, robot)
+    if session.status.error:
+        now = now.removesuffix(".") + "; an error that stays is cleared in UFACTORY Studio."
+    refusals = (*((now,) if now else ()), *_setting_refusals(session, robot, bare=bare))
+    if median_s > _SLOW_S:
+        refusals = (
+            *refusals,
+            f"The controller takes {1000 * median_s:.0f} ms to answer, and may take {1000 * _SLOW_S:.0f} ms:"
+            " connect it by cable, not by wireless.",
+        )
+    if not rate_hz > 0.0:
+        refusals = (*refusals, "The controller's joint angles do not change their time: restart it.")
+    return Findings((*_facts(sdk, session, robot), *_timing(session, median_s, worst_s, rate_hz)), refusals)
+
+
+def unfit(sdk: Sdk, session: Session, robot: Robot) -> str:
+    """Why a connected arm cannot be enabled now, one sentence; "" where it can.
+
+    Raises:
+        LinkLostError: the connection is lost meanwhile.
+    """
+    report = session.report
+    error, _ = session.controller.errors()
+    if error in EMERGENCY_STOPS:
+        return emergency_stop(error)
+    if error:
+        return controller_error(sdk, error)
+    if session.fault:
+        return session.fault
+    if not np.isfinite(report.q).all() or not np.isfinite(report.dq).all():
+        return "The arm reports joint angles that are no numbers: restart its controller."
+    if np.abs(report.dq).max() > 5.0 * STILL_RAD_S:
+        return "The arm is moving: end the program that drives it, then try again."
+    outside = robot.limits.violation(report.q)
+    joint = int(np.argmax(outside))
+    if outside[joint] > _OUTSIDE_RAD:
+        return (
+            f"Joint {robot.joint_names[joint]!r} is at {report.q[joint]:.2f} rad, outside"
+            f" {robot.limits.lower[joint]:.2f} to {robot.limits.upper[joint]:.2f}: choose the model that"
+            " the arm is, or move the joint back in UFACTORY Studio."
+        )
+    apart = float(np.abs(session.controller.joints(robot.dof) - report.q).max())
+    if not apart <= _APART_RAD:
+        return (
+            f"The joint angles that the arm reports differ by {apart:.2g} rad from those that its controller"
+            " answers: restart the controller."
+        )
+    return ""
+
+
+def _setting_refusals(session: Session, robot: Robot, *, bare: bool) -> tuple[str, ...]:
+    status = session.status
+    refusals: list[str] = []
+    load = (status.load_kg, *status.load_centre_mm)
+    if not all(map(math.isfinite, load)) or status.load_kg < 0.0:
+        refusals.append("The controller's payload is no number: set it in UFACTORY Studio under TCP Payload.")
+    elif status.load_kg == 0.0 and (robot.gripper is not None or not bare):
+        refusals.append(
+            "The controller does not know what the arm carries (payload 0 kg): set it in UFACTORY Studio"
+            " under TCP Payload, or add ?load=none to the address where nothing is mounted."
+        )
+    if status.collision_sensitivity == 0:
+        refusals.append(
+            "The arm's collision detection is off: set a sensitivity of 1 or more in UFACTORY Studio."
+        )
+    slack = 1.0 + _SINGLE
+    for what, own, unit in (
+        ("speed", float(robot.limits.velocity.max()) - status.speed_rad_s * slack, "rad/s"),
+        (
+            "acceleration",
+            float(robot.limits.acceleration.max()) - status.acceleration_rad_s2 * slack,
+            "rad/s²",
+        ),
+    ):
+        if not own <= 0.0:
+            limit = status.speed_rad_s if what == "speed" else status.acceleration_rad_s2
+            refusals.append(
+                f"The controller limits the {what} of joints to {limit:.3g} {unit}, less than {robot.name}"
+                f" states: lower the robot's {what} limits with --limits FILE."
+            )
+    return tuple(refusals)
+
+
+def _facts(sdk: Sdk, session: Session, robot: Robot) -> tuple[Fact, ...]:
+    identity, status = session.identity, session.status
+    centre = ", ".join(f"{figure:.0f}" for figure in status.load_centre_mm)
+    gravity = np.array(status.gravity)
+    tilt = math.degrees(
+        math.acos(float(np.clip(-gravity[2] / max(np.linalg.norm(gravity), 1e-9), -1.0, 1.0)))
+    )
+    facts = [
+        Fact("arm", f"{identity.name}, {status.axes} joints (type {status.kind})"),
+        Fact("firmware", identity.version),
+        Fact("serial number", identity.arm_serial or "not told"),
+        Fact("control box", identity.box_serial or "not told"),
+        Fact("library", f"xarm-python-sdk {sdk.version}"),
+        Fact(
+            "joints",
+            f"{robot.name} by order: " + ", ".join(robot.joint_names) + f" are taken for J1 to J{robot.dof}",
+        ),
+        Fact("payload", f"{status.load_kg:.2f} kg, centre ({centre}) mm"),
+        Fact("mounting", "upright" if tilt < 1.0 else f"tilted by {tilt:.0f}°"),
+        Fact(
+            "limits",
+            f"{status.speed_rad_s:.2f} rad/s, {status.acceleration_rad_s2:.1f} rad/s²"
+            + (", reduced mode on" if status.reduced else "")
+            + (", safety boundary on" if status.fenced else ""),
+        ),
+        Fact("collision sensitivity", f"{status.collision_sensitivity} of 5"),
+        Fact("warning", "none" if not status.warning else f"{status.warning}"),
+        Fact("state", f"mode {status.mode}, state {status.state}"),
+    ]
+    if status.simulated:
+        facts.append(Fact("simulation", "the controller simulates its arm: nothing real moves"))
+    if session.gripper is not None and robot.gripper is not None:
+        facts.append(
+            Fact(
+                "gripper",
+                f"{1000 * session.gripper.reading.width_m:.0f} of {1000 * robot.gripper.width_m:.0f} mm open;"
+                " how hard it presses cannot be set",
+            )
+        )
+    return tuple(facts)
+
+
+def _timing(session: Session, median_s: float, worst_s: float, rate_hz: float) -> tuple[Fact, ...]:
+    timed = session.report.controller_s is not None
+    limit = session.status.acceleration_rad_s2
+    from_half = f", plus {1000 * 0.5 / limit:.0f} ms to rest from 0.5 rad/s" if limit > 0.0 else ""
+    return (
+        Fact(
+            "clock", "the controller's, in every report" if timed else "not told: reports count from arrival"
+        ),
+        Fact("reports", f"{rate_hz:.0f} per second"),
+        Fact("round trip", f"{1000 * median_s:.1f} ms at the median, {1000 * worst_s:.1f} ms at most"),
+        Fact("stop time", f"begins within {1000 * ANSWER_S + 20:.0f} ms of the end of a command{from_half}"),
+    )

@@ -1,0 +1,67 @@
+"""When the controller measured what it reports, on our clock."""
+
+from typing import Final, final
+
+_DRIFT: Final = 2e-4
+"""How much faster one clock may run than the other."""
+
+_AHEAD_S: Final = 0.05
+"""A report that left before it was measured, by more than this, says that a clock has jumped, s."""
+
+_BEHIND_S: Final = 0.5
+"""So late is no report by itself, s."""
+
+_OWN_JUMP_S: Final = 0.05
+
+
+@final
+class ReportClock:
+    """Converts the controller's times, and finds clocks that jump.
+
+    A report takes some time to arrive, never less than the quickest of all so far; what it took longer than
+    that is its age when it arrives. So reports that were held up on the way are known to be old.
+
+    Attributes:
+        fault: what is wrong with a clock, one sentence; "" where nothing is.
+    """
+
+    def __init__(self) -> None:
+        self.fault = ""
+        self._quickest_s: float | None = None
+        self._before: tuple[float, float] | None = None
+
+    def measured_s(self, arrived_s: float, monotonic_s: float, controller_s: float | None) -> float:
+        """When a report was measured, s on the driver's clock; when it arrived, where that is not told.
+
+        Args:
+            arrived_s: when it arrived, on the driver's clock, s.
+            monotonic_s: the same on the machine's monotonic clock, s.
+            controller_s: when it was measured on the controller's clock, s, or None.
+        """
+        elapsed_s = 0.0
+        if self._before is not None:
+            elapsed_s = monotonic_s - self._before[1]
+            jumped_s = (arrived_s - self._before[0]) - elapsed_s
+            if abs(jumped_s) > _OWN_JUMP_S:
+                self._found(f"This computer's clock has jumped by {jumped_s:.2g} s")
+        self._before = arrived_s, monotonic_s
+        if controller_s is None:
+            return arrived_s
+        took_s = monotonic_s - controller_s
+        if self._quickest_s is None:
+            self._quickest_s = took_s
+        late_s = took_s - (self._quickest_s + _DRIFT * elapsed_s)
+        if late_s < -_AHEAD_S:
+            self._found(f"The clock of the arm's controller has jumped forward by {-late_s:.2g} s")
+        elif late_s > _BEHIND_S:
+            self._found(
+                f"The clock of the arm's controller has jumped back, or its reports are {late_s:.2g} s late"
+            )
+        self._quickest_s = min(self._quickest_s + _DRIFT * elapsed_s, took_s)
+        return arrived_s - max(0.0, late_s)
+
+    def _found(self, what: str) -> None:
+        if not self.fault:
+            self.fault = (
+                f"{what}: check that nothing sets it while the arm is in use, then enable the arm again."
+            )

@@ -1,0 +1,292 @@
+"""What the controller reports by itself: joint angles many times per second, everything else now and then."""
+
+import contextlib
+import socket
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final, Literal, final
+
+import numpy as np
+
+from latentarm.arms.xarm.controller import LinkLostError
+from latentarm.arms.xarm.report_clock import ReportClock
+from latentarm.arms.xarm.sdk import Sdk
+from latentarm.types import FloatArray
+
+TIMED_PORT: Final = 30000
+"""Joint states with the controller's time, 200 per second; from firmware 2.1 on."""
+
+PLAIN_PORT: Final = 30003
+"""Joint angles without a time, 100 per second."""
+
+STATUS_PORT: Final = 30002
+"""Everything else, a few times per second."""
+
+_LEAST: Final[dict[int, int]] = {TIMED_PORT: 172, PLAIN_PORT: 87, STATUS_PORT: 245}
+"""A frame with fewer bytes does not hold what is read from it."""
+
+_LARGEST: Final = 4096
+_DIFFERENCED_S: Final = 0.04
+"""Where velocities are not reported, they are the change of the angles over about this time, s."""
+
+
+@final
+@dataclass(frozen=True)
+class JointReport:
+    """One report of the joints.
+
+    Attributes:
+        q: (n,), joint angles, rad; as they came, NaN included.
+        dq: (n,), joint velocities, rad/s.
+        mode: what kind of commands the controller takes.
+        state: 0 to 2 take commands.
+        measured_s: when it was measured, on the driver's clock, s.
+        arrived_s: when it arrived, on the machine's monotonic clock, s.
+        controller_s: when it was measured, on the controller's clock, s; None where that is not told.
+        number: grows by one with every report.
+    """
+
+    q: FloatArray
+    dq: FloatArray
+    mode: int
+    state: int
+    measured_s: float
+    arrived_s: float
+    controller_s: float | None
+    number: int
+
+
+@final
+@dataclass(frozen=True)
+class StatusReport:
+    """One report of everything else.
+
+    Attributes:
+        axes: number of joints.
+        kind: the manufacturer's number of the type.
+        error: of the controller, 0 for none.
+        warning: of the controller, 0 for none.
+        mode: what kind of commands the controller takes.
+        state: 0 to 2 take commands.
+        load_kg: mass of what the arm carries, as the controller was told.
+        load_centre_mm: its centre of mass.
+        collision_sensitivity: 0 is off, 5 the most sensitive.
+        gravity: direction of gravity in the base frame.
+        speed_rad_s: fastest that joints may turn.
+        acceleration_rad_s2: fastest that they may accelerate.
+        reduced: whether the reduced mode limits speeds.
+        fenced: whether a safety boundary is set.
+        simulated: whether the controller simulates its arm.
+    """
+
+    axes: int
+    kind: int
+    error: int
+    warning: int
+    mode: int
+    state: int
+    load_kg: float
+    load_centre_mm: tuple[float, ...]
+    collision_sensitivity: int
+    gravity: tuple[float, ...]
+    speed_rad_s: float
+    acceleration_rad_s2: float
+    reduced: bool
+    fenced: bool
+    simulated: bool
+
+
+@final
+class ReportStream:
+    """Reads one of the controller's report ports in a thread of its own.
+
+    Args:
+        host: of the controller.
+        port: to connect to.
+        kind: which of the manufacturer's ports that is.
+        take: called with each frame, in the stream's thread.
+
+    Raises:
+        LinkLostError: nobody answers there.
+    """
+
+    def __init__(
+        self, host: str, port: int, kind: Literal[30000, 30002, 30003], take: Callable[[bytes], None]
+    ) -> None:
+        self._least = _LEAST[kind]
+        self._take = take
+        self._ended = threading.Event()
+        self.fault = ""
+        try:
+            self._socket = socket.create_connection((host, port), 2.0)
+        except OSError as error:
+            raise LinkLostError(
+                f"The controller at {host} does not report on port {port}: check that no firewall is in"
+                f" between, and that its firmware is not older than stated ({error})."
+            ) from error
+        self._socket.settimeout(0.2)
+        self._thread = threading.Thread(target=self._run, name=f"xarm reports {kind}", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """End the connection and the thread."""
+        self._ended.set()
+        with contextlib.suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
+        if self._thread is not threading.current_thread():
+            self._thread.join(2.0)
+        self._socket.close()
+
+    def _run(self) -> None:
+        received = bytearray()
+        while not self._ended.is_set():
+            try:
+                data = self._socket.recv(8192)
+            except TimeoutError:
+                continue
+            except OSError:
+                data = b""
+            if not data:
+                self.fault = "The arm's controller has ended the connection."
+                return
+            received += data
+            if not self._frames(received):
+                self.fault = "The arm's controller reports in a form that is not known."
+                return
+
+    def _frames(self, received: bytearray) -> bool:
+        """Hand on all complete frames; False where this is no stream of reports."""
+        while len(received) >= 4:
+            size = int.from_bytes(received[:4], "big")
+            if not self._least <= size <= _LARGEST:
+                return False
+            if len(received) < size:
+                return True
+            frame = bytes(received[:size])
+            del received[:size]
+            self._take(frame)
+        return True
+
+
+@final
+class JointReports:
+    """The newest joint states.
+
+    Args:
+        sdk: the manufacturer's library.
+        host: of the controller.
+        port: to connect to; None for the manufacturer's.
+        dof: number of joints n.
+        timed: whether the firmware reports on the port with times.
+        now_s: the driver's clock, s.
+        number: of the last report of the connection before.
+
+    Raises:
+        LinkLostError: nobody answers there.
+
+    Attributes:
+        newest: the newest report, or None before the first. One that repeats the controller's time is none.
+        came: notified when one comes.
+        clock: what is known of the clocks.
+    """
+
+    def __init__(
+        self,
+        sdk: Sdk,
+        host: str,
+        port: int | None,
+        dof: int,
+        *,
+        timed: bool,
+        now_s: Callable[[], float],
+        number: int,
+    ) -> None:
+        kind: Literal[30000, 30003] = TIMED_PORT if timed else PLAIN_PORT
+        self._report: Any = sdk.report(kind)
+        self._dof = dof
+        self._timed = timed
+        self._now_s = now_s
+        self.clock = ReportClock()
+        self._earlier: deque[tuple[float, FloatArray]] = deque()
+        self.newest: JointReport | None = None
+        self._number = number
+        self.came = threading.Condition()
+        self.stream = ReportStream(host, port or kind, kind, self._take)
+
+    def _take(self, frame: bytes) -> None:
+        report, n = self._report, self._dof
+        report.update(frame)
+        controller_s = report.timestamp / 1e6 if self._timed else None
+        before = self.newest
+        if before is not None and controller_s is not None and controller_s == before.controller_s:
+            return
+        arrived_s = time.monotonic()
+        measured_s = self.clock.measured_s(self._now_s(), arrived_s, controller_s)
+        q = np.array(report.actual_joint_angle[:n], dtype=np.float64)
+        if self._timed:
+            dq = np.array(report.actual_joint_velocity[:n], dtype=np.float64)
+        else:
+            dq = self._difference(q, arrived_s)
+        self._number += 1
+        with self.came:
+            self.newest = JointReport(
+                q, dq, report.mode, report.state, measured_s, arrived_s, controller_s, self._number
+            )
+            self.came.notify_all()
+
+    def _difference(self, q: FloatArray, arrived_s: float) -> FloatArray:
+        """(n,), rad/s, from angles (n,), rad, of now and of a moment ago."""
+        self._earlier.append((arrived_s, q))
+        while arrived_s - self._earlier[1 if len(self._earlier) > 1 else 0][0] >= _DIFFERENCED_S:
+            self._earlier.popleft()
+        since_s, earlier = self._earlier[0]
+        return (q - earlier) / max(arrived_s - since_s, 0.5 * _DIFFERENCED_S)
+
+
+@final
+class StatusReports:
+    """The newest of everything else.
+
+    Args:
+        sdk: the manufacturer's library.
+        host: of the controller.
+        port: to connect to; None for the manufacturer's.
+
+    Raises:
+        LinkLostError: nobody answers there.
+
+    Attributes:
+        newest: the newest report, or None before the first.
+    """
+
+    def __init__(self, sdk: Sdk, host: str, port: int | None) -> None:
+        self._report: Any = sdk.report(STATUS_PORT)
+        self.newest: StatusReport | None = None
+        self.came = threading.Event()
+        self.stream = ReportStream(host, port or STATUS_PORT, STATUS_PORT, self._take)
+
+    def _take(self, frame: bytes) -> None:
+        report = self._report
+        report.update(frame)
+        payload = report.tcp_payload
+        self.newest = StatusReport(
+            axes=int(report.robot_axis),
+            kind=int(report.robot_type),
+            error=int(report.error_code),
+            warning=int(report.warn_code),
+            mode=int(report.mode),
+            state=int(report.state),
+            load_kg=float(payload[0]),
+            load_centre_mm=tuple(float(figure) for figure in payload[1:4]),
+            collision_sensitivity=int(report.collision_sens),
+            gravity=tuple(float(figure) for figure in report.gravity_direction),
+            speed_rad_s=float(report.joint_max_speed),
+            acceleration_rad_s2=float(report.joint_max_acc),
+            reduced=bool(report.is_reduced_mode),
+            fenced=bool(report.is_fence_mode),
+            simulated=bool(report.is_simulation_robot),
+        )
+        self.came.set()

@@ -1,0 +1,163 @@
+"""The manufacturer's library, imported when an arm is made."""
+
+import contextlib
+import importlib
+import sys
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Protocol, cast, final
+
+from latentarm.errors import UserError
+
+
+class Port(Protocol):
+    """What the library writes its requests to, and reads the answers from."""
+
+    def flush(self) -> int:
+        """Forget answers that nobody waits for any more."""
+        ...
+
+    def write(self, data: bytes) -> int:
+        """Send a frame; 0, or -1 where it cannot be sent."""
+        ...
+
+    def read(self, timeout: float | None = None) -> bytes | int:
+        """The next frame, or -1 where none has come within the time, s."""
+        ...
+
+
+class Commands(Protocol):
+    """The library's ``UxbusCmdTcp``, as far as it is used. Each answer begins with a code."""
+
+    def set_timeout(self, timeout: float) -> object:
+        """How long an answer may take, s."""
+        ...
+
+    def get_version(self) -> list[int]:
+        """40 characters: axes, type, serial numbers, firmware."""
+        ...
+
+    def get_state(self) -> list[int]:
+        """The state."""
+        ...
+
+    def get_err_code(self) -> list[int]:
+        """Error and warning."""
+        ...
+
+    def get_joint_pos(self) -> list[float]:
+        """7 joint angles, rad."""
+        ...
+
+    def motion_en(self, axis_id: int, enable: int) -> list[int]:
+        """Switch on the motors and release the brakes."""
+        ...
+
+    def set_mode(self, mode: int) -> list[int]:
+        """Choose what kind of commands are taken."""
+        ...
+
+    def set_state(self, value: int) -> list[int]:
+        """0: take commands, 4: stop."""
+        ...
+
+    def clean_err(self) -> list[int]:
+        """Clear the error."""
+        ...
+
+    def clean_war(self) -> list[int]:
+        """Clear the warning."""
+        ...
+
+    def vc_set_jointv(self, jnt_v: list[float], jnt_sync: int, duration: float) -> list[int]:
+        """Move joints at 7 speeds, rad/s, for a duration, s."""
+        ...
+
+    def gripper_modbus_set_en(self, value: int) -> list[int]:
+        """Switch on the gripper."""
+        ...
+
+    def gripper_modbus_set_mode(self, value: int) -> list[int]:
+        """0: go to positions."""
+        ...
+
+    def gripper_modbus_set_posspd(self, speed: int) -> list[int]:
+        """How fast it goes."""
+        ...
+
+    def gripper_modbus_set_pos(self, pulse: int) -> list[int]:
+        """Go to a position."""
+        ...
+
+    def gripper_modbus_get_pos(self) -> list[int]:
+        """Its position."""
+        ...
+
+    def gripper_modbus_get_errcode(self) -> list[int]:
+        """Its error."""
+        ...
+
+    def gripper_modbus_r16s(self, addr: int, count: int) -> list[int]:
+        """Any of its registers."""
+        ...
+
+
+@final
+@dataclass(frozen=True)
+class Sdk:
+    """What is used of the library.
+
+    Attributes:
+        version: of the library.
+        command_class: ``UxbusCmdTcp``.
+        report_class: ``ReportDataStructure``.
+        errors: the controller's errors by code: title and description by language.
+        gripper_errors: those of the gripper.
+    """
+
+    version: str
+    command_class: Any
+    report_class: Any
+    errors: dict[object, dict[str, dict[str, str]]]
+    gripper_errors: dict[object, dict[str, dict[str, str]]]
+
+    def commands(self, port: Port) -> Commands:
+        """Requests over a port, in the manufacturer's private protocol."""
+        return cast(Commands, self.command_class(port))
+
+    def report(self, port: int) -> Any:
+        """A reader of the reports of one of the manufacturer's ports, 30000 to 30003; angles in rad."""
+        return self.report_class.create(port, is_radian=True)
+
+
+@cache
+def load_sdk() -> Sdk:
+    """Import the library.
+
+    Raises:
+        UserError: it is not installed, or cannot be imported.
+    """
+    try:
+        # It prints its version, and logs to what standard output is at this moment.
+        with contextlib.redirect_stdout(sys.stderr):
+            version = importlib.import_module("xarm.version")
+            commands = importlib.import_module("xarm.core.wrapper.uxbus_cmd_tcp")
+            report = importlib.import_module("xarm.x3.report")
+            codes = importlib.import_module("xarm.core.config.x_code")
+    except ImportError as error:
+        raise UserError(
+            "--arm xarm needs the manufacturer's library: install it with pip install 'latentarm[xarm]'"
+            f" ({error})."
+        ) from error
+    except OSError as error:
+        raise UserError(
+            "--arm xarm cannot import xarm-python-sdk, which keeps a log in ~/.UFACTORY:"
+            f" make the home directory writable ({error})."
+        ) from error
+    return Sdk(
+        version.__version__,
+        commands.UxbusCmdTcp,
+        report.ReportDataStructure,
+        codes.ControllerErrorCodeMap,
+        codes.GripperErrorCodeMap,
+    )

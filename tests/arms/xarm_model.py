@@ -1,0 +1,127 @@
+"""A simulated xArm: joints that follow velocities of bounded duration, states, modes, errors.
+
+Written from the manufacturer's documentation of its states, modes and codes. It accelerates as fast as its
+limits allow, without jerk limits or lag, and nothing pulls at it. It is no measurement of a real arm.
+"""
+
+import time
+from collections import deque
+from dataclasses import dataclass, field
+
+CYCLE_S = 0.004
+READY, MOVING, STOPPED = 2, 1, 4
+JOINT_VELOCITY = 4
+OLD = (1, 8, 0)
+
+
+@dataclass
+class XArmModel:
+    """Attributes: see the manufacturer's protocol; angles in rad."""
+
+    axes: int = 7
+    kind: int = 7
+    firmware: tuple[int, int, int] = (2, 3, 0)
+    q: list[float] = field(default_factory=lambda: [0.0] * 7)
+    lower: float = -6.28
+    upper: float = 6.28
+    speed: float = 3.14
+    acceleration: float = 20.0
+    load_kg: float = 0.8
+    collision_sensitivity: int = 3
+    simulated: int = 0
+
+    def __post_init__(self) -> None:
+        self.v = [0.0] * 7
+        self.trace: deque[tuple[float, list[float], float]] = deque(maxlen=30_000)
+        self.gripper = 850.0
+        self.gripper_target = 850.0
+        self.gripper_speed = 2000.0
+        self.gripper_on = False
+        self.grips_at: float | None = None
+        self.pressed = False
+        self.commands = 0
+        self.now_s = time.monotonic()
+        self.boot()
+
+    def boot(self) -> None:
+        """As after power-on: at rest, motors off, position mode, stopped."""
+        self.v = [0.0] * 7
+        self.target = [0.0] * 7
+        self.until_s = 0.0
+        self.mode, self.state, self.error, self.warning = 0, STOPPED, 0, 0
+        self.motors = False
+
+    def advance(self) -> None:
+        """Move on to now, in whole cycles."""
+        now_s = time.monotonic()
+        while self.now_s + CYCLE_S <= now_s:
+            self.now_s += CYCLE_S
+            self._cycle()
+
+    def takes_velocity(self) -> bool:
+        return self.motors and self.mode == JOINT_VELOCITY and self.state < 3 and not self.error
+
+    def move(self, velocity: list[float], duration_s: float | None) -> None:
+        """Take a velocity command; one without duration, or with 0, has no end."""
+        self.commands += 1
+        if not self.takes_velocity():
+            return
+        if any(abs(speed) > self.speed for speed in velocity[: self.axes]):
+            self.fail(24)
+            return
+        bounded = duration_s is not None and duration_s > 0.0 and self.firmware >= OLD
+        self.target = list(velocity)
+        self.until_s = self.now_s + duration_s if bounded and duration_s is not None else float("inf")
+
+    def set_state(self, state: int) -> None:
+        if state == 0:
+            if self.error or not self.motors:
+                return
+            self.state = READY
+        elif state in (3, 4, 6):
+            self.state = STOPPED if state == 4 else state
+        self.target = [0.0] * 7
+
+    def set_mode(self, mode: int) -> None:
+        if mode != self.mode:
+            self.target = [0.0] * 7
+        self.mode = mode
+
+    def fail(self, error: int) -> None:
+        self.error, self.state = error, STOPPED
+        self.target = [0.0] * 7
+        if error <= 3:
+            self.motors = False
+
+    def clear(self) -> None:
+        self.error = 1 if self.pressed else 0
+
+    def press(self) -> None:
+        self.pressed = True
+        self.fail(1)
+
+    def _cycle(self) -> None:
+        if self.now_s > self.until_s:
+            self.target = [0.0] * 7
+        step = self.acceleration * CYCLE_S
+        for joint in range(self.axes):
+            change = min(max(self.target[joint] - self.v[joint], -step), step)
+            self.v[joint] += change
+            self.q[joint] += self.v[joint] * CYCLE_S
+            if not self.lower <= self.q[joint] <= self.upper:
+                self.q[joint] = min(max(self.q[joint], self.lower), self.upper)
+                self.v[joint] = 0.0
+                self.fail(23)
+        fastest = max(map(abs, self.v))
+        if self.state < 3:
+            self.state = MOVING if fastest > 0.0 else READY
+        reach = self.gripper_speed * CYCLE_S * 0.2
+        towards = min(max(self.gripper_target - self.gripper, -reach), reach)
+        if self.gripper_on and not (self.holding() and towards < 0.0):
+            self.gripper += towards
+        self.trace.append((self.now_s, self.q[: self.axes], fastest))
+
+    def holding(self) -> bool:
+        """Whether something stands between the fingers that are closing."""
+        closes = self.gripper_target < self.gripper
+        return self.grips_at is not None and closes and self.gripper <= self.grips_at
