@@ -38,6 +38,7 @@ REAL_ARMS: Final = Catalogue(
     "latentarm.real_arms",
     "driver",
     {
+        "franka": "latentarm.arms.franka.arm:FrankaArm",
         "ros2": "latentarm.arms.ros2.arm:Ros2Arm",
         "xarm": "latentarm.arms.xarm.arm:XArm",
     },

@@ -11,6 +11,7 @@ from latentarm.errors import UserError
 from latentarm.robots.assemble import restate
 from latentarm.robots.attachments import attach
 from latentarm.robots.end_effector import AmbiguousEndEffectorError
+from latentarm.robots.fr3 import fr3
 from latentarm.robots.model_file import load_model_file
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
@@ -24,6 +25,7 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
     "panda_fork": cache(lambda: attach(panda(), "fork")),
     "panda_spoon": cache(lambda: attach(panda(), "spoon")),
     "panda_cup": cache(lambda: attach(panda(), "cup")),
+    "fr3": fr3,
 }
 """The built-in robots."""
 

@@ -133,8 +133,20 @@ def panda() -> Robot:
 
     Returns the same object each time; do not write to its arrays.
     """
+    return franka("panda", LIMITS, TOOL_SPEED_LIMIT)
+
+
+def franka(model: str, limits: JointLimits, tool_speed_limit: float) -> Robot:
+    """An arm with the Panda's links and hand.
+
+    Args:
+        model: name of the robot.
+        limits: of its seven joints, positions within those of the Panda: for these it is known which links
+            never meet.
+        tool_speed_limit: of the end-effector, m/s.
+    """
     spec = mujoco.MjSpec()
-    spec.modelname = "panda"
+    spec.modelname = model
     spec.compiler.degree = False
     body = spec.worldbody.add_body(name="link0")
     bodies = {"link0": body}
@@ -149,7 +161,7 @@ def panda() -> Robot:
         body.add_joint(
             name=f"joint{i + 1}",
             axis=[0.0, 0.0, 1.0],
-            range=[LIMITS.lower[i], LIMITS.upper[i]],
+            range=[limits.lower[i], limits.upper[i]],
             actfrclimited=True,
             actfrcrange=[-TORQUE_LIMIT[i], TORQUE_LIMIT[i]],
             armature=0.1,
@@ -181,12 +193,12 @@ def panda() -> Robot:
     spec.add_key(name="home", qpos=[*HOME, *([GRIPPER.width_m / 2] * 2)])
     spec.compile()
     return assemble(
-        "panda",
+        model,
         spec.to_xml(),
         ["tool"],
-        LIMITS,
+        limits,
         HOME,
-        TOOL_SPEED_LIMIT,
+        tool_speed_limit,
         tool_speed_source="manufacturer",
         gripper=GRIPPER,
     )

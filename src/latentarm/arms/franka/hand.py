@@ -1,0 +1,143 @@
+"""The Franka Hand, in a thread of its own because its commands wait until the fingers are there."""
+
+import threading
+from typing import TYPE_CHECKING, Final, final
+
+from latentarm.arms.franka.words import plain
+from latentarm.robots.gripper import Gripper
+from latentarm.types import GripperCommand, GripperReading
+
+if TYPE_CHECKING:
+    import franky
+
+POLL_S: Final = 0.02
+"""Time between two readings, s; the hand itself has some thirty in a second."""
+
+_ANSWER_S: Final = 3.0
+"""A hand that was told to stop says so within this time, s."""
+
+_CLOSED_M: Final = 0.001
+"""A command to a width below this closes the hand on whatever is there, m."""
+
+_NOTHING_M: Final = 0.002
+"""Fingers that are no farther apart than this hold nothing, m."""
+
+_ALIKE_M: Final = 5e-4
+
+_ABANDONED: Final[list["franky.Gripper"]] = []
+"""Hands that never answered: a thread of franky still waits for each."""
+
+_LEAST_SPEED: Final = 0.001
+
+_LEAST_FORCE: Final = 1.0
+
+
+@final
+class Hand:
+    """Drives a connected hand.
+
+    A command to close grasps, and keeps the force; any other moves to a width. A new command stops the one
+    before. Nothing is let go of because commands end, nor by `close`.
+
+    Args:
+        hand: what franky has connected.
+        gripper: what the robot's model says of it.
+
+    Raises:
+        Exception: of franky, where no reading comes.
+    """
+
+    def __init__(self, hand: "franky.Gripper", gripper: Gripper) -> None:
+        self._hand = hand
+        self._gripper = gripper
+        self._lock = threading.Lock()
+        self._asked: GripperCommand | None = None
+        self._carried_out: GripperCommand | None = None
+        self._motion: franky.BoolFuture | None = None
+        self._lost = ""
+        self._closing = threading.Event()
+        self._wake = threading.Event()
+        self._reading = self._measure()
+        self._thread = threading.Thread(target=self._run, name="franka-hand", daemon=True)
+        self._thread.start()
+
+    @property
+    def reading(self) -> GripperReading:
+        """The newest."""
+        return self._reading
+
+    @property
+    def lost(self) -> str:
+        """Why there are no readings any more, or ""."""
+        return self._lost
+
+    def ask(self, command: GripperCommand) -> None:
+        """Take a command; one like the last changes nothing. Does not wait."""
+        with self._lock:
+            if _alike(command, self._asked):
+                return
+            self._asked = command
+        self._wake.set()
+
+    def close(self) -> None:
+        """End the thread; fingers under way stop, and keep what they hold."""
+        self._closing.set()
+        self._wake.set()
+        self._thread.join(_ANSWER_S)
+
+    def _run(self) -> None:
+        try:
+            while not self._closing.is_set():
+                self._wake.wait(POLL_S)
+                self._wake.clear()
+                with self._lock:
+                    asked = self._asked
+                if asked is not None and not _alike(asked, self._carried_out):
+                    self._carry_out(asked)
+                self._reading = self._measure()
+            self._end_motion()
+        # franky raises whatever libfranka and the network do.
+        except Exception as error:  # noqa: BLE001
+            self._lost = plain(error)
+            self._give_up_motion()
+
+    def _give_up_motion(self) -> None:
+        """Wait for a motion that has lost its hand; franky's gripper must not go before it."""
+        if self._motion is not None and not self._motion.wait(_ANSWER_S):
+            _ABANDONED.append(self._hand)
+
+    def _carry_out(self, command: GripperCommand) -> None:
+        self._end_motion()
+        speed = min(max(command.speed_m_s, _LEAST_SPEED), self._gripper.speed_m_s)
+        force = min(max(command.force_n, _LEAST_FORCE), self._gripper.force_n)
+        width = min(max(command.width_m, 0.0), self._gripper.width_m)
+        if width <= _CLOSED_M:
+            self._motion = self._hand.grasp_async(0.0, speed, force, 0.0, self._gripper.width_m)
+        else:
+            self._motion = self._hand.move_async(width, speed)
+        self._carried_out = command
+
+    def _end_motion(self) -> None:
+        """Stop the fingers, where they are under way, and wait for the hand's answer."""
+        if self._motion is None or self._motion.wait(0.0):
+            self._motion = None
+            return
+        self._hand.stop()
+        if not self._motion.wait(_ANSWER_S):
+            raise TimeoutError("the hand did not say that it has stopped")
+        self._motion = None
+
+    def _measure(self) -> GripperReading:
+        state = self._hand.state
+        grasps = self._carried_out is not None and self._carried_out.width_m <= _CLOSED_M
+        holding = bool(state.is_grasped) and state.width > _NOTHING_M
+        return GripperReading(float(state.width), holding and (grasps or self._carried_out is None))
+
+
+def _alike(one: GripperCommand, other: GripperCommand | None) -> bool:
+    return (
+        other is not None
+        and abs(one.width_m - other.width_m) < _ALIKE_M
+        and abs(one.force_n - other.force_n) < 1e-3
+        and abs(one.speed_m_s - other.speed_m_s) < 1e-4
+    )

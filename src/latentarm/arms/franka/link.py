@@ -1,0 +1,307 @@
+"""A connection to a Franka: opened, looked at, set up. Nothing here moves it."""
+
+import statistics
+import threading
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, final
+
+import numpy as np
+
+from latentarm.arms.franka.limits import SHARE, FrankaLimits, limits_of
+from latentarm.arms.franka.options import FrankaOptions
+from latentarm.arms.franka.words import plain
+from latentarm.arms.real import Fact, Findings
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
+
+if TYPE_CHECKING:
+    import franky
+
+_CONNECT_S: Final = 8.0
+"""An arm that has not answered by then is not there, s."""
+
+_AXIS_RAD: Final = 0.01
+_AXIS_M: Final = 0.003
+"""How far a joint's axis may lie from where the robot's model has it."""
+
+_REALTIME_FILE: Final = Path("/sys/kernel/realtime")
+
+_CLOCK_S: Final = 0.3
+_ROUND_TRIPS: Final = 9
+
+
+@final
+class Link:
+    """An open connection. It ends with `close`: franky itself has only the end of its objects for that.
+
+    Args:
+        arm: franky's robot.
+        hand: franky's gripper, or None where the robot has none.
+        limits: what the arm can do; None where it is an arm that is not known.
+    """
+
+    def __init__(
+        self, arm: "franky.Robot", hand: "franky.Gripper | None", limits: FrankaLimits | None
+    ) -> None:
+        self._arm: franky.Robot | None = arm
+        self._hand = hand
+        self._limits = limits
+
+    @property
+    def arm(self) -> "franky.Robot":
+        """Franky's robot; nobody keeps it.
+
+        Raises:
+            RuntimeError: the connection has ended.
+        """
+        if self._arm is None:
+            raise RuntimeError("the connection to the arm has ended")
+        return self._arm
+
+    @property
+    def hand(self) -> "franky.Gripper | None":
+        """Franky's gripper, or None; nobody keeps it longer than this link."""
+        return self._hand
+
+    @property
+    def limits(self) -> FrankaLimits | None:
+        """What the arm can do, or None."""
+        return self._limits
+
+    def close(self) -> None:
+        """End the connection; the arm then stops by itself."""
+        self._arm = self._hand = None
+
+
+def library() -> Any:
+    """The module ``franky``.
+
+    Raises:
+        UserError: it is not installed.
+    """
+    try:
+        import franky
+    except ImportError as error:
+        raise UserError(
+            f"--arm franka needs franky-control, which cannot be imported here ({plain(error)}):"
+            " pip install 'latentarm[franka]', on Linux."
+        ) from error
+    return franky
+
+
+def open_link(host: str, options: FrankaOptions, robot: Robot) -> Link:
+    """Connect. The arm's collision thresholds are set as it is connected; nothing moves.
+
+    Args:
+        host: name or address of the arm.
+        options: its thresholds, and whether a realtime kernel is needed.
+        robot: what the arm is meant to be.
+
+    Raises:
+        UserError: there is no arm or no hand, it does not answer, or it speaks another version.
+    """
+    franky = library()
+    found: list[Link] = []
+    failed: list[Exception] = []
+
+    def connect() -> None:
+        # libfranka raises its own exceptions; which one decides what is said.
+        try:
+            arm = franky.Robot(host, realtime_config=_realtime(franky, options))
+            hand = None if robot.gripper is None else franky.Gripper(host)
+            found.append(Link(arm, hand, limits_of(arm.model_urdf)))
+        except Exception as error:  # noqa: BLE001
+            failed.append(error)
+
+    thread = threading.Thread(target=connect, name="franka-connect", daemon=True)
+    thread.start()
+    thread.join(_CONNECT_S)
+    if found:
+        return found[0]
+    if not failed:
+        raise UserError(
+            f"{host} has not answered for {_CONNECT_S:g} s: check the arm's power, cable and address."
+        )
+    error = failed[0]
+    if isinstance(error, franky.IncompatibleVersionException):
+        raise UserError(
+            f"The arm at {host} speaks another version than this franky-control ({plain(error)}): install the"
+            " one that its README names for the arm's system version; a Panda needs libfranka 0.9."
+        ) from error
+    raise UserError(
+        f"There is no Franka at {host} that can be driven ({plain(error)}): open its brakes and activate FCI"
+        " in Desk, and check that no other program is connected."
+    ) from error
+
+
+def set_up(link: Link, options: FrankaOptions, robot: Robot) -> None:
+    """Tell the arm its thresholds, payload and attachment, and franky the limits of its motions.
+
+    Args:
+        link: open; none of its `refusals` apply.
+        options: what to set.
+        robot: whose limits motions keep to.
+
+    Raises:
+        UserError: the arm does not take them.
+    """
+    limits = link.limits
+    if limits is None:
+        raise ValueError("an arm that is not known is refused before it is set up")
+    inertia = np.diag(options.payload_inertia_kg_m2).ravel().tolist()
+    try:
+        _set_thresholds(link, options)
+        link.arm.set_load(options.payload_kg, options.payload_centre_m, inertia)
+        if options.attachment_tip_m is not None:
+            tip = np.eye(4)
+            tip[:3, 3] = options.attachment_tip_m
+            link.arm.set_ee(tip.ravel(order="F").tolist())
+        for name, arms, theirs in (
+            ("velocity", limits.velocity, robot.limits.velocity),
+            ("acceleration", limits.acceleration, robot.limits.acceleration),
+            ("jerk", limits.jerk, robot.limits.jerk),
+        ):
+            mine = getattr(link.arm, f"joint_{name}_limit")
+            mine.set(np.minimum(SHARE * np.minimum(arms, theirs), mine.max))
+    except Exception as error:
+        raise UserError(
+            f"The arm does not take its settings ({plain(error)}): check payload_kg and the thresholds of the"
+            " address, and that it is not moving."
+        ) from error
+
+
+def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...]:
+    """Why this arm is not driven as this robot; empty where it can be."""
+    found: list[str] = []
+    if link.limits is None:
+        found.append("The arm says it is neither an FR3 nor a Panda: it is not known what it can do.")
+    elif excess := link.limits.excess(robot):
+        name = "fr3" if link.limits.kind == "Franka Research 3" else "panda"
+        found.append(
+            f"The arm is a {link.limits.kind}, and {robot.name} may do more than it ({excess}): choose"
+            f" --robot {name}, or state lower limits with --limits FILE."
+        )
+    if distance := _axes_apart(link, robot):
+        found.append(
+            f"The joints of {robot.name} are not where the arm's are ({distance}): choose the robot that the"
+            " arm is, in the arm's own base frame."
+        )
+    if options.realtime == "enforce" and not has_realtime():
+        found.append(
+            "This computer has no realtime kernel: install one, or add ?realtime=ignore to the address and"
+            " expect the arm to stop when the computer is busy."
+        )
+    if link.hand is not None and link.hand.state.max_width < 0.5 * _width(robot):
+        found.append(
+            f"The hand says it opens to {1000 * link.hand.state.max_width:.0f} mm at most: home it in Desk."
+        )
+    return tuple(found)
+
+
+def findings(link: Link, options: FrankaOptions, robot: Robot, stops_after_s: float) -> Findings:
+    """What the arm says of itself, and why it is not driven, if so."""
+    state = link.arm.state
+    limits = link.limits
+    facts = [
+        Fact("arm", "not known" if limits is None else limits.kind),
+        Fact("mode", str(state.robot_mode.name)),
+        Fact("control library", _version()),
+        Fact("joints", ", ".join(f"{q:.3f}" for q in state.q) + " rad"),
+        Fact("end-effector", f"{state.m_ee:.2f} kg (set in Desk)"),
+        Fact("payload", f"{state.m_load:.2f} kg now, {options.payload_kg:g} kg when connected"),
+        Fact("collision thresholds", _thresholds(options)),
+    ]
+    if limits is not None:
+        for name, values, unit in (
+            ("speed", limits.velocity, "rad/s"),
+            ("acceleration", limits.acceleration, "rad/s²"),
+            ("jerk", limits.jerk, "rad/s³"),
+        ):
+            facts.append(Fact(f"largest {name}", ", ".join(f"{value:g}" for value in values) + f" {unit}"))
+    if link.hand is not None:
+        hand = link.hand.state
+        facts.append(
+            Fact(
+                "hand",
+                f"version {link.hand.server_version}, {1000 * hand.width:.0f} of"
+                f" {1000 * hand.max_width:.0f} mm open, {hand.temperature} °C",
+            )
+        )
+    facts.append(Fact("clock", _clock(link)))
+    facts.append(Fact("round trip", _round_trip(link, options)))
+    facts.append(Fact("stop", f"begins at most {1000 * stops_after_s:.0f} ms after a command has run out"))
+    return Findings(tuple(facts), refusals(link, options, robot))
+
+
+def _set_thresholds(link: Link, options: FrankaOptions) -> None:
+    torque = list(options.collision_torque_nm)
+    force = [*options.collision_force_n, *options.collision_moment_nm]
+    link.arm.set_collision_behavior(torque, torque, force, force)
+
+
+def _axes_apart(link: Link, robot: Robot) -> str:
+    """How far the joint axes of the arm and of the model lie apart, in words; "" where they are the same."""
+    franky = library()
+    state = link.arm.state
+    jacobian = np.asarray(link.arm.model.zero_jacobian(franky.Frame.Flange, state))
+    flange = np.asarray(link.arm.model.pose(franky.Frame.Flange, state).translation).ravel()
+    theirs = jacobian[3:].T
+    moments = jacobian[:3].T - np.cross(theirs, flange)
+    transforms = robot.chain.link_transforms(np.asarray(state.q, dtype=np.float64))
+    axes, anchors = robot.chain.joint_axes(transforms)
+    for joint in range(robot.dof):
+        turned = float(np.arccos(np.clip(theirs[joint] @ axes[joint], -1.0, 1.0)))
+        moved = float(np.linalg.norm(moments[joint] - np.cross(anchors[joint], axes[joint])))
+        if turned > _AXIS_RAD or moved > _AXIS_M:
+            name = robot.joint_names[joint]
+            return f"{name} is off by {turned:.3f} rad and {1000 * moved:.0f} mm"
+    return ""
+
+
+def _clock(link: Link) -> str:
+    began_s, arm_s = time.monotonic(), link.arm.state.time.to_sec()
+    time.sleep(_CLOCK_S)
+    passed_s, arms_s = time.monotonic() - began_s, link.arm.state.time.to_sec() - arm_s
+    return f"{arms_s / passed_s:.3f} s of the arm in one of this computer"
+
+
+def _round_trip(link: Link, options: FrankaOptions) -> str:
+    took: list[float] = []
+    for _ in range(_ROUND_TRIPS):
+        began_s = time.perf_counter()
+        _set_thresholds(link, options)
+        took.append(1000.0 * (time.perf_counter() - began_s))
+    return f"{statistics.median(took):.1f} ms, at most {max(took):.1f} ms"
+
+
+def _thresholds(options: FrankaOptions) -> str:
+    return (
+        f"{', '.join(f'{value:g}' for value in options.collision_torque_nm)} N m;"
+        f" {', '.join(f'{value:g}' for value in options.collision_force_n)} N;"
+        f" {', '.join(f'{value:g}' for value in options.collision_moment_nm)} N m"
+    )
+
+
+def _version() -> str:
+    from importlib.metadata import version
+
+    return f"franky-control {version('franky-control')}"
+
+
+def _width(robot: Robot) -> float:
+    return 0.0 if robot.gripper is None else robot.gripper.width_m
+
+
+def _realtime(franky: Any, options: FrankaOptions) -> Any:
+    """Libfranka is asked to insist only where it will get it; else `refusals` says so."""
+    insist = options.realtime == "enforce" and has_realtime()
+    return franky.RealtimeConfig.Enforce if insist else franky.RealtimeConfig.Ignore
+
+
+def has_realtime() -> bool:
+    """Whether this computer runs a realtime kernel, as libfranka looks for it."""
+    try:
+        return _REALTIME_FILE.read_text(encoding="ascii").strip() == "1"
+    except OSError:
+        return False

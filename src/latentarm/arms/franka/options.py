@@ -1,0 +1,104 @@
+"""What the address of a Franka sets: ``franka://HOST?payload_kg=0.3&realtime=ignore``."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, Literal, final
+
+from latentarm.arms.address import ArmAddress
+from latentarm.errors import UserError
+
+Realtime = Literal["enforce", "ignore"]
+
+_NAMES: Final = (
+    "collision_torque_nm",
+    "collision_force_n",
+    "collision_moment_nm",
+    "payload_kg",
+    "payload_centre_m",
+    "payload_inertia_kg_m2",
+    "attachment_tip_m",
+    "realtime",
+)
+_LARGEST_PAYLOAD_KG: Final = 3.0
+
+
+@final
+@dataclass(frozen=True)
+class FrankaOptions:
+    """What is set when a Franka is connected.
+
+    Attributes:
+        collision_torque_nm: (7,), external torque of a joint at which the arm stops, N m. These and the next
+            two are those of libfranka's own example of joint velocities.
+        collision_force_n: (3,), the same for forces along the axes of the base, N.
+        collision_moment_nm: (3,), the same for moments about them, N m.
+        payload_kg: mass of what the hand carries for the whole drive, kg.
+        payload_centre_m: (3,), its centre of mass in the flange's frame, m.
+        payload_inertia_kg_m2: (3,), its moments of inertia about that centre, kg m².
+        attachment_tip_m: (3,), where the tip of what the hand carries is, in the frame of the end-effector
+            that is set in Desk, m; the arm judges forces there. None leaves what is set.
+        realtime: whether libfranka insists on a realtime kernel.
+    """
+
+    collision_torque_nm: tuple[float, ...] = (20.0, 20.0, 18.0, 18.0, 16.0, 14.0, 12.0)
+    collision_force_n: tuple[float, ...] = (20.0, 20.0, 20.0)
+    collision_moment_nm: tuple[float, ...] = (25.0, 25.0, 25.0)
+    payload_kg: float = 0.0
+    payload_centre_m: tuple[float, ...] = (0.0, 0.0, 0.0)
+    payload_inertia_kg_m2: tuple[float, ...] = (0.0, 0.0, 0.0)
+    attachment_tip_m: tuple[float, ...] | None = None
+    realtime: Realtime = "enforce"
+
+
+def read_options(address: ArmAddress) -> FrankaOptions:
+    """The options of an address.
+
+    Raises:
+        UserError: one is unknown, no number, or out of its range; or a port is given.
+    """
+    if address.port is not None:
+        raise UserError("--arm franka takes no port: a Franka always listens on 1337 and 1338.")
+    given = address.only(*_NAMES)
+    default = FrankaOptions()
+    realtime = given.get("realtime", default.realtime)
+    if realtime not in ("enforce", "ignore"):
+        raise UserError(f"--arm franka: realtime is enforce or ignore, not {realtime!r}.")
+    options = FrankaOptions(
+        _figures(given, "collision_torque_nm", 7, 1.0, 87.0) or default.collision_torque_nm,
+        _figures(given, "collision_force_n", 3, 1.0, 100.0) or default.collision_force_n,
+        _figures(given, "collision_moment_nm", 3, 1.0, 100.0) or default.collision_moment_nm,
+        (_figures(given, "payload_kg", 1, 0.0, _LARGEST_PAYLOAD_KG) or (default.payload_kg,))[0],
+        _figures(given, "payload_centre_m", 3, -0.5, 0.5) or default.payload_centre_m,
+        _figures(given, "payload_inertia_kg_m2", 3, 0.0, 1.0) or default.payload_inertia_kg_m2,
+        _figures(given, "attachment_tip_m", 3, -0.5, 0.5),
+        realtime,
+    )
+    about = [name for name in ("payload_centre_m", "payload_inertia_kg_m2") if name in given]
+    if about and not options.payload_kg:
+        raise UserError(
+            f"--arm franka: {about[0]} says nothing without payload_kg: give the payload's mass too."
+        )
+    return options
+
+
+def _figures(
+    given: Mapping[str, str], name: str, count: int, least: float, most: float
+) -> tuple[float, ...] | None:
+    """One figure for all, or ``count`` of them with commas between; None where nothing is given."""
+    if name not in given:
+        return None
+    try:
+        values = tuple(float(part) for part in given[name].split(","))
+    except ValueError:
+        values = ()
+    one_for_all = len(values) == 1 and name.startswith("collision_")
+    if one_for_all:
+        values *= count
+    if len(values) != count or not all(math.isfinite(v) and least <= v <= most for v in values):
+        several = f"{count} numbers with commas between" if count > 1 else "a number"
+        alike = "a number, or " if name.startswith("collision_") else ""
+        raise UserError(
+            f"--arm franka: {name} is {alike}{several}, from {least:g} to {most:g}, not {given[name]!r}."
+        )
+    return values

@@ -1,0 +1,35 @@
+"""A Franka's errors, and what franky raises, as sentences for a person."""
+
+from collections.abc import Sequence
+from typing import Final
+
+_ERRORS: Final = {
+    "communication_constraints_violation": "too many of its messages came late or not at all: use a network"
+    " cable to the arm's own port, and a realtime kernel",
+    "joint_reflex": "it felt a collision: see what it touches",
+    "cartesian_reflex": "it felt a collision: see what it touches",
+    "joint_position_limits_violation": "a joint is past its end: move it back by hand in Desk",
+    "self_collision_avoidance_violation": "it would have hit itself",
+    "joint_motion_generator_position_limits_violation": "it was sent towards the end of a joint",
+    "cartesian_position_limits_violation": "it went past a virtual wall that is set in Desk",
+    "power_limit_violation": "it would have exceeded its power limit",
+    "tau_j_range_violation": "a torque sensor is out of its range: check payload_kg and what it touches",
+}
+
+
+def fault(errors: Sequence[str], said: str) -> str:
+    """Why the arm has stopped by itself.
+
+    Args:
+        errors: names of the errors that the arm reports.
+        said: what libfranka says of it.
+    """
+    if not errors:
+        return f"The arm has stopped by itself ({plain(said)})."
+    reasons = ", and ".join(_ERRORS.get(name, name.replace("_", " ")) for name in errors)
+    return f"The arm has stopped by itself: {reasons}."
+
+
+def plain(error: object) -> str:
+    """What libfranka says, on one line, without its name and full stop."""
+    return " ".join(str(error).split()).removeprefix("libfranka: ").rstrip(".")

@@ -1,0 +1,335 @@
+"""The thread that talks to a Franka, so that nobody else waits for it."""
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, final
+
+import numpy as np
+
+from latentarm.arms.contract import ArmPhase
+from latentarm.arms.franka.limits import FrankaLimits
+from latentarm.arms.franka.link import Link, library
+from latentarm.arms.franka.words import fault, plain
+from latentarm.errors import UserError
+from latentarm.types import FloatArray
+
+if TYPE_CHECKING:
+    import franky
+
+POLL_S: Final = 0.004
+"""Time between two readings, s."""
+
+_BACK_S: Final = 0.5
+"""The arm's clock may seem to go back by so much: states may overtake each other, s."""
+
+_CLOSE_S: Final = 3.0
+
+_BUTTON: Final = "The stop button of the arm is pressed, or its enabling device is let go: release it."
+
+_OTHER_MODES: Final[dict[str, tuple[ArmPhase, str]]] = {
+    "UserStopped": ("emergency_stop", _BUTTON),
+    "Guiding": ("fault", "Somebody is guiding the arm by hand: let go of its buttons."),
+    "Other": ("fault", "The arm takes no commands: open its brakes and activate FCI in Desk."),
+    "AutomaticErrorRecovery": ("fault", "The arm is recovering from an error."),
+}
+"""Modes in which the arm takes no commands, and that end without us."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Trouble:
+    """Why the arm takes no commands.
+
+    Attributes:
+        phase: *fault* or *emergency_stop*.
+        reason: one sentence.
+        recoverable: whether the worker's `recover` can end it; else it ends by itself.
+        lost: whether the connection is gone, and recovering makes a new one.
+    """
+
+    phase: ArmPhase
+    reason: str
+    recoverable: bool
+    lost: bool = False
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A state of the arm.
+
+    Attributes:
+        q: (7,), rad.
+        dq: (7,), rad/s.
+        time_s: when it came, on our clock, s.
+        arm_s: the arm's own clock, s.
+    """
+
+    q: FloatArray
+    dq: FloatArray
+    time_s: float
+    arm_s: float
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Order:
+    """What the arm is to do.
+
+    Attributes:
+        velocity: (7,), rad/s; None stops it.
+        until_s: when it runs out, on our clock, s.
+    """
+
+    velocity: FloatArray | None
+    until_s: float
+
+
+@final
+class Worker:
+    """Carries out the newest order, and keeps the newest state.
+
+    Every motion has a bound of its own in franky's control thread, at 1 kHz: when an order has run out, a
+    `JointVelocityStopMotion` takes over, whatever becomes of this thread or this process's Python.
+
+    Args:
+        link: open and set up.
+        reconnect: opens a new link in place of one that is lost.
+        now_s: our clock, s.
+
+    Raises:
+        Exception: of franky, where no state comes.
+    """
+
+    def __init__(self, link: Link, reconnect: Callable[[], Link], now_s: Callable[[], float]) -> None:
+        self._franky: Any = library()
+        if link.limits is None:
+            raise ValueError("the limits of the arm are not known")
+        self._limits = link.limits
+        self._link = link
+        self._reconnect = reconnect
+        self._now_s = now_s
+        self._lock = threading.Lock()
+        self._order: Order | None = None
+        self._trouble: Trouble | None = None
+        self._recover_asked = False
+        self._wake = threading.Event()
+        self._closing = threading.Event()
+        self._running = False
+        self._driven: Order | None = None
+        self._measured = self._state()
+        self._thread = threading.Thread(target=self._run, name="franka-arm", daemon=True)
+        self._thread.start()
+
+    @property
+    def measured(self) -> Measured:
+        """The newest state."""
+        return self._measured
+
+    @property
+    def running(self) -> bool:
+        """Whether a motion is under way, or about to begin; without one the arm holds still."""
+        order = self._order
+        return self._running or (order is not None and order.velocity is not None)
+
+    @property
+    def trouble(self) -> Trouble | None:
+        """Why the arm takes no commands, or None."""
+        return self._trouble
+
+    @property
+    def limits(self) -> FrankaLimits:
+        """What the arm can do."""
+        return self._limits
+
+    def give(self, order: Order) -> None:
+        """Replace the order before."""
+        with self._lock:
+            if self._trouble is None:
+                self._order = order
+        self._wake.set()
+
+    def recover(self) -> None:
+        """End a recoverable trouble soon."""
+        with self._lock:
+            trouble = self._trouble
+            self._recover_asked = trouble is not None and trouble.recoverable
+        self._wake.set()
+
+    def fail(self, trouble: Trouble) -> None:
+        """Take no orders for this reason, unless there is one already."""
+        with self._lock:
+            self._order = Order(None, self._now_s())
+            if self._trouble is None:
+                self._trouble = trouble
+        self._wake.set()
+
+    def close(self) -> None:
+        """Stop the arm, end the thread and the connection."""
+        self._closing.set()
+        self._wake.set()
+        self._thread.join(_CLOSE_S)
+
+    def _run(self) -> None:
+        while not self._closing.is_set():
+            self._wake.wait(POLL_S)
+            self._wake.clear()
+            self._pass()
+        self._end()
+
+    def _pass(self) -> None:
+        """Carry out what was asked, and take a state."""
+        with self._lock:
+            order, self._order = self._order, None
+            trouble = self._trouble
+            recover, self._recover_asked = self._recover_asked, False
+        try:
+            if recover and trouble is not None:
+                self._end_trouble(trouble)
+            if self._trouble is not None and self._trouble.lost:
+                return
+            if order is not None:
+                self._carry_out(order)
+            self._observe()
+            self._guard()
+        # franky raises libfranka's exceptions, and those of the network as RuntimeError.
+        except self._franky.ControlException as error:
+            self._stopped_by_itself(error)
+        except self._franky.CommandException as error:
+            self._stopped_by_itself(error)
+        except Exception as error:  # noqa: BLE001
+            self._lose(f"The connection to the arm was lost ({plain(error)}): check its power and cable.")
+
+    def _carry_out(self, order: Order) -> None:
+        left_ms = round(1000.0 * (order.until_s - self._now_s()))
+        if order.velocity is None or left_ms < 1:
+            self._halt()
+            return
+        stands = not order.velocity.any()
+        # An arm at rest holds itself: it needs no stream of zeros.
+        if stands and not self._drives:
+            return
+        motion = self._franky.JointVelocityMotion(order.velocity, self._franky.Duration(left_ms))
+        runs_out = self._franky.Measure.REL_TIME >= left_ms / 1000.0  # noqa: SIM300 - a condition of franky's
+        stop = self._franky.JointVelocityStopMotion()
+        motion.add_reaction(self._franky.JointVelocityReaction(runs_out, stop))
+        self._move(motion)
+        self._driven = order
+
+    @property
+    def _drives(self) -> bool:
+        """Whether the last order that was carried out moves the arm."""
+        driven = self._driven
+        return driven is not None and driven.velocity is not None and bool(driven.velocity.any())
+
+    def _halt(self) -> None:
+        if self._running and self._driven is not None:
+            self._move(self._franky.JointVelocityStopMotion())
+        self._driven = None
+
+    def _move(self, motion: "franky.BaseJointVelocityMotion") -> None:
+        self._link.arm.move(motion, asynchronous=True)
+        self._running = True
+
+    def _observe(self) -> None:
+        # Raises what ended the motion, if that was an error.
+        if self._running and self._link.arm.join_motion(timeout=0.0):
+            self._running, self._driven = False, None
+        before = self._measured
+        state = self._state()
+        if state.arm_s < before.arm_s - _BACK_S:
+            self._lose("The arm's clock went back: its controller has restarted.")
+        elif state.arm_s > before.arm_s:
+            # A state that repeats is not new, and stays as old as it is.
+            self._measured = state
+
+    def _guard(self) -> None:
+        """Stop what has run out before its motion began, and what comes too near the end of a joint."""
+        driven = self._driven
+        if driven is None or driven.velocity is None:
+            return
+        if self._now_s() > driven.until_s or self._limits.exceeds(driven.velocity, self._measured.q):
+            self._halt()
+
+    def _state(self) -> Measured:
+        state = self._link.arm.state
+        now_s = self._now_s()
+        mode = str(state.robot_mode.name)
+        self._see(mode, state)
+        q, dq = np.array(state.q, dtype=np.float64), np.array(state.dq, dtype=np.float64)
+        q.flags.writeable = dq.flags.writeable = False
+        return Measured(q, dq, now_s, float(state.time.to_sec()))
+
+    def _see(self, mode: str, state: "franky.RobotState") -> None:
+        """Take note of what mode the arm is in."""
+        if mode == "Reflex":
+            self._fault(fault(_names(state.current_errors) or _names(state.last_motion_errors), "a reflex"))
+        elif mode in _OTHER_MODES:
+            phase, reason = _OTHER_MODES[mode]
+            self._set(Trouble(phase, reason, recoverable=False))
+        elif self._trouble is not None and not self._trouble.recoverable:
+            # The button was released, or guiding has ended.
+            with self._lock:
+                self._trouble = None
+
+    def _stopped_by_itself(self, error: Exception) -> None:
+        """The arm ended a motion: a reflex, a button, a refusal."""
+        self._running, self._driven = False, None
+        try:
+            state = self._link.arm.state
+        except Exception as lost:  # noqa: BLE001 - the network, again
+            self._lose(f"The connection to the arm was lost ({plain(lost)}): check its power and cable.")
+            return
+        self._see(str(state.robot_mode.name), state)
+        if self._trouble is None:
+            self._fault(fault(_names(state.last_motion_errors), plain(error)))
+
+    def _fault(self, reason: str) -> None:
+        if self._trouble is None or not self._trouble.recoverable:
+            self._set(Trouble("fault", reason, recoverable=True))
+
+    def _lose(self, reason: str) -> None:
+        self._running, self._driven = False, None
+        self._set(Trouble("fault", reason, recoverable=True, lost=True))
+
+    def _set(self, trouble: Trouble) -> None:
+        with self._lock:
+            self._order = None
+            self._trouble = trouble
+
+    def _end_trouble(self, trouble: Trouble) -> None:
+        """Recover from errors, or connect again; nothing moves afterwards."""
+        if trouble.lost:
+            # Before a new connection, the arm needs to see the end of the old one.
+            self._link.close()
+            try:
+                self._link = self._reconnect()
+            except UserError as error:
+                self._lose(str(error))
+                return
+            # The clock of a controller that has restarted begins again.
+            self._measured = self._state()
+        elif not self._link.arm.recover_from_errors():
+            reason = "The arm did not recover from its error: recover it in Desk."
+            self._set(Trouble("fault", reason, recoverable=True))
+            return
+        with self._lock:
+            self._order = None
+            if self._trouble is trouble:
+                self._trouble = None
+
+    def _end(self) -> None:
+        """Come to rest, and let go of the arm."""
+        try:
+            if self._running:
+                self._move(self._franky.JointVelocityStopMotion())
+                self._link.arm.join_motion(timeout=_CLOSE_S / 2.0)
+        except Exception:  # noqa: BLE001 - it is given up anyway, and then the arm stops by itself
+            self._running = False
+        self._link.close()
+
+
+def _names(errors: "franky.Errors") -> list[str]:
+    """The errors that are set."""
+    return [name for name in dir(errors) if not name.startswith("_") and getattr(errors, name) is True]

@@ -1,0 +1,212 @@
+"""The driver of a Franka against franky-sim, over the arm's own protocol."""
+
+import dataclasses
+import time
+
+import numpy as np
+import pytest
+from franka_server import START, FrankaStandIn
+
+from latentarm.arms.contract import check_arm
+from latentarm.arms.franka.link import has_realtime
+from latentarm.arms.real_catalogue import make_real_arm
+from latentarm.control.clock import MonotonicClock
+from latentarm.errors import UserError
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.fr3 import fr3
+from latentarm.types import Command, GripperCommand
+
+pytest.importorskip("franky", reason="franky-control is not installed")
+pytest.importorskip("franky_sim", reason="franky-sim is not installed")
+
+pytestmark = pytest.mark.clock
+
+HOST = "127.0.7.1"
+ADDRESS = f"franka://{HOST}?realtime=ignore"
+VELOCITY = np.array([0.1, 0.05, -0.05, 0.1, 0.05, -0.1, 0.1])
+TREMBLE_RAD = 1e-3
+"""A joint that has moved no farther than this stands still."""
+
+
+@pytest.fixture(scope="module")
+def stand_in():
+    with FrankaStandIn(HOST) as server:
+        yield server
+
+
+@pytest.fixture
+def new_arm(stand_in):
+    driver = make_real_arm(ADDRESS, fr3(), MonotonicClock().now_s)
+    yield driver
+    driver.close()
+
+
+@pytest.fixture
+def arm(new_arm):
+    new_arm.connect()
+    new_arm.enable()
+    return new_arm
+
+
+def drive(arm, stand_in, velocity, for_s, gripper=None):
+    """For so long by the stand-in's clock, which may pass at a fraction of ours."""
+    end_s, give_up_s = stand_in.time_s() + for_s, time.monotonic() + 30.0
+    while stand_in.time_s() < end_s:
+        assert time.monotonic() < give_up_s, "the stand-in is too slow"
+        arm.send(Command(velocity, duration_s=0.05, gripper=gripper))
+        time.sleep(0.01)
+
+
+def becomes(arm, phase, within_s=10.0, recovering=False):
+    end_s = time.monotonic() + within_s
+    while arm.status().phase != phase:
+        if recovering:
+            arm.recover()
+        assert time.monotonic() < end_s, arm.status()
+        time.sleep(0.005)
+    return arm.status()
+
+
+def at_rest(stand_in):
+    stand_in.wait(0.3)
+    before = stand_in.positions()
+    stand_in.wait(0.1)
+    np.testing.assert_allclose(stand_in.positions(), before, atol=TREMBLE_RAD)
+    return before
+
+
+def test_it_says_what_it_found_and_moves_nothing(new_arm, stand_in):
+    before = stand_in.positions()
+    check_arm(new_arm.spec, fr3())
+    found = new_arm.look()
+    assert not found.refusals
+    names = {fact.name: fact.value for fact in found.facts}
+    assert names["arm"] == "Franka Research 3"
+    assert names["mode"] == "Idle"
+    assert {"largest speed", "payload", "clock", "round trip", "stop", "hand"} <= set(names)
+    np.testing.assert_allclose(stand_in.positions(), before, atol=TREMBLE_RAD)
+    assert new_arm.status().phase == "off"
+
+
+@pytest.mark.parametrize(
+    ("address", "robot", "said"),
+    [
+        (ADDRESS, "panda", "choose --robot fr3"),
+        (f"franka://{HOST}", "fr3", "no realtime kernel"),
+        ("franka://127.0.7.250?realtime=ignore", "fr3", "There is no Franka at 127.0.7.250"),
+    ],
+)
+def test_what_looking_refuses_connecting_refuses(stand_in, address, robot, said):
+    if "realtime" in said and "realtime" not in address and has_realtime():
+        pytest.skip("this computer has a realtime kernel")
+    driver = make_real_arm(address, load_robot(robot), MonotonicClock().now_s)
+    try:
+        sentences = driver.look().refusals
+    except UserError as error:
+        sentences = (str(error),)
+    assert any(said in sentence for sentence in sentences)
+    with pytest.raises(UserError) as error:
+        driver.connect()
+    assert str(error.value) in sentences
+    assert driver.status().phase == "off"
+
+
+def test_a_robot_with_its_joints_elsewhere_is_refused(stand_in):
+    chain = fr3().chain
+    raised = np.array(chain.offset)
+    raised[0, 2, 3] += 0.1
+    robot = dataclasses.replace(fr3(), name="fr3_on_a_box", chain=dataclasses.replace(chain, offset=raised))
+    with pytest.raises(UserError, match=r"joints of fr3_on_a_box are not where the arm's are"):
+        make_real_arm(ADDRESS, robot, MonotonicClock().now_s).connect()
+
+
+def test_it_moves_only_when_enabled_and_stops_when_commands_end(new_arm, stand_in):
+    before = stand_in.positions()
+    new_arm.connect()
+    drive(new_arm, stand_in, VELOCITY, 0.2)
+    assert new_arm.status().phase == "disabled"
+    new_arm.enable()
+    np.testing.assert_allclose(at_rest(stand_in), before, atol=TREMBLE_RAD)
+    assert new_arm.status().phase == "ready"
+    drive(new_arm, stand_in, VELOCITY, 0.5)
+    assert new_arm.status().phase == "moving"
+    moved = at_rest(stand_in) - before
+    assert (moved * np.sign(VELOCITY) > 0.003).all()
+    becomes(new_arm, "ready")
+    np.testing.assert_allclose(new_arm.read().q, stand_in.positions(), atol=TREMBLE_RAD)
+
+
+@pytest.mark.parametrize("how", ["stop", "disable"])
+def test_a_long_command_is_forgotten(arm, stand_in, how):
+    drive(arm, stand_in, -VELOCITY, 0.1)
+    arm.send(Command(-VELOCITY, duration_s=10.0))
+    getattr(arm, how)()
+    at_rest(stand_in)
+    becomes(arm, {"stop": "ready", "disable": "disabled"}[how])
+
+
+def test_a_long_command_ends_before_the_end_of_a_joint(arm, stand_in):
+    velocity = np.array([0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0])
+    arm.send(Command(velocity, duration_s=100.0))
+    becomes(arm, "ready", within_s=60.0)
+    rested = at_rest(stand_in)[3]
+    assert START[3] + 0.5 < rested < fr3().limits.upper[3]
+
+
+@pytest.mark.parametrize("fault", ["break_down", "press_emergency_stop"])
+def test_after_a_stop_by_the_arm_it_moves_only_when_enabled_again(arm, stand_in, fault):
+    drive(arm, stand_in, VELOCITY, 0.2)
+    getattr(stand_in, fault)()
+    pressed = fault == "press_emergency_stop"
+    status = becomes(arm, "emergency_stop" if pressed else "fault")
+    assert status.reason.endswith(".")
+    rested = at_rest(stand_in)
+    drive(arm, stand_in, VELOCITY, 0.1)
+    if pressed:
+        stand_in.release_emergency_stop()
+        becomes(arm, "disabled")
+    else:
+        assert status.recoverable
+        becomes(arm, "disabled", recovering=True)
+    drive(arm, stand_in, VELOCITY, 0.1)
+    np.testing.assert_allclose(at_rest(stand_in), rested, atol=TREMBLE_RAD)
+    arm.enable()
+    drive(arm, stand_in, VELOCITY, 0.3)
+    assert arm.status().phase == "moving"
+    assert (np.abs(stand_in.positions() - rested) > TREMBLE_RAD).any()
+
+
+def test_cut_off_it_rests_and_nothing_old_moves_it_afterwards(arm, stand_in):
+    drive(arm, stand_in, VELOCITY, 0.2)
+    stand_in.cut()
+    try:
+        drive(arm, stand_in, VELOCITY, 0.6)
+        rested = at_rest(stand_in)
+        assert becomes(arm, "fault").recoverable
+    finally:
+        stand_in.repair()
+    drive(arm, stand_in, VELOCITY, 0.2)
+    becomes(arm, "disabled", recovering=True)
+    drive(arm, stand_in, VELOCITY, 0.2)
+    np.testing.assert_allclose(at_rest(stand_in), rested, atol=TREMBLE_RAD)
+    arm.enable()
+    drive(arm, stand_in, VELOCITY, 0.3)
+    assert (np.abs(stand_in.positions() - rested) > TREMBLE_RAD).any()
+
+
+def test_the_hand_goes_where_it_is_told_and_can_be_told_otherwise(arm, stand_in):
+    still = np.zeros(7)
+    drive(arm, stand_in, still, 0.1, GripperCommand(0.0, 0.1, 20.0))
+    drive(arm, stand_in, still, 0.1, GripperCommand(0.06, 0.1, 20.0))
+    end_s = time.monotonic() + 30.0
+    while abs(arm.read().gripper.width_m - 0.06) > 0.003:
+        assert time.monotonic() < end_s, arm.read().gripper
+        drive(arm, stand_in, still, 0.05, GripperCommand(0.06, 0.1, 20.0))
+    assert not arm.read().gripper.holding
+    assert arm.status().takes_commands
+
+
+@pytest.mark.parametrize("wrong", [np.zeros(6), np.full(7, np.nan), np.zeros((1, 7))])
+def test_a_command_that_no_filter_would_send_is_an_error(arm, wrong):
+    with pytest.raises(ValueError, match="7 finite joint velocities"):
+        arm.send(Command(wrong, duration_s=0.02))

@@ -1,0 +1,299 @@
+"""A stand-in for a Franka: franky-sim in a process of its own, with what it leaves out of the real arm.
+
+franky-sim 1.0.4 speaks the arm's protocol over MuJoCo, gripper included. Added here, in its own terms: a stop
+button, reflexes and how they are recovered from, the arm's stop after cycles without a message (where a test
+asks for it, because a busy machine is late), and the hand's answer to a move that it was told to stop. No
+limits are enforced.
+
+As a program (``python franka_server.py HOST [CYCLES]``) it takes orders by line on standard input and answers
+in JSON; `FrankaStandIn` is its other end.
+"""
+
+import json
+import queue
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+
+START = (0.0, -0.785398, 0.0, -2.356194, 0.0, 1.570796, 0.785398)
+"""Where the joints are at first, rad."""
+
+LOST_CYCLES = 20
+"""The real arm stops after so many cycles of 1 ms without a message."""
+
+_STIFFNESS = (4500.0, 4500.0, 3500.0, 3500.0, 2000.0, 2000.0, 1000.0)
+_DAMPING = (450.0, 450.0, 350.0, 350.0, 200.0, 200.0, 100.0)
+"""Those of franky-sim, but for the last joint, which trembles by 0.1 rad/s with its own."""
+
+_JOINT_REFLEX = 6
+_COMMUNICATION = 25
+
+
+class FrankaStandIn:
+    """The stand-in, from the outside.
+
+    Args:
+        host: loopback address to listen on, one that nobody else uses.
+        lost_cycles: stop after so many cycles without a message; 0 for never.
+    """
+
+    def __init__(self, host: str, lost_cycles: int = 0) -> None:
+        self.host = host
+        self._lost_cycles = lost_cycles
+        self.start()
+
+    def start(self) -> None:
+        command = [sys.executable, __file__, self.host, str(self._lost_cycles)]
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
+        )
+        self._lock = threading.Lock()
+        self._answer()
+
+    def kill(self) -> None:
+        """Cut the arm's power."""
+        self._process.kill()
+        self._process.wait()
+        for pipe in (self._process.stdin, self._process.stdout):
+            pipe.close()
+
+    def close(self) -> None:
+        if self._process.poll() is None:
+            self.kill()
+
+    def __enter__(self) -> "FrankaStandIn":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    def ask(self, order: str) -> dict:
+        with self._lock:
+            self._process.stdin.write(order + "\n")
+            self._process.stdin.flush()
+            return self._answer()
+
+    def _answer(self) -> dict:
+        line = self._process.stdout.readline()
+        if not line:
+            raise RuntimeError("the stand-in has ended")
+        return json.loads(line)
+
+    def positions(self) -> np.ndarray:
+        return np.array(self.ask("state")["q"])
+
+    def wait(self, for_s: float) -> None:
+        """Until so much of the arm's own time has passed."""
+        end_s = self.time_s() + for_s
+        while self.time_s() < end_s:
+            time.sleep(0.01)
+
+    def time_s(self) -> float:
+        return self.ask("state")["t"]
+
+    def press_emergency_stop(self) -> None:
+        self.ask("press")
+
+    def release_emergency_stop(self) -> None:
+        self.ask("release")
+
+    def break_down(self) -> None:
+        self.ask("break")
+
+    def cut(self) -> None:
+        self.ask("cut")
+
+    def repair(self) -> None:
+        self.ask("repair")
+
+
+def _servers(lost_cycles: int):
+    """The classes of franky-sim with what is added to them."""
+    from franky_sim import franka_gripper_server, franka_robot_server, simulation_server
+    from franky_sim.franka_gripper_protocol import GripperCommandStatus
+    from franky_sim.franka_robot_protocol import (
+        AutomaticErrorRecoveryCommand,
+        BaseCommand,
+        MoveStatus,
+        RobotCommand,
+        RobotMode,
+    )
+
+    class Recovery(AutomaticErrorRecoveryCommand):
+        def handle(self, server):
+            if not server.pressed:
+                server.errors = ()
+            super().handle(server)
+
+    class HandServer(franka_gripper_server.FrankaGripperServer):
+        def stop(self, command_id, tcp_socket):
+            # The real hand answers the command that it gives up; franky-sim forgets it.
+            if self._pending_command_id is not None:
+                BaseCommand.send_response(
+                    self._pending_tcp_socket,
+                    self._pending_command_type,
+                    self._pending_command_id,
+                    GripperCommandStatus.kAborted,
+                    command_type_struct="H",
+                    status_type_struct="H",
+                )
+            super().stop(command_id, tcp_socket)
+
+    class ArmServer(franka_robot_server.FrankaRobotServer):
+        def __init__(self, robot, hostname_candidates):
+            self.errors = ()
+            self.pressed = self.is_cut = False
+            self.silent = 0
+            self._heard = False
+            super().__init__(robot, hostname_candidates)
+            self._FrankaServer__command_class_map[RobotCommand.kAutomaticErrorRecovery] = Recovery
+
+        @property
+        def robot_state(self):
+            state = super().robot_state
+            if self.pressed:
+                return state.replace(robot_mode=RobotMode.kUserStopped)
+            if self.errors:
+                flags = tuple(index in self.errors for index in range(41))
+                return state.replace(robot_mode=RobotMode.kReflex, errors=flags, reflex_reason=flags)
+            return state
+
+        def start_motion(self, *arguments):
+            if self.pressed or self.errors:
+                raise RuntimeError("the arm takes no commands")
+            self.silent, self._heard = 0, False
+            super().start_motion(*arguments)
+
+        def abort(self, status):
+            motion = self.current_motion_id
+            self.stop_motion(send_preemption_signal=False)
+            if motion:
+                self.send_state()
+                BaseCommand.send_response(self._tcp_socket, RobotCommand.kMove, motion, status)
+                self.reset_current_motion_id()
+
+        def _handle_udp_command(self, command_data):
+            self.silent, self._heard = 0, True
+            super()._handle_udp_command(command_data)
+
+        def process_commands(self):
+            if self.is_cut:
+                # Nothing comes in; the arm goes on with what it has.
+                self._pre_process_commands()
+                self._post_process_commands()
+            else:
+                super().process_commands()
+            if not self.current_motion_id or not self._heard:
+                return
+            self.silent += 1
+            allowed = LOST_CYCLES if self.is_cut else lost_cycles
+            if allowed and self.silent > allowed:
+                self.errors = (_COMMUNICATION,)
+                self.abort(MoveStatus.kReflexAborted)
+
+        def send_state(self):
+            if not self.is_cut:
+                super().send_state()
+
+        def press(self):
+            self.pressed = True
+            self.abort(MoveStatus.kEmergencyAborted)
+
+        def collide(self):
+            self.errors = (_JOINT_REFLEX,)
+            self.abort(MoveStatus.kReflexAborted)
+
+    franka_robot_server.FrankaGripperServer = HandServer
+    simulation_server.FrankaRobotServer = ArmServer
+    return simulation_server.SimulationServer
+
+
+class _Log:
+    """Where the joints, the tool and the clock were in each cycle, while it is on."""
+
+    def __init__(self) -> None:
+        self.rows: list[np.ndarray] = []
+        self.on = False
+
+    def add(self, cycle, robot) -> None:
+        if self.on:
+            tool = robot.kinematics(np.array(robot.inner_state.q)).translation
+            self.rows.append(np.array([cycle * 1e-3, *robot.inner_state.q, *robot.inner_state.dq, *tool]))
+
+
+def _obey(order, server, robot, log, cycle) -> dict:
+    arm = server.robot_servers[0]
+    name, *rest = order.split()
+    answer = {"t": cycle * 1e-3}
+    if name == "state":
+        answer |= {
+            "q": list(robot.inner_state.q),
+            "dq": list(robot.inner_state.dq),
+            "width": robot.hand_width,
+        }
+    elif name == "press":
+        arm.press()
+    elif name == "release":
+        arm.pressed = False
+    elif name == "break":
+        arm.collide()
+    elif name == "cut":
+        arm.is_cut = True
+    elif name == "repair":
+        arm.is_cut = False
+    elif name == "log":
+        log.on, log.rows = True, []
+    elif name == "save":
+        log.on = False
+        np.save(Path(rest[0]), np.array(log.rows))
+    return answer
+
+
+def _serve(host: str, lost_cycles: int) -> None:
+    simulation_server = _servers(lost_cycles)
+    from franky_sim.mujoco_simulator import MujocoSimulator
+
+    orders: queue.SimpleQueue[str] = queue.SimpleQueue()
+
+    def listen() -> None:
+        for line in sys.stdin:
+            orders.put(line.strip())
+        orders.put("end")
+
+    threading.Thread(target=listen, daemon=True).start()
+    log, cycle = _Log(), 0
+    with MujocoSimulator() as simulator:
+        robot = simulator.add_robot(initial_q=START, kp=_STIFFNESS, kv=_DAMPING)
+        with simulation_server(simulator, hostname_candidates=[host]) as server:
+            print(json.dumps({"ready": True}), flush=True)  # noqa: T201
+            due_s = time.monotonic()
+            while True:
+                while not orders.empty():
+                    order = orders.get()
+                    if order == "end":
+                        return
+                    print(json.dumps(_obey(order, server, robot, log, cycle)), flush=True)  # noqa: T201
+                # As franky-sim's run_once, which gives its processor away in each cycle.
+                for arm in server.robot_servers:
+                    arm.process_commands()
+                simulator.step()
+                for arm in server.robot_servers:
+                    arm.send_state()
+                cycle += 1
+                log.add(cycle, robot)
+                # Never catches up: a cycle that was late shifts those after it.
+                due_s = max(due_s + 1e-3, time.monotonic())
+                if (ahead_s := due_s - time.monotonic()) > 0.0:
+                    time.sleep(ahead_s)
+
+
+if __name__ == "__main__":
+    _serve(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 0)
