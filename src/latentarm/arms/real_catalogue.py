@@ -39,6 +39,7 @@ REAL_ARMS: Final = Catalogue(
     "driver",
     {
         "franka": "latentarm.arms.franka.arm:FrankaArm",
+        "lerobot": "latentarm.arms.lerobot.arm:LerobotArm",
         "ros2": "latentarm.arms.ros2.arm:Ros2Arm",
         "xarm": "latentarm.arms.xarm.arm:XArm",
     },

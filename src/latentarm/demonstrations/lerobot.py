@@ -2,11 +2,16 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Final
 
 from latentarm.demonstrations.info import ACTION, OLDER_VERSIONS, STATE, Info, read_info
 from latentarm.demonstrations.reader import read_episodes, read_episodes_v2
 from latentarm.demonstrations.source import ActionKind, SourceData
 from latentarm.types import Demonstrations
+
+PLUGIN: Final = "latentarm"
+"""What LeRobot calls the robot of `lerobot_robot_latentarm`: positions in rad, the gripper's width in m. Which arm
+it drove is not said."""
 
 
 def read_lerobot(source: Path) -> SourceData:
@@ -24,7 +29,8 @@ def read_lerobot(source: Path) -> SourceData:
     """
     info = read_info(source)
     episodes = (read_episodes_v2 if info.version in OLDER_VERSIONS else read_episodes)(source, info)
-    kind = _actions(info)
+    by_plugin = info.robot == PLUGIN
+    kind = None if by_plugin else _actions(info)
     if kind is None:
         episodes = tuple(replace(episode, action=None) for episode in episodes)
     return SourceData(
@@ -32,15 +38,15 @@ def read_lerobot(source: Path) -> SourceData:
             episodes=episodes,
             rate_hz=info.rate_hz,
             joint_names=info.joint_names,
-            robot=info.robot,
+            robot="" if by_plugin else info.robot,
             goals=info.goals,
             end_effector=info.end_effector,
             limits=info.limits,
             import_record=info.import_record,
             objects=info.objects,
         ),
-        layout="dataset of this package" if info.native else f"LeRobot {info.version}",
-        in_rad=info.native,
+        layout="dataset of this package" if info.native else f"LeRobot {info.version}{' by our plug-in' * by_plugin}",
+        in_rad=info.native or by_plugin,
         actions=kind or "unknown",
     )
 

@@ -87,7 +87,8 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
         raise UserError(f"--clip-rad is {told.clip_rad:g}: give a distance from 0 to pi.")
     names = given.joint_names
     columns = find_columns(names, robot.joint_names, told.joints, told.gripper, source)
-    motors = is_so_arm(given.robot) or any(names[index].endswith(LEROBOT_SUFFIX) for index in columns.joints)
+    suffixed = any(names[index].endswith(LEROBOT_SUFFIX) for index in columns.joints)
+    motors = not data.in_rad and (suffixed or is_so_arm(given.robot))
     if motors and not told.joints and all(names[index].startswith(_OLD_PREFIX) for index in columns.joints):
         raise UserError(
             f"{source}: LeRobot named columns {_OLD_PREFIX}* before June 2025, when zero was the arm"

@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.arms.catalogue import make_arm
 from latentarm.arms.contract import Arm
-from latentarm.arms.helper_process import MessagePort
+from latentarm.arms.helper_process import MessagePort, ask_for_priority
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.loop import ControlLoop
 from latentarm.errors import UserError
@@ -91,6 +91,7 @@ def main() -> None:
             arm = make_arm(message["arm"], driven.robot, driven.start, MonotonicClock().now_s)
             with arm:
                 drive = Drive(port, driven, arm)
+                ask_for_priority()
                 gc.collect()
                 gc.freeze()
                 port.send({"ready": True})

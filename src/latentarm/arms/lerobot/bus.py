@@ -1,0 +1,205 @@
+"""A robot of LeRobot by its motors' bus. Nothing here imports LeRobot before a `MotorsBus` is made."""
+
+import statistics
+import time
+from collections.abc import Mapping
+from dataclasses import fields
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Final, final
+
+from latentarm.arms.lerobot.options import Options
+from latentarm.errors import UserError
+
+KINDS: Final = ("so100_follower", "so101_follower", "koch_follower", "omx_follower")
+"""The robots of LeRobot that have one arm on one bus, and the modules that register them."""
+
+_MODULES: Final = ("so_follower", "koch_follower", "omx_follower")
+
+GRIPPER: Final = "gripper"
+"""The motor that is the gripper of these robots; LeRobot reads it from 0 (closed) to 100 (open)."""
+
+HOTTEST_C: Final = 60
+"""A motor that is hotter is not driven, °C; its own protection is at 70."""
+
+_FAILURES: Final = (OSError, RuntimeError, ValueError)
+"""What LeRobot raises where a bus or a motor does not answer as it should."""
+
+
+@final
+class MotorsBus:
+    """The bus of one robot, with LeRobot's own classes; not open at first.
+
+    Positions of the arm's motors are in degrees from the middle of their calibrated range, as LeRobot reads
+    them with ``use_degrees``. Nothing here switches torque off.
+
+    Args:
+        options: the robot.
+
+    Raises:
+        UserError: LeRobot has no such robot, or reads one of its joints in no angle.
+    """
+
+    def __init__(self, options: Options) -> None:
+        self._options = options
+        self._robot = _robot(options)
+        self._bus: Any = self._robot.bus
+        self.motors: tuple[str, ...] = tuple(self._bus.motors)
+        self.joints = tuple(name for name in self.motors if name != GRIPPER)
+        degrees = import_module("lerobot.motors").MotorNormMode.DEGREES
+        for name in self.joints:
+            if self._bus.motors[name].norm_mode is not degrees:
+                raise UserError(
+                    f"LeRobot's {options.kind} reads {name} in no angle, which cannot be driven: choose one"
+                    f" of {', '.join(KINDS)}."
+                )
+
+    def open(self) -> None:
+        """Open the port and see that all motors are there; changes nothing.
+
+        Raises:
+            UserError: the port or a motor does not answer.
+        """
+        try:
+            self._bus.connect()
+        except _FAILURES as error:
+            self.close()
+            why = " ".join(str(error.__cause__ or error).split())
+            raise UserError(f"{self._options.port} has no {self._options.kind}: {why[:300]}") from error
+
+    def close(self) -> None:
+        """Close the port; motors under power hold their positions."""
+        if self._bus.is_connected:
+            self._bus.disconnect(disable_torque=False)
+
+    def refusals(self) -> tuple[str, ...]:
+        """Why the arm is not driven; its bus is open.
+
+        Raises:
+            OSError: a motor does not answer.
+        """
+        found: list[str] = []
+        if not self._bus.is_calibrated:
+            kind, port, name = self._options.kind, self._options.port, self._options.name
+            found.append(
+                f"The motors do not have the calibration {self._robot.calibration_fpath}: run"
+                f" lerobot-calibrate --robot.type={kind} --robot.port={port} --robot.id={name}."
+            )
+        for motor, celsius in self._read("Present_Temperature").items():
+            if celsius > HOTTEST_C:
+                found.append(f"The motor {motor} is at {celsius} °C: let it cool below {HOTTEST_C} °C.")
+        return tuple(found)
+
+    def facts(self) -> dict[str, str]:
+        """What the arm tells of itself; its bus is open.
+
+        Raises:
+            OSError: a motor does not answer.
+        """
+        spans_s: list[float] = []
+        for _ in range(20):
+            begun = time.perf_counter()
+            self._read("Present_Position")
+            spans_s.append(time.perf_counter() - begun)
+        models = {self._bus.motors[name].model for name in self.motors}
+        hottest = max(self._read("Present_Temperature").items(), key=lambda item: item[1])
+        on = sum(self._read("Torque_Enable").values())
+        told = {
+            "motors": f"{len(self.motors)} {', '.join(sorted(models))}: {', '.join(self.motors)}",
+            "temperature": f"{hottest[1]} °C at most ({hottest[0]})",
+            "torque": f"on at {on} of {len(self.motors)} motors",
+            "round trip": f"{1000 * statistics.median(spans_s):.1f} ms for the positions of all motors",
+        }
+        if self._has("Firmware_Major_Version"):
+            major, minor = self._read("Firmware_Major_Version"), self._read("Firmware_Minor_Version")
+            told["firmware"] = ", ".join(sorted({f"{major[name]}.{minor[name]}" for name in self.motors}))
+        if self._has("Present_Voltage"):
+            told["supply"] = f"{min(self._read('Present_Voltage').values()) / 10:.1f} V at the weakest motor"
+        if self._bus.calibration:
+            at = self.positions()
+            told["positions"] = ", ".join(f"{name} {at[name]:.1f}°" for name in self.joints)
+        return told
+
+    def ranges(self) -> dict[str, float]:
+        """How far each joint may turn to either side of its middle by its calibration, degrees."""
+        found: dict[str, float] = {}
+        for name in self.joints:
+            one = self._bus.calibration[name]
+            ticks = self._bus.model_resolution_table[self._bus.motors[name].model] - 1
+            found[name] = (one.range_max - one.range_min) * 180.0 / ticks
+        return found
+
+    def positions(self) -> Mapping[str, float]:
+        """Joints in degrees, the gripper from 0 to 100.
+
+        Raises:
+            OSError: a motor does not answer.
+        """
+        return self._bus.sync_read("Present_Position", num_retry=1)
+
+    def go(self, targets: Mapping[str, float]) -> None:
+        """Tell the motors where to be; units as of `positions`."""
+        self._bus.sync_write("Goal_Position", dict(targets))
+
+    def limp(self) -> tuple[str, ...]:
+        """The motors whose torque is off.
+
+        Raises:
+            OSError: a motor does not answer.
+        """
+        return tuple(name for name, on in self._read("Torque_Enable").items() if not on)
+
+    def energise(self) -> None:
+        """Switch torque on where it is off, at the positions where the motors are.
+
+        An arm without torque is configured too, as LeRobot does when it connects. One under power is not:
+        that would let it drop for a moment.
+
+        Raises:
+            OSError: a motor does not answer.
+        """
+        limp = self.limp()
+        if not limp:
+            return
+        # A motor goes to its last goal as soon as torque is on.
+        self._bus.sync_write("Goal_Position", dict(self._read("Present_Position")), normalize=False)
+        if len(limp) == len(self.motors):
+            self._robot.configure()
+        else:
+            self._bus.enable_torque(list(limp))
+
+    def _has(self, register: str) -> bool:
+        """Whether the motors have a register: those of other makers have others."""
+        models = {motor.model for motor in self._bus.motors.values()}
+        return all(register in self._bus.model_ctrl_table[model] for model in models)
+
+    def _read(self, register: str) -> dict[str, int]:
+        return self._bus.sync_read(register, normalize=False, num_retry=1)
+
+
+def _robot(options: Options) -> Any:
+    """LeRobot's object."""
+    robots = import_module("lerobot.robots")
+    for module in _MODULES:
+        import_module(f"lerobot.robots.{module}")
+    import_module("lerobot.utils.import_utils").register_third_party_plugins()
+    known = robots.RobotConfig.get_known_choices()
+    if options.kind not in known:
+        raise UserError(f"LeRobot has no robot {options.kind}: choose one of {', '.join(KINDS)}.")
+    config = known[options.kind]
+    names = {field.name for field in fields(config)}
+    folder = None if options.folder is None else Path(options.folder)
+    given = {"port": options.port, "id": options.name, "calibration_dir": folder}
+    # So that positions are angles, and nothing lets the arm drop.
+    given |= {"use_degrees": True, "disable_torque_on_disconnect": False}
+    try:
+        robot = robots.make_robot_from_config(
+            config(**{name: value for name, value in given.items() if name in names})
+        )
+    except ImportError as error:
+        raise UserError(f"LeRobot cannot make {options.kind}: {error}.") from error
+    if not hasattr(robot, "bus") or "port" not in names:
+        raise UserError(
+            f"LeRobot's {options.kind} is no arm on a bus of motors: choose one of {', '.join(KINDS)}."
+        )
+    return robot

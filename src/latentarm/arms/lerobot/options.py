@@ -1,0 +1,57 @@
+"""What the address of a LeRobot arm says: ``lerobot://TYPE?port=...&calibration=...``."""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Self, final
+
+from latentarm.arms.address import ArmAddress
+from latentarm.errors import UserError
+
+
+@final
+@dataclass(frozen=True)
+class Options:
+    """Where an arm is, and as what LeRobot knows it.
+
+    Attributes:
+        kind: LeRobot's type of the robot, such as ``so101_follower``.
+        port: the serial port of its bus.
+        name: LeRobot's id of the robot: the name of its calibration file.
+        folder: that the calibration file is in; None for LeRobot's own.
+    """
+
+    kind: str
+    port: str
+    name: str
+    folder: str | None
+
+    @classmethod
+    def of(cls, address: ArmAddress) -> Self:
+        """What an address says.
+
+        Raises:
+            UserError: an option is unknown or missing, or the address has a port number.
+        """
+        given = address.only("port", "id", "calibration")
+        example = f"--arm lerobot://{address.host}?port=/dev/ttyACM0&calibration=FILE.json"
+        if address.port is not None:
+            raise UserError(f"LeRobot's arms have no network port: write {example}.")
+        if not given.get("port"):
+            raise UserError(f"--arm lerobot://{address.host} does not say the serial port: write {example}.")
+        if ("id" in given) == ("calibration" in given):
+            raise UserError(
+                f"--arm lerobot://{address.host} needs the calibration, either by its file or by the id that"
+                f" lerobot-calibrate was given: write {example}, or id=NAME instead."
+            )
+        if "id" in given:
+            return cls(address.host, given["port"], given["id"], None)
+        file = Path(given["calibration"])
+        if file.suffix != ".json" or not file.is_file():
+            raise UserError(
+                f"{file} is no calibration file: lerobot-calibrate writes one that ends in .json."
+            )
+        return cls(address.host, given["port"], file.stem, str(file.parent.resolve()))
+
+    def message(self) -> dict[str, object]:
+        """In plain values."""
+        return asdict(self)

@@ -1,0 +1,85 @@
+"""Position targets from velocities of bounded duration: what a servo that only knows positions is told."""
+
+import math
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.types import FloatArray
+
+LONGEST_STEP_S: Final = 0.02
+"""However late a step is, the targets move for no longer than this, s."""
+
+LEAD_RAD: Final = 0.15
+"""A joint that is held up is not told to go farther ahead of where it is than this, rad."""
+
+STOP_LEAD_RAD: Final = 0.03
+"""What is left of that when the arm is stopped, rad."""
+
+
+@final
+class Targets:
+    """Integrates commanded velocities into targets.
+
+    Without a command in force the targets stand still, so the arm does.
+
+    Args:
+        lower: (n,), rad; a target does not leave the limits, but one outside may return.
+        upper: (n,), rad.
+        speed: (n,), the fastest that a target may move, rad/s.
+    """
+
+    def __init__(self, lower: FloatArray, upper: FloatArray, speed: FloatArray) -> None:
+        self._lower, self._upper, self._speed = lower, upper, speed
+        self._velocity = np.zeros(len(lower))
+        self._target = np.zeros(len(lower))
+        self._from_s = self._until_s = -math.inf
+
+    def begin(self, q: FloatArray) -> None:
+        """Stand still where the arm is, (n,), rad."""
+        self._target = np.array(q)
+        self._until_s = -math.inf
+
+    def command(self, velocity: FloatArray, from_s: float, until_s: float) -> None:
+        """Move.
+
+        Args:
+            velocity: (n,), rad/s.
+            from_s: when the command was sent, s.
+            until_s: when it runs out, s.
+        """
+        if self._until_s < from_s:  # it moves from rest; else this velocity follows the one before
+            self._from_s = max(self._from_s, from_s)
+        self._velocity = np.clip(velocity, -self._speed, self._speed)
+        self._until_s = until_s
+
+    def halt(self, q: FloatArray) -> None:
+        """Forget the command, and press no farther than a little.
+
+        Args:
+            q: (n,), where the arm is, rad.
+        """
+        self._until_s = -math.inf
+        self._target = q + np.clip(self._target - q, -STOP_LEAD_RAD, STOP_LEAD_RAD)
+
+    def moving(self, now_s: float) -> bool:
+        """Whether a command is in force that moves the arm."""
+        return now_s < self._until_s and bool(self._velocity.any())
+
+    def advance(self, now_s: float, q: FloatArray) -> FloatArray:
+        """The targets by now, (n,), rad.
+
+        Args:
+            now_s: the time, s; never goes back.
+            q: (n,), where the arm is, rad.
+        """
+        ends_s = min(now_s, self._until_s)
+        span_s = min(ends_s - self._from_s, LONGEST_STEP_S) if ends_s > self._from_s else 0.0
+        self._from_s = max(now_s, self._from_s)
+        wanted = self._target + self._velocity * span_s
+        held_up = (np.abs(wanted - q) > LEAD_RAD) & (np.abs(wanted - q) > np.abs(self._target - q))
+        outward = (wanted > self._upper) & (wanted > self._target)
+        outward |= (wanted < self._lower) & (wanted < self._target)
+        inside = np.clip(wanted, np.minimum(self._lower, self._target), np.maximum(self._upper, self._target))
+        self._target = np.where(held_up, self._target, np.where(outward, inside, wanted))
+        return self._target.copy()
