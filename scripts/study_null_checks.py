@@ -1,35 +1,35 @@
 """Null checks of the analysis of user studies: how often it finds what is not there, and what is.
 
-A condition is compared with itself in many studies of twelve people whose trials are drawn at random: a
-test should be significant in 5 % of them. With an injected effect of dz = 0.8 it should be found as often as
-the power analysis says. Orders, people's levels, and chance from trial to trial are drawn as a study has
-them. Nobody drives.
+A condition is compared with itself in many studies whose trials are drawn at random, of twelve people who
+meet all conditions, or of forty who meet one each: a test should be significant in 5 % of them. With an
+injected effect of dz = 0.8 within people, or d = 0.8 between them, it should be found as often as the power
+analysis says. Orders, people's levels, and chance from trial to trial are drawn as a study has them. Nobody
+drives.
 
 ``python scripts/study_null_checks.py --out FILE.json`` writes what it found, and fails where a rate is off.
 """
 
 import argparse
 import sys
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from statsmodels.stats.power import TTestPower
+from statsmodels.stats.power import TTestIndPower, TTestPower
 
 from latentarm.runs.results_folder import write_json
 from latentarm.studies.statistics import LEVEL
-from latentarm.user_studies.analysis.anova import repeated_measures
 from latentarm.user_studies.analysis.claims import claims_tested, sides_of
-from latentarm.user_studies.analysis.long_table import long_table
-from latentarm.user_studies.analysis.randomisation import randomisation_p
 from latentarm.user_studies.catalogue import load_definition
 from latentarm.user_studies.definition import Definition, Factor
-from latentarm.user_studies.hypothesis import Claim
-from latentarm.user_studies.order import orders
+from latentarm.user_studies.designs.catalogue import design_of
+from latentarm.user_studies.hypothesis import Claim, Hypothesis
 from latentarm.user_studies.record import Trial
 
-PEOPLE = 12
-DZ = 0.8
+PEOPLE = {"within": 12, "between": 40}
+EFFECT = 0.8
+"""In SDs of people's differences within them, of people between."""
+
 PERSON_SD, ORDER_EFFECT, TRIAL_SD, CONDITION_SD = 4.0, -0.1, 1.0, 1.0
 """Of the drawn trials, in units of the chance from trial to trial: how people differ, what each place in the
 order adds, and how much the difference between two conditions varies from person to person."""
@@ -63,8 +63,9 @@ class Check:
 def drawn(definition: Definition, rng: np.random.Generator, effects: dict[str, float]) -> list[Trial]:
     """Trials of one study."""
     names = [condition.name for condition in definition.conditions]
+    met = design_of(definition).orders(definition, PEOPLE[definition.design], rng)
     trials: list[Trial] = []
-    for person, order in enumerate(orders(names, PEOPLE, rng)):
+    for person, order in enumerate(met):
         level = rng.normal(20.0, PERSON_SD)
         own = {name: rng.normal(0.0, CONDITION_SD / np.sqrt(2.0)) for name in names}
         for place, name in enumerate(order):
@@ -77,20 +78,27 @@ def drawn(definition: Definition, rng: np.random.Generator, effects: dict[str, f
 
 
 def effect_of(definition: Definition) -> float:
-    """The difference between two conditions whose dz is `DZ` in people's means, orders apart."""
+    """The difference between two conditions that is `EFFECT` in people's means."""
     trials = sum(task.trials for task in definition.tasks)
-    return DZ * float(np.sqrt(CONDITION_SD**2 + 2.0 * TRIAL_SD**2 / trials))
+    within = CONDITION_SD**2 + 2.0 * TRIAL_SD**2 / trials
+    if definition.design == "between":
+        return EFFECT * float(np.sqrt(PERSON_SD**2 + within / 2.0))
+    count = len(definition.conditions)
+    # The mean square of the difference of two places in an order of so many, each pair as often.
+    places = count * (count + 1) / 6.0
+    return EFFECT * float(np.sqrt(within + ORDER_EFFECT**2 * places))
 
 
 def rates(definition: Definition, claim: Claim, effect: float, studies: int, seed: int) -> dict[str, float]:
     """Share of the studies in which each test of a claim is significant."""
-    found: dict[str, list[float]] = {"paired t": [], "randomisation": []}
+    design = design_of(definition)
+    found: dict[str, list[float]] = {"t": [], "randomisation": []}
     for study in range(studies):
         trials = drawn(definition, np.random.default_rng([seed, study]), dict.fromkeys(claim.subject, effect))
         tested = claims_tested(definition, sides_of(definition, trials))
         p = next(one.p for one in tested if one.claim == claim)
-        found["paired t"].append(1.0 if p is None else p)
-        exact = randomisation_p(long_table(trials, claim))
+        found["t"].append(1.0 if p is None else p)
+        exact = design.randomisation_p(design.sides(trials, claim), design.table(trials, claim))
         found["randomisation"].append(1.0 if exact is None else exact)
     return {test: float(np.mean(np.array(p) < LEVEL)) for test, p in found.items()}
 
@@ -101,35 +109,64 @@ def anova_rate(definition: Definition, factors: tuple[Factor, Factor], studies: 
     p = [
         effect.p
         for study in range(studies)
-        for effect in repeated_measures(
+        for effect in design_of(definition).effects(
             drawn(definition, np.random.default_rng([seed, study]), {}), factors, "time_s", tasks
         )
     ]
     return float(np.mean(np.array(p) < LEVEL))
 
 
+def t_checks(definition: Definition, claim: Claim, power: float, studies: int, seed: int) -> list[Check]:
+    """Tests of a claim without effect, and with one that should be found with a certain power."""
+    kind, size = ("paired t", "dz") if definition.design == "within" else ("Welch's t", "d")
+    itself = rates(definition, claim, 0.0, studies, seed)
+    injected = rates(definition, claim, -effect_of(definition), studies, seed + 1)
+    # Two standard errors of a share of so many studies.
+    apart = 2.0 * float(np.sqrt(power * (1.0 - power) / studies))
+    return [
+        Check(f"{kind}, a condition against itself", LEVEL, itself["t"], TOLERANCE),
+        Check(
+            f"randomisation test {definition.design} people, a condition against itself",
+            LEVEL,
+            itself["randomisation"],
+            TOLERANCE,
+        ),
+        Check(f"{kind}, {size} = {EFFECT}", power, injected["t"], apart),
+    ]
+
+
 def checks(studies: int, seed: int) -> list[Check]:
     """All null checks."""
     harmonic, eating = load_definition("harmonic"), load_definition("eating")
     claim = Claim("time_s", ("cVAE",), ("High Assist",), "less")
-    itself = rates(harmonic, claim, 0.0, studies, seed)
-    injected = rates(harmonic, claim, -effect_of(harmonic), studies, seed + 1)
-    power = float(TTestPower().power(DZ, PEOPLE, LEVEL))
-    # Two standard errors of a share of so many studies.
-    apart = 2.0 * float(np.sqrt(power * (1.0 - power) / studies))
     control, assistance = eating.factors
+    factors = (control, assistance)
+    compared = tuple(one for one in harmonic.conditions if one.name in {*claim.subject, *claim.against})
+    apart = replace(
+        harmonic,
+        name="harmonic_apart",
+        design="between",
+        conditions=compared,
+        hypotheses=(Hypothesis("H1", "cVAE is quicker.", (claim,)),),
+        printed=(),
+    )
+    within = float(TTestPower().power(EFFECT, PEOPLE["within"], LEVEL))
+    between = float(TTestIndPower().power(EFFECT, PEOPLE["between"] / 2, LEVEL))
     return [
-        *(
-            Check(f"{test}, a condition against itself", LEVEL, rate, TOLERANCE)
-            for test, rate in itself.items()
-        ),
+        *t_checks(harmonic, claim, within, studies, seed),
         Check(
             "repeated-measures F, no effects",
             LEVEL,
-            anova_rate(eating, (control, assistance), studies, seed + 2),
+            anova_rate(eating, factors, studies, seed + 2),
             TOLERANCE,
         ),
-        Check(f"paired t, dz = {DZ}", power, injected["paired t"], apart),
+        *t_checks(apart, claim, between, studies, seed),
+        Check(
+            "F between people, no effects",
+            LEVEL,
+            anova_rate(replace(eating, design="between"), factors, studies, seed + 2),
+            TOLERANCE,
+        ),
     ]
 
 

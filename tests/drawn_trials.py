@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from latentarm.user_studies.definition import Definition
-from latentarm.user_studies.order import orders
+from latentarm.user_studies.designs.catalogue import design_of
 from latentarm.user_studies.record import Trial
 
 
@@ -18,7 +18,6 @@ def drawn_trials(
 ) -> list[Trial]:
     """Trials whose measures are a person's level, a condition's effect, and chance of unit SD."""
     effects = effects or {}
-    names = [condition.name for condition in definition.conditions]
     measures = measures or definition.measures
     levels = rng.normal(20.0, 2.0, people)
     return [
@@ -30,7 +29,7 @@ def drawn_trials(
             number,
             {name: float(levels[person] + effects.get(condition, 0.0) + rng.normal()) for name in measures},
         )
-        for person, order in enumerate(orders(names, people, rng))
+        for person, order in enumerate(design_of(definition).orders(definition, people, rng))
         for place, condition in enumerate(order)
         for task in definition.tasks
         for number in range(task.trials)

@@ -96,7 +96,7 @@ def test_equivalence_is_the_worse_of_two_one_sided_tests() -> None:
 @pytest.mark.parametrize("people", range(2, 10))
 def test_a_difference_that_all_share_is_as_rare_as_one_in_all_swaps(people: int) -> None:
     against = np.arange(people) * 3.0
-    table = long_table(two_sided(against - 1.0 - 1e-3 * against**2, against), FASTER)
+    table = long_table(two_sided(against - 1.0 - 1e-3 * against**2, against), FASTER, on_both=True)
     plain = replace(table, covariates=table.covariates[:, :0])
     assert randomisation_p(plain) == pytest.approx(2.0 ** (1 - people))
 
@@ -105,16 +105,16 @@ def test_the_randomisation_test_does_not_know_which_side_is_which() -> None:
     trials = drawn_trials(HARMONIC, 8, np.random.default_rng(3), {"cVAE": -0.5})
     claim = Claim("time_s", ("cVAE",), ("High Assist",), "less")
     turned = Claim("time_s", ("High Assist",), ("cVAE",), "less")
-    p = randomisation_p(long_table(trials, claim))
+    p = randomisation_p(long_table(trials, claim, on_both=True))
     assert p is not None
     assert 0 < p <= 1
-    assert randomisation_p(long_table(trials, turned)) == pytest.approx(p)
+    assert randomisation_p(long_table(trials, turned, on_both=True)) == pytest.approx(p)
 
 
 def test_the_mixed_model_of_balanced_trials_finds_the_difference_of_the_means() -> None:
     trials = drawn_trials(HARMONIC, 12, np.random.default_rng(5), {"cVAE": -2.0})
     claim = Claim("time_s", ("cVAE",), ("No Assist",), "less")
-    table = long_table(trials, claim)
+    table = long_table(trials, claim, on_both=True)
     without_order = mixed_model(replace(table, covariates=table.covariates[:, :0]))
     assert without_order is not None
     assert without_order.estimate == pytest.approx(float(sides(trials, claim).differences.mean()), rel=1e-6)

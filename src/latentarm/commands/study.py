@@ -155,7 +155,9 @@ def power_of_study(
     table = Table("", "80 %", "90 %", title=f"People needed, drawn from {power.people} simulated people")
     for what, shares in {**power.hypotheses, **power.claims}.items():
         needed = (power.needed(shares, target) for target in TARGETS)
-        table.add_row(what, *("more than 40" if number is None else str(number) for number in needed))
+        table.add_row(
+            what, *(f"more than {power.numbers[-1]}" if one is None else str(one) for one in needed)
+        )
     print_renderables(table)
     say(f"How often each claim holds with how many people is in {folder}/power.json.", options.json)
     return 0

@@ -184,6 +184,10 @@ class Definition:
                 raise UserError(
                     f"A claim of the study {self.name} is about {missing}, which it does not have."
                 )
+        if self.design == "between" and self.orders:
+            raise UserError(
+                f"The study {self.name} has orders, but each person meets one condition: leave them empty."
+            )
         for order in self.orders:
             if len(set(order)) < len(order) or not set(order) <= names:
                 raise UserError(f"An order of the study {self.name} must name its conditions, each once.")

@@ -28,6 +28,26 @@ def williams(count: int) -> list[list[int]]:
     return square if count % 2 == 0 else square + [row[::-1] for row in square]
 
 
+def assigned(conditions: Sequence[str], people: int, rng: np.random.Generator) -> list[str]:
+    """A condition for each person: random blocks, each with every condition once.
+
+    At any time the numbers of people differ by one at most; they are equal after whole blocks.
+
+    Args:
+        conditions: names.
+        people: how many.
+        rng: source of all randomness.
+
+    Raises:
+        UserError: there is no condition.
+    """
+    if not conditions:
+        raise UserError("People cannot be assigned: there is no condition.")
+    blocks = -(-people // len(conditions))
+    places = [place for _ in range(blocks) for place in rng.permutation(len(conditions))]
+    return [str(conditions[place]) for place in places[:people]]
+
+
 def orders(conditions: Sequence[str], people: int, rng: np.random.Generator) -> list[tuple[str, ...]]:
     """An order for each person: whole Williams designs, the conditions and the rows of each in random order.
 

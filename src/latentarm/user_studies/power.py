@@ -7,15 +7,15 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.errors import UserError
-from latentarm.types import IntArray
 from latentarm.user_studies.analysis.claims import claims_tested, sides_of, verdicts, worded
 from latentarm.user_studies.analysis.means import Sides
 from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.designs.catalogue import design_of
 from latentarm.user_studies.exclusion import counted
 from latentarm.user_studies.record import Trial
 
 NUMBERS: Final = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40)
-"""Of people that are tried."""
+"""Of people who meet a condition, that are tried."""
 
 TARGETS: Final = (0.8, 0.9)
 """Shares of the studies in which a claim should be found."""
@@ -32,7 +32,7 @@ class Power:
     Attributes:
         people: whom studies were drawn from.
         draws: studies for each number of people.
-        numbers: of people.
+        numbers: of people in all.
         claims: share of the studies in which each claim holds, by the claim in words.
         hypotheses: the same of each hypothesis, by its name; none of those that could not be tested.
     """
@@ -66,6 +66,8 @@ class Power:
 def power_of(definition: Definition, trials: Sequence[Trial], draws: int, seed: int) -> Power:
     """Draw studies of people with replacement, and analyse each as the study itself is analysed.
 
+    In a study between people they are drawn condition by condition, as many of each.
+
     What it finds is true as far as these people stand for others: simulated ones for simulated people.
 
     Args:
@@ -80,14 +82,21 @@ def power_of(definition: Definition, trials: Sequence[Trial], draws: int, seed: 
     if draws < 1:
         raise UserError(f"The number of draws is {draws}: it must be at least 1.")
     kept, _ = counted(definition.exclusions, trials)
-    people = sorted({trial.person for trial in kept})
-    if len(people) < FEWEST:
-        raise UserError(f"Power needs {FEWEST} people or more to draw from, not {len(people)}.")
+    people: dict[int, set[str]] = {}
+    for trial in kept:
+        people.setdefault(trial.person, set()).add(trial.condition)
+    design, conditions = design_of(definition), len(definition.conditions)
+    if design.few_to_draw_from(people, conditions, FEWEST):
+        raise UserError(
+            f"Power needs {FEWEST} people or more in each condition to draw from: there are {len(people)}"
+            f" people for {conditions} conditions."
+        )
     both = sides_of(definition, kept)
     rng = np.random.default_rng(seed)
-    shares = [_shares(definition, both, people, number, draws, rng) for number in NUMBERS]
+    numbers = design.numbers(conditions, NUMBERS)
+    shares = [_shares(definition, both, people, number, draws, rng) for number in numbers]
     claims = {worded(definition, claim): index for index, claim in enumerate(definition.claims)}
-    measured = {name: index for name, index in claims.items() if len(both[index].people)}
+    measured = {name: index for name, index in claims.items() if len(both[index].subject)}
     tested = {
         one.name: index
         for index, one in enumerate(definition.hypotheses)
@@ -96,7 +105,7 @@ def power_of(definition: Definition, trials: Sequence[Trial], draws: int, seed: 
     return Power(
         people=len(people),
         draws=draws,
-        numbers=NUMBERS,
+        numbers=numbers,
         claims={name: tuple(one[0][index] for one in shares) for name, index in measured.items()},
         hypotheses={name: tuple(one[1][index] for one in shares) for name, index in tested.items()},
     )
@@ -105,24 +114,18 @@ def power_of(definition: Definition, trials: Sequence[Trial], draws: int, seed: 
 def _shares(
     definition: Definition,
     both: Sequence[Sides],
-    people: Sequence[int],
+    people: Mapping[int, set[str]],
     number: int,
     draws: int,
     rng: np.random.Generator,
 ) -> tuple[list[float], list[float]]:
     """Shares of the drawn studies in which each claim, and each hypothesis, holds."""
+    design = design_of(definition)
     claims = np.zeros(len(definition.claims))
     hypotheses = np.zeros(len(definition.hypotheses))
     for _ in range(draws):
-        drawn = rng.choice(people, number)
-        tested = claims_tested(definition, [_of_people(one, drawn) for one in both])
+        drawn = design.drawn(people, number, rng)
+        tested = claims_tested(definition, [design.of_people(one, drawn) for one in both])
         claims += [one.says == "held" for one in tested]
         hypotheses += [one.says == "held" for one in verdicts(definition, tested)]
     return (claims / draws).tolist(), (hypotheses / draws).tolist()
-
-
-def _of_people(both: Sides, drawn: IntArray) -> Sides:
-    """The sides of drawn people, each as often as they were drawn, of those who have both."""
-    row = {person: index for index, person in enumerate(both.people)}
-    rows = np.array([row[person] for person in drawn.tolist() if person in row], dtype=np.intp)
-    return Sides(tuple(range(len(rows))), both.subject[rows], both.against[rows])

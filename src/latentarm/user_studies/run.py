@@ -15,7 +15,7 @@ from latentarm.studies.streams import generator
 from latentarm.untrusted.console import VisibleConsole
 from latentarm.user_studies.analysis.analysis import Analysis, analyse
 from latentarm.user_studies.definition import Definition
-from latentarm.user_studies.order import orders
+from latentarm.user_studies.designs.catalogue import design_of
 from latentarm.user_studies.record import Trial
 from latentarm.user_studies.session import SessionCell, go_through
 from latentarm.user_studies.sizes import Sizes, Stream
@@ -149,8 +149,8 @@ def _session_cells(
     request: Request, people: tuple[Traits, ...], trained: Mapping[str, Trained]
 ) -> list[SessionCell]:
     definition = request.definition
-    names = [condition.name for condition in definition.conditions]
-    taken = _orders(request, names)
+    rng = generator(request.seed, definition.name, Stream.ORDER)
+    taken = design_of(definition).orders(definition, request.people, rng)
     return [
         SessionCell(
             definition,
@@ -166,13 +166,6 @@ def _session_cells(
         for place, name in enumerate(order)
         for task in definition.tasks
     ]
-
-
-def _orders(request: Request, names: list[str]) -> list[tuple[str, ...]]:
-    fixed = request.definition.orders
-    if fixed:
-        return [fixed[person % len(fixed)] for person in range(request.people)]
-    return orders(names, request.people, generator(request.seed, request.definition.name, Stream.ORDER))
 
 
 def _run(

@@ -4,15 +4,14 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import final
 
-from latentarm.user_studies.analysis.anova import Effect, repeated_measures
+from latentarm.user_studies.analysis.anova import Effect
 from latentarm.user_studies.analysis.as_printed import AsPrinted, as_printed
 from latentarm.user_studies.analysis.claims import Tested, Verdict, claims_tested, sides_of, verdicts
-from latentarm.user_studies.analysis.long_table import long_table
-from latentarm.user_studies.analysis.means import tasks_of
+from latentarm.user_studies.analysis.means import Sides, tasks_of
 from latentarm.user_studies.analysis.mixed import Mixed, mixed_model
-from latentarm.user_studies.analysis.paired import effect_interval
-from latentarm.user_studies.analysis.randomisation import randomisation_p
 from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.designs.catalogue import design_of
+from latentarm.user_studies.designs.design import StudyDesign
 from latentarm.user_studies.exclusion import Excluded, counted
 from latentarm.user_studies.record import Trial
 
@@ -25,14 +24,23 @@ class Modelled:
     Attributes:
         mixed: the linear mixed model; None where it could not be fitted.
         p: of the randomisation test; None where it could not be made.
-        dz_low: lower end of the 95 % interval of dz; None where there is no dz.
-        dz_high: upper end.
+        low: lower end of the 95 % interval of the effect size; None where there is no test.
+        high: upper end.
     """
 
     mixed: Mixed | None
     p: float | None
-    dz_low: float | None
-    dz_high: float | None
+    low: float | None
+    high: float | None
+
+    def as_json(self, effect_key: str) -> dict[str, object]:
+        """Plain mapping, in which the effect size has its name."""
+        return {
+            "mixed": None if self.mixed is None else asdict(self.mixed),
+            "p": self.p,
+            f"{effect_key}_low": self.low,
+            f"{effect_key}_high": self.high,
+        }
 
 
 @final
@@ -41,6 +49,7 @@ class Analysis:
     """What a study says.
 
     Attributes:
+        design: of the study.
         trials: that count.
         excluded: what does not.
         tested: every claim.
@@ -50,6 +59,7 @@ class Analysis:
         as_printed: the paper's statistics with ours.
     """
 
+    design: StudyDesign
     trials: tuple[Trial, ...]
     excluded: Excluded
     tested: tuple[Tested, ...]
@@ -64,7 +74,10 @@ class Analysis:
             "excluded_trials": [{"trial": index, "why": why} for index, why in self.excluded.trials],
             "excluded_people": list(self.excluded.people),
             "claims": [
-                {**tested.as_json(), "model": asdict(modelled)}
+                {
+                    **tested.as_json(self.design.test_key),
+                    "model": modelled.as_json(self.design.effect_key),
+                }
                 for tested, modelled in zip(self.tested, self.modelled, strict=True)
             ],
             "hypotheses": [
@@ -85,32 +98,35 @@ def analyse(definition: Definition, trials: Sequence[Trial]) -> Analysis:
         definition: of the study.
         trials: of all people.
     """
+    design = design_of(definition)
     kept, out = counted(definition.exclusions, trials)
-    tested = claims_tested(definition, sides_of(definition, kept))
+    both = sides_of(definition, kept)
+    tested = claims_tested(definition, both)
     return Analysis(
+        design=design,
         trials=tuple(kept),
         excluded=out,
         tested=tuple(tested),
-        modelled=tuple(_modelled(one, kept) for one in tested),
+        modelled=tuple(_modelled(design, one, sides, kept) for one, sides in zip(tested, both, strict=True)),
         verdicts=tuple(verdicts(definition, tested)),
         effects=_effects(definition, kept),
         as_printed=tuple(as_printed(one, kept) for one in definition.printed),
     )
 
 
-def _modelled(tested: Tested, trials: Sequence[Trial]) -> Modelled:
-    table = long_table(trials, tested.claim)
-    low, high = (None, None) if tested.paired is None else effect_interval(tested.paired.dz, tested.n)
-    return Modelled(mixed_model(table), randomisation_p(table), low, high)
+def _modelled(design: StudyDesign, tested: Tested, both: Sides, trials: Sequence[Trial]) -> Modelled:
+    table = design.table(trials, tested.claim)
+    low, high = (None, None) if tested.test is None else design.effect_interval(both)
+    return Modelled(mixed_model(table), design.randomisation_p(both, table), low, high)
 
 
 def _effects(definition: Definition, trials: Sequence[Trial]) -> dict[str, list[Effect]]:
     if len(definition.factors) != 2:
         return {}
-    first, second = definition.factors
+    design, (first, second) = design_of(definition), definition.factors
     claims = {claim.measure: claim for claim in definition.claims}
     found = {
-        measure: repeated_measures(trials, (first, second), measure, tasks_of(trials, claim))
+        measure: design.effects(trials, (first, second), measure, tasks_of(trials, claim))
         for measure, claim in claims.items()
     }
     return {measure: effects for measure, effects in found.items() if effects}

@@ -14,6 +14,7 @@ from latentarm.user_studies.printed import Printed, PrintedTest
 from latentarm.user_studies.record import Trial
 
 NOT_MEASURED: Final = "not measured"
+NOBODY_BOTH: Final = "nobody has met both conditions"
 
 
 @final
@@ -116,6 +117,8 @@ def _between_f(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
 
     both = sides(trials, _claim(printed))
     n = len(both.people)
+    if not n:
+        return AsPrinted(printed, NOBODY_BOTH)
     if n < 2 or not spreads(np.concatenate([both.subject, both.against])):
         return AsPrinted(printed, "too few people")
     result = f_oneway(both.subject, both.against)
@@ -128,6 +131,8 @@ def _paired(printed: Printed, trials: Sequence[Trial]) -> AsPrinted:
 
     both = sides(trials, _claim(printed))
     n = len(both.people)
+    if not n:
+        return AsPrinted(printed, NOBODY_BOTH)
     if n < 2 or not spreads(both.differences):
         return AsPrinted(printed, "too few people, or no spread")
     result = ttest_rel(both.subject, both.against)

@@ -7,17 +7,17 @@ from typing import Final, Literal, final
 import numpy as np
 
 from latentarm.studies.statistics import LEVEL, holm
-from latentarm.user_studies.analysis.equivalence import equivalence
-from latentarm.user_studies.analysis.means import Sides, sides
-from latentarm.user_studies.analysis.paired import Paired, paired_test
+from latentarm.types import FloatArray
+from latentarm.user_studies.analysis.means import Sides
 from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.designs.catalogue import design_of
+from latentarm.user_studies.designs.design import MeansTest, StudyDesign
 from latentarm.user_studies.hypothesis import Claim, Hypothesis
 from latentarm.user_studies.record import Trial
 
 Said = Literal["held", "not held", "could not be tested"]
 
 NOT_MEASURED: Final = "nobody has a figure for it"
-TOO_FEW: Final = "fewer than two people have both sides"
 NO_SPREAD: Final = "all people differ alike"
 
 
@@ -29,13 +29,13 @@ class Tested:
     Attributes:
         hypothesis: that it belongs to.
         claim: what is claimed.
-        n: people who have both sides.
+        n: people who are compared: who have both sides, or in a study between people either.
         mean: of the subject's side; None without people.
         sd: of the people's means; None for fewer than two.
         mean_against: of the other side.
         sd_against: the same.
-        paired: the test of the differences; None where it could not be made.
-        p: of the claim's own test, two-sided paired t or TOST, before correction; None where not tested.
+        test: of the difference; None where it could not be made.
+        p: of the claim's own test, two-sided t or TOST, before correction; None where not tested.
         p_holm: after Holm's correction over the study.
         why_not: why it could not be tested; empty where it was.
     """
@@ -47,7 +47,7 @@ class Tested:
     sd: float | None
     mean_against: float | None
     sd_against: float | None
-    paired: Paired | None
+    test: MeansTest | None
     p: float | None
     p_holm: float | None = None
     why_not: str = ""
@@ -55,18 +55,19 @@ class Tested:
     @property
     def says(self) -> Said:
         """Whether the claim held."""
-        if self.p_holm is None or self.paired is None:
+        if self.p_holm is None or self.test is None:
             return "could not be tested"
         direction = self.claim.direction
-        its_way = direction == "equal" or (self.paired.difference < 0.0) == (direction == "less")
+        its_way = direction == "equal" or (self.test.difference < 0.0) == (direction == "less")
         return "held" if its_way and self.p_holm < LEVEL else "not held"
 
-    def as_json(self) -> dict[str, object]:
-        """Plain mapping."""
+    def as_json(self, test_key: str) -> dict[str, object]:
+        """Plain mapping, in which the test has a name of its own."""
         entries = asdict(self)
-        if self.paired is not None and np.isnan(self.paired.g):
-            entries["paired"]["g"] = None
-        return {**entries, "says": self.says}
+        if self.test is not None and np.isnan(self.test.g):
+            entries["test"]["g"] = None
+        named = {test_key if name == "test" else name: value for name, value in entries.items()}
+        return {**named, "says": self.says}
 
 
 @final
@@ -92,7 +93,8 @@ def sides_of(definition: Definition, trials: Sequence[Trial]) -> list[Sides]:
         definition: of the study.
         trials: that count.
     """
-    return [sides(trials, claim) for claim in definition.claims]
+    design = design_of(definition)
+    return [design.sides(trials, claim) for claim in definition.claims]
 
 
 def claims_tested(definition: Definition, both: Sequence[Sides]) -> list[Tested]:
@@ -103,7 +105,8 @@ def claims_tested(definition: Definition, both: Sequence[Sides]) -> list[Tested]
         both: sides of every claim, as `sides_of` gives them.
     """
     owners = [hypothesis.name for hypothesis in definition.hypotheses for _ in hypothesis.claims]
-    found = [_tested(*one) for one in zip(owners, definition.claims, both, strict=True)]
+    design = design_of(definition)
+    found = [_tested(design, *one) for one in zip(owners, definition.claims, both, strict=True)]
     corrected = holm([one.p for one in found])
     return [replace(one, p_holm=p) for one, p in zip(found, corrected, strict=True)]
 
@@ -126,24 +129,34 @@ def worded(definition: Definition, claim: Claim) -> str:
     return f"{definition.label(claim.measure)}{where}: {subject} {sign} {against}{margin}"
 
 
-def _tested(hypothesis: str, claim: Claim, both: Sides) -> Tested:
-    n = len(both.people)
-    paired = paired_test(both.differences) if n > 1 else None
-    p = None if paired is None else paired.p
-    if paired is not None and claim.margin is not None:
-        p = equivalence(both.differences, claim.margin)
-    why_not = "" if p is not None else NOT_MEASURED if n == 0 else TOO_FEW if n < 2 else NO_SPREAD
+def _tested(design: StudyDesign, hypothesis: str, claim: Claim, both: Sides) -> Tested:
+    n = len({*both.people, *both.people_against})
+    too_few = design.too_few(both)
+    test = None if too_few else design.test(both)
+    p = None if test is None else test.p
+    if test is not None and claim.margin is not None:
+        p = design.equivalence(both, claim.margin)
+    why_not = "" if p is not None else NOT_MEASURED if n == 0 else too_few or NO_SPREAD
+    (mean, sd), (mean_against, sd_against) = (_spread(side) for side in (both.subject, both.against))
     return Tested(
         hypothesis=hypothesis,
         claim=claim,
         n=n,
-        mean=float(both.subject.mean()) if n else None,
-        sd=float(both.subject.std(ddof=1)) if n > 1 else None,
-        mean_against=float(both.against.mean()) if n else None,
-        sd_against=float(both.against.std(ddof=1)) if n > 1 else None,
-        paired=paired,
+        mean=mean,
+        sd=sd,
+        mean_against=mean_against,
+        sd_against=sd_against,
+        test=test,
         p=p,
         why_not=why_not,
+    )
+
+
+def _spread(means: FloatArray) -> tuple[float | None, float | None]:
+    """Mean and SD of people's means (n,); None where there are too few for it."""
+    return (
+        float(means.mean()) if len(means) else None,
+        float(means.std(ddof=1)) if len(means) > 1 else None,
     )
 
 

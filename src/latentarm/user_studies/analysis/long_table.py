@@ -15,7 +15,7 @@ from latentarm.user_studies.record import Trial
 @final
 @dataclass(frozen=True, eq=False)
 class LongTable:
-    """Trials of the people who have both sides of a claim.
+    """Trials of the people whom a claim compares.
 
     Attributes:
         value: (N,), the measure.
@@ -36,12 +36,13 @@ class LongTable:
         return int(self.person.max()) + 1 if len(self.person) else 0
 
 
-def long_table(trials: Sequence[Trial], claim: Claim) -> LongTable:
+def long_table(trials: Sequence[Trial], claim: Claim, *, on_both: bool) -> LongTable:
     """The trials that a claim compares.
 
     Args:
         trials: that count.
         claim: what is compared.
+        on_both: whether the same people stand on both sides, so that only those with both count.
     """
     tasks = tasks_of(trials, claim)
     every = [
@@ -55,7 +56,8 @@ def long_table(trials: Sequence[Trial], claim: Claim) -> LongTable:
         side: {trial.person for trial in every if trial.condition in conditions}
         for side, conditions in (("subject", claim.subject), ("against", claim.against))
     }
-    people = sorted(on_side["subject"] & on_side["against"])
+    subject, against = on_side["subject"], on_side["against"]
+    people = sorted(subject & against if on_both else subject | against)
     kept = [trial for trial in every if trial.person in people]
     columns = np.array(
         [[trial.order, trial.trial, *(float(trial.task == task) for task in tasks[1:])] for trial in kept],

@@ -14,21 +14,23 @@ from latentarm.user_studies.record import Trial
 @final
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """The two sides of a comparison, person by person.
+    """The two sides of a comparison: the same people on both, in the same rows, or different ones.
 
     Attributes:
-        people: numbers of the people of each row.
-        subject: (n,), mean of each person under the conditions that a claim is about.
-        against: (n,), under the others.
+        people: numbers of the people on the subject's side.
+        subject: (n,), mean of each under the conditions that a claim is about.
+        against: (m,), of each on the other side, under the others.
+        people_against: numbers of the people there.
     """
 
     people: tuple[int, ...]
     subject: FloatArray
     against: FloatArray
+    people_against: tuple[int, ...]
 
     @property
     def differences(self) -> FloatArray:
-        """(n,), subject less against."""
+        """(n,), subject less against, where the same people stand on both sides."""
         return self.subject - self.against
 
 
@@ -80,4 +82,26 @@ def sides(trials: Sequence[Trial], claim: Claim) -> Sides:
         ]
     ).reshape(-1, 2)
     whole = np.flatnonzero(np.isfinite(both).all(axis=1))
-    return Sides(tuple(people[row] for row in whole), both[whole, 0], both[whole, 1])
+    numbers = tuple(people[row] for row in whole)
+    return Sides(numbers, both[whole, 0], both[whole, 1], numbers)
+
+
+def groups(trials: Sequence[Trial], claim: Claim) -> Sides:
+    """Both sides of a claim of a study in which each person meets one condition.
+
+    Args:
+        trials: that count.
+        claim: what is compared.
+    """
+    tasks = tasks_of(trials, claim)
+    found: list[tuple[tuple[int, ...], FloatArray]] = []
+    for side in (claim.subject, claim.against):
+        met = {trial.person: trial.condition for trial in trials if tasks and trial.condition in side}
+        means = {
+            person: person_mean(trials, person, claim.measure, (met[person],), tasks)
+            for person in sorted(met)
+        }
+        known = {person: mean for person, mean in means.items() if np.isfinite(mean)}
+        found.append((tuple(known), np.array(list(known.values()), dtype=float)))
+    (people, subject), (others, against) = found
+    return Sides(people, subject, against, others)

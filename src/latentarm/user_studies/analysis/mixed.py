@@ -37,11 +37,12 @@ def mixed_model(table: LongTable) -> Mixed | None:
     `latentarm.user_studies.analysis.randomisation`.
 
     Returns:
-        None for fewer than two people, or where the measure varies too little for a fit.
+        None for fewer than two people, for one trial a person, of which chance cannot be told apart, or
+        where the measure varies too little for a fit.
     """
     from statsmodels.regression.mixed_linear_model import MixedLM  # takes a second
 
-    if table.people < 2 or not spreads(table.value):
+    if table.people < 2 or len(table.value) == table.people or not spreads(table.value):
         return None
     design = np.column_stack([np.ones(len(table.value)), table.label, table.covariates])
     if np.linalg.matrix_rank(design) < design.shape[1] or design.shape[1] >= len(design):

@@ -18,10 +18,10 @@ from latentarm.types import Row
 from latentarm.user_studies.analysis.analysis import Analysis
 from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.printed import WRONG
+from latentarm.user_studies.report.designs import WORDS, claim_head, order_words
 from latentarm.user_studies.report.figures import Drawn
 from latentarm.user_studies.report.people import HEAD as PEOPLE_HEAD
 from latentarm.user_studies.report.words import (
-    CLAIM_HEAD,
     claim_line,
     condition_parts,
     exclusion_words,
@@ -83,8 +83,9 @@ def report_page(content: Content) -> str:
         who=content.who,
         command=content.command,
         notice=NOTICE,
+        design=WORDS[definition.design],
         practice=_practice(definition),
-        order_words=_order_words(definition),
+        order_words=order_words(definition),
         verdict_lines=[
             (one.hypothesis.name, one.hypothesis.text, one.says, one.why) for one in analysis.verdicts
         ],
@@ -98,7 +99,7 @@ def report_page(content: Content) -> str:
         result_head=["task", "measure", *(one.name for one in definition.conditions)],
         result_lines=_result_lines(definition, content.rows),
         figures=[{"caption": one.caption, "data": _encoded(one.figure)} for one in content.figures],
-        claim_head=CLAIM_HEAD,
+        claim_head=claim_head(definition),
         claim_lines=[
             claim_line(definition, tested, modelled)
             for tested, modelled in zip(analysis.tested, analysis.modelled, strict=True)
@@ -115,17 +116,6 @@ def _practice(definition: Definition) -> str:
     if not definition.practice_min:
         return definition.practice
     return f"up to {definition.practice_min:g} minutes, {definition.practice}"
-
-
-def _order_words(definition: Definition) -> str:
-    if definition.orders:
-        every = "; ".join(" then ".join(order) for order in definition.orders)
-        return f"People take turns with these orders: {every}."
-    return (
-        "Each person meets the conditions in an order of a Williams design: every condition stands at every"
-        " place, and follows every other, equally often. Conditions and rows of the design are assigned at"
-        " random, from the seed."
-    )
 
 
 def _excluded_words(analysis: Analysis, who: str) -> str:

@@ -4,10 +4,12 @@ from typing import Final
 
 from latentarm.metrics.table import ABSENT, format_figure
 from latentarm.studies.page import listed
-from latentarm.studies.statistics import CONFIDENCE, format_p
+from latentarm.studies.statistics import format_p
 from latentarm.user_studies.analysis.analysis import Modelled
 from latentarm.user_studies.analysis.claims import Tested, worded
+from latentarm.user_studies.analysis.welch import Welch
 from latentarm.user_studies.definition import Condition, Definition, StudyTask
+from latentarm.user_studies.designs.design import MeansTest
 
 CONTROLS: Final = {
     "modes": "two axes of the end-effector at a time; a button switches which",
@@ -68,8 +70,9 @@ def exclusion_words(definition: Definition) -> list[str]:
 
 def claim_line(definition: Definition, tested: Tested, modelled: Modelled) -> list[str]:
     """One claim as a line of a table."""
-    test, mixed = tested.paired, modelled.mixed
-    head = [tested.hypothesis, worded(definition, tested.claim), str(tested.n)]
+    test, mixed = tested.test, modelled.mixed
+    people = f"{test.n} + {test.n_against}" if isinstance(test, Welch) else str(tested.n)
+    head = [tested.hypothesis, worded(definition, tested.claim), people]
     means = [format_figure(tested.mean, tested.sd), format_figure(tested.mean_against, tested.sd_against)]
     if test is None:
         return [*head, *means, *[ABSENT] * 6, f"{tested.says} ({tested.why_not})"]
@@ -78,29 +81,19 @@ def claim_line(definition: Definition, tested: Tested, modelled: Modelled) -> li
         *head,
         *means,
         f"{test.difference:.3g} [{test.low:.3g}, {test.high:.3g}]",
-        f"{'TOST' if tested.claim.margin else f't({test.dof}) = {test.t:.2f}'}",
+        f"{'TOST' if tested.claim.margin else f't({test.dof:.3g}) = {test.t:.2f}'}",
         p,
-        f"{test.dz:.2f} [{_two(modelled.dz_low)}, {_two(modelled.dz_high)}]; g {test.g:.2f}",
+        _effect_words(test, f"[{_two(modelled.low)}, {_two(modelled.high)}]"),
         ABSENT if mixed is None else f"{mixed.estimate:.3g} ± {mixed.se:.2g}",
         format_p(modelled.p),
         tested.says,
     ]
 
 
-CLAIM_HEAD: Final = (
-    "",
-    "claim",
-    "n",
-    "subject, mean ± SD",
-    "other, mean ± SD",
-    f"difference [{CONFIDENCE:.0%}]",
-    "test",
-    "p / p, Holm",
-    "dz [95%]; g",
-    "mixed model ± SE",
-    "p, randomisation",
-    "says",
-)
+def _effect_words(test: MeansTest, interval: str) -> str:
+    if isinstance(test, Welch):
+        return f"{test.g:.2f} {interval}"
+    return f"{test.dz:.2f} {interval}; g {test.g:.2f}"
 
 
 def yes_no(value: bool | None) -> str:

@@ -1,0 +1,1 @@
+"""What depends on whether a person meets every condition or one alone, behind one interface."""
