@@ -84,6 +84,7 @@ def test_commands_of_the_study_run(line: str, tmp_path: Path, monkeypatch: pytes
 @pytest.mark.slow
 def test_commands_of_the_user_studies_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    Path("examples").symlink_to(ROOT / "examples")
     for line in USER_STUDIES:
         small = " --simulated 3 --preset smoke" if line.startswith("latentarm study run ") else ""
         assert main(shlex.split(line + small)[1:]) == 0, line

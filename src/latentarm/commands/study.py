@@ -14,12 +14,19 @@ from latentarm.commands.output import note, print_renderables, say, show
 from latentarm.errors import UserError
 from latentarm.user_studies.catalogue import NAMES, load_definition
 from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.own.definition_file import find_definition
 from latentarm.user_studies.sizes import PRESETS
 
 if TYPE_CHECKING:
     from latentarm.user_studies.run import Request
 
-Name = Annotated[str, arg(metavar="{" + ",".join(NAMES) + "}", help="The study.")]
+Name = Annotated[
+    str,
+    arg(
+        metavar="{" + ",".join(NAMES) + ",FILE.json}",
+        help="The study, or a JSON file with the definition of one of your own.",
+    ),
+]
 Simulated = Annotated[
     int | None,
     arg(metavar="N", help="How many simulated people; by default as many as the definition plans."),
@@ -58,11 +65,11 @@ def show_study(name: Positional[Name], json: Json = False) -> int:
     """
     from latentarm.user_studies.analysis.claims import worded
 
-    definition = load_definition(name)
+    definition = find_definition(name)
     if json:
         print(json_format.dumps({"digest": definition.digest, **definition.as_json()}, indent=2))
         return 0
-    conditions = Table("condition", "what it is", title=f"{definition.title} (section {definition.section})")
+    conditions = Table("condition", "what it is", title=_titled(definition))
     for one in definition.conditions:
         conditions.add_row(one.name, one.about)
     claims = Table("", "claim", title="Hypotheses")
@@ -91,8 +98,8 @@ def run_study(
     from latentarm.user_studies.report.report import report_files, write_report
     from latentarm.user_studies.run import send_people
 
-    definition = load_definition(name)
-    folder = Path("studies", name) if out is None else out
+    definition = find_definition(name)
+    folder = Path("studies", definition.name) if out is None else out
     request = _request(definition, options, simulated, preset, folder)
     people = request.people
     claim(request, report_files(definition))
@@ -135,8 +142,8 @@ def power_of_study(
     from latentarm.user_studies.power import TARGETS, power_of
     from latentarm.user_studies.run import send_people
 
-    definition = load_definition(name)
-    folder = Path("studies", f"{name}-power") if out is None else out
+    definition = find_definition(name)
+    folder = Path("studies", f"{definition.name}-power") if out is None else out
     about: dict[str, object] = {"draws": draws, "seed": options.seed}
     if results is None:
         request = _request(definition, options, simulated, preset, folder)
@@ -144,8 +151,11 @@ def power_of_study(
         trials = send_people(request).trials
     else:
         found, trials = read_trials(results)
-        if found.name != name:
-            raise UserError(f"{results} holds a run of the study {found.name}: name a run of {name}.")
+        if found != definition:
+            raise UserError(
+                f"{results} holds a run of the study {found.name}, definition {found.digest[:12]}: name a"
+                f" run of {definition.name}, definition {definition.digest[:12]}."
+            )
         claim_power(folder, definition, {**about, "drawn_from": str(results)})
     power = power_of(definition, trials, draws, options.seed)
     write_power(folder, power)
@@ -186,6 +196,10 @@ def _request(
         quiet=options.json,
         bars=not options.json and sys.stderr.isatty(),
     )
+
+
+def _titled(definition: Definition) -> str:
+    return definition.title + (f" (section {definition.section})" if definition.section else "")
 
 
 def _names(definition: Definition) -> tuple[list[str], list[str]]:

@@ -15,13 +15,15 @@ from latentarm.untrusted.documents import read_object
 from latentarm.user_studies.analysis.means import person_mean
 from latentarm.user_studies.catalogue import NAMES, load_definition
 from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.own.definition_file import read_definition
 from latentarm.user_studies.power import Power
 from latentarm.user_studies.record import Trial, read_trial
 from latentarm.user_studies.run import PREFIX, Ran, Request, folder_name
 
+DEFINITION: Final = "definition.json"
 TRIALS: Final = "trials.json"
 POWER: Final = "power.json"
-DOCUMENTS: Final = ("definition.json", TRIALS, "traces.json", "people.json", "analysis.json", "results.json")
+DOCUMENTS: Final = (DEFINITION, TRIALS, "traces.json", "people.json", "analysis.json", "results.json")
 """What follows from definition, sizes, people and seed alone: the same bytes wherever it is computed."""
 
 
@@ -50,7 +52,7 @@ def write_documents(request: Request, ran: Ran) -> list[Row]:
     """
     out, about = request.out, request.about
     rows = rows_of(ran.definition, ran.analysis.trials)
-    write_json(out / "definition.json", {"digest": ran.definition.digest, **ran.definition.as_json()})
+    write_json(out / DEFINITION, {"digest": ran.definition.digest, **ran.definition.as_json()})
     write_json(out / TRIALS, _dated(about, "trials", [trial.as_json() for trial in ran.trials]))
     traces = _dated(about, "traces", [trace.as_json() for trace in ran.traces])
     write_text(out / "traces.json", json.dumps(traces, separators=(",", ":"), allow_nan=False) + "\n")
@@ -115,11 +117,11 @@ def read_trials(folder: Path) -> tuple[Definition, list[Trial]]:
     """
     study = str(read_object(folder / CONFIG).get("study", ""))
     name = study.removeprefix(PREFIX)
-    if not study.startswith(PREFIX) or name not in NAMES:
+    if not study.startswith(PREFIX):
         raise UserError(
             f"{folder} holds no run of a user study: name a folder that latentarm study run made."
         )
-    definition = load_definition(name)
+    definition = load_definition(name) if name in NAMES else read_definition(folder / DEFINITION)
     document = read_object(folder / TRIALS)
     if document.get("definition") != definition.digest:
         raise UserError(

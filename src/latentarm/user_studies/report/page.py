@@ -33,10 +33,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 NOTICE: Final = (
-    "Everything here is simulated: the arm, the things, the demonstrator and the people who drive. No"
-    " person took"
-    " part. Figures of the paper are quoted as the paper's and come from real people."
+    "Everything here is simulated: the arm, the things, the demonstrator and the people who drive. No person"
+    " took part."
 )
+
+QUOTED: Final = "Figures of the paper are quoted as the paper's and come from real people."
 
 NO_OPINIONS: Final = (
     "Simulated people have no opinions: nobody was asked, and every claim about ratings could not be tested."
@@ -82,7 +83,7 @@ def report_page(content: Content) -> str:
         definition=definition,
         who=content.who,
         command=content.command,
-        notice=NOTICE,
+        notice=f"{NOTICE} {QUOTED}" if definition.printed else NOTICE,
         design=WORDS[definition.design],
         practice=_practice(definition),
         order_words=order_words(definition),

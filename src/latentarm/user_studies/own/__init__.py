@@ -1,0 +1,1 @@
+"""Studies that a laboratory defines itself, in a JSON file: read strictly, and checked before a run."""
