@@ -77,6 +77,14 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "study:power_of_study",
         "Find how many people a study needs: studies drawn from simulated people, through its own analysis.",
     ),
+    "study questions": (
+        "study_answers:questions",
+        "Write a study's questionnaire as a sheet for each person, as CSV or Markdown.",
+    ),
+    "study analyse": (
+        "study_answers:analyse_study",
+        "Analyse recorded trials, of simulated or of real people with their answers, and write the report.",
+    ),
     "bench": (
         "bench:bench",
         "Time the online step, and training ten seeds in one fit and one after the other.",

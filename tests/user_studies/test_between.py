@@ -29,6 +29,7 @@ from latentarm.user_studies.folder import rows_of
 from latentarm.user_studies.order import assigned
 from latentarm.user_studies.power import NUMBERS, power_of
 from latentarm.user_studies.report.page import Content, report_page
+from latentarm.user_studies.report.whose import REAL
 
 PIE = replace(load_definition("apple_pie"), name="pie_apart", design="between", printed=())
 EATING = replace(load_definition("eating"), name="eating_apart", design="between")
@@ -105,7 +106,9 @@ def test_each_person_counts_on_one_side() -> None:
 
 def test_a_report_says_who_met_what() -> None:
     trials = drawn_trials(PIE, 8, np.random.default_rng(5), {"cVAE": -2.0})
-    content = Content(PIE, analyse(PIE, trials), rows_of(PIE, trials), (), (), "8 people", "latentarm study")
+    content = Content(
+        PIE, analyse(PIE, trials), rows_of(PIE, trials), (), (), "8 people", REAL, "latentarm study"
+    )
     page = report_page(content)
     assert "one condition (between subjects)" in page
     assert "4 + 4" in page

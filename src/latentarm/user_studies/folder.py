@@ -12,7 +12,9 @@ from latentarm.metrics.summary import Subject, summarise
 from latentarm.runs.results_folder import CONFIG, ResultsFolder, write_json
 from latentarm.types import Row
 from latentarm.untrusted.documents import read_object
+from latentarm.user_studies.analysis.analysis import Analysis
 from latentarm.user_studies.analysis.means import person_mean
+from latentarm.user_studies.answers.scales import Ratings
 from latentarm.user_studies.catalogue import NAMES, load_definition
 from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.own.definition_file import read_definition
@@ -22,8 +24,12 @@ from latentarm.user_studies.run import PREFIX, Ran, Request, folder_name
 
 DEFINITION: Final = "definition.json"
 TRIALS: Final = "trials.json"
+TRACES: Final = "traces.json"
 POWER: Final = "power.json"
-DOCUMENTS: Final = (DEFINITION, TRIALS, "traces.json", "people.json", "analysis.json", "results.json")
+ANALYSIS: Final = "analysis.json"
+RATINGS: Final = "ratings.json"
+RESULTS: Final = "results.json"
+DOCUMENTS: Final = (DEFINITION, TRIALS, TRACES, "people.json", ANALYSIS, RESULTS)
 """What follows from definition, sizes, people and seed alone: the same bytes wherever it is computed."""
 
 
@@ -55,12 +61,12 @@ def write_documents(request: Request, ran: Ran) -> list[Row]:
     write_json(out / DEFINITION, {"digest": ran.definition.digest, **ran.definition.as_json()})
     write_json(out / TRIALS, _dated(about, "trials", [trial.as_json() for trial in ran.trials]))
     traces = _dated(about, "traces", [trace.as_json() for trace in ran.traces])
-    write_text(out / "traces.json", json.dumps(traces, separators=(",", ":"), allow_nan=False) + "\n")
+    write_text(out / TRACES, json.dumps(traces, separators=(",", ":"), allow_nan=False) + "\n")
     write_json(out / "people.json", _dated(about, "people", [dict(one.as_json()) for one in ran.people]))
-    write_json(out / "analysis.json", {**about, **ran.analysis.as_json()})
+    write_json(out / ANALYSIS, {**about, **ran.analysis.as_json()})
     timings = {"backend": request.backend, "jobs": request.jobs, "grid_s": ran.grid_s}
     write_json(out / "timings.json", timings)
-    write_results(out / "results.json", rows, about)
+    write_results(out / RESULTS, rows, about)
     return rows
 
 
@@ -90,6 +96,46 @@ def write_power(out: Path, power: Power) -> None:
         UserError: the file cannot be written.
     """
     write_json(out / POWER, power.as_json())
+
+
+def claim_analysis(
+    out: Path, definition: Definition, about: Mapping[str, object], further: Sequence[str]
+) -> None:
+    """Make room for an analysis, see `latentarm.runs.results_folder.ResultsFolder.claim`.
+
+    Args:
+        out: the folder.
+        definition: of the study.
+        about: whose trials and answers are analysed.
+        further: files of the report.
+
+    Raises:
+        UserError: the folder holds something else.
+    """
+    name = f"analysis of {folder_name(definition)}"
+    made = (ANALYSIS, RATINGS, RESULTS, *further)
+    ResultsFolder(name, made).claim(out, {"study": name, "definition": definition.digest, **about})
+
+
+def write_analysis(
+    out: Path, about: Mapping[str, object], analysis: Analysis, rows: list[Row], ratings: Ratings | None
+) -> None:
+    """Write what an analysis of recorded trials says, without the report.
+
+    Args:
+        out: the folder.
+        about: whose trials and answers were analysed.
+        analysis: of the trials.
+        rows: of ``results.json``.
+        ratings: of people's answers, if there are any.
+
+    Raises:
+        UserError: a file cannot be written.
+    """
+    write_json(out / ANALYSIS, {**about, **analysis.as_json()})
+    if ratings is not None:
+        write_json(out / RATINGS, {**about, **ratings.as_json()})
+    write_results(out / RESULTS, rows, about)
 
 
 def rows_of(definition: Definition, trials: Sequence[Trial]) -> list[Row]:

@@ -91,26 +91,29 @@ class Analysis:
         }
 
 
-def analyse(definition: Definition, trials: Sequence[Trial]) -> Analysis:
+def analyse(definition: Definition, trials: Sequence[Trial], ratings: Sequence[Trial] = ()) -> Analysis:
     """Analyse a study's trials; who gave them, simulated or real people, changes nothing.
 
     Args:
         definition: of the study.
         trials: of all people.
+        ratings: their scores on the questionnaire's scales; rules of exclusion do not see these, but who is
+            excluded is excluded here too.
     """
     design = design_of(definition)
     kept, out = counted(definition.exclusions, trials)
-    both = sides_of(definition, kept)
+    every = [*kept, *(one for one in ratings if one.person not in out.people)]
+    both = sides_of(definition, every)
     tested = claims_tested(definition, both)
     return Analysis(
         design=design,
         trials=tuple(kept),
         excluded=out,
         tested=tuple(tested),
-        modelled=tuple(_modelled(design, one, sides, kept) for one, sides in zip(tested, both, strict=True)),
+        modelled=tuple(_modelled(design, one, sides, every) for one, sides in zip(tested, both, strict=True)),
         verdicts=tuple(verdicts(definition, tested)),
-        effects=_effects(definition, kept),
-        as_printed=tuple(as_printed(one, kept) for one in definition.printed),
+        effects=_effects(definition, every),
+        as_printed=tuple(as_printed(one, every) for one in definition.printed),
     )
 
 

@@ -126,8 +126,8 @@ def _boxes(axes: "Axes", definition: Definition, trials: Sequence[Trial], measur
     middles = [block * (count + 1) + (count - 1) / 2 for block in range(len(with_figures))]
     axes.set_xticks(middles, [task.label for task in with_figures])
     axes.set_xlim(-0.8, len(with_figures) * (count + 1) - 1.2)
-    unit = "" if measure in definition.scales else unit_of(measure)
-    axes.set_title(definition.label(measure) + ("" if unit in ("", "1") else f" ({unit.replace(' ', '·')})"))
+    unit = unit_of(measure)
+    axes.set_title(definition.label(measure) + ("" if unit == "1" else f" ({unit.replace(' ', '·')})"))
     tidy(axes)
     axes.grid(False, axis="x")
 

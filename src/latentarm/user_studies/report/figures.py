@@ -4,9 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, final
 
+from latentarm.user_studies.answers.scales import Ratings
 from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.record import Trial
 from latentarm.user_studies.report.boxes import box_figure, idle_figure
+from latentarm.user_studies.report.likert import likert_figure
 from latentarm.user_studies.report.ways import plate_figure, stick_figure, way_figure
 from latentarm.user_studies.trace import Trace
 
@@ -42,7 +44,13 @@ def figure_names(definition: Definition) -> tuple[str, ...]:
     )
 
 
-def draw(definition: Definition, trials: Sequence[Trial], traces: Sequence[Trace], who: str) -> list[Drawn]:
+def draw(
+    definition: Definition,
+    trials: Sequence[Trial],
+    traces: Sequence[Trace],
+    who: str,
+    ratings: Ratings | None = None,
+) -> list[Drawn]:
     """Draw what there are figures for; nothing empty is drawn.
 
     Args:
@@ -50,19 +58,21 @@ def draw(definition: Definition, trials: Sequence[Trial], traces: Sequence[Trace
         trials: that count.
         traces: of all trials.
         who: the people, in words, such as ``12 simulated people``.
+        ratings: of people's answers, if there are any.
     """
     measured = {name for trial in trials for name in trial.measures}
     shown = [name for name in definition.measures if name in measured]
-    rated = [name for name in definition.scales if name in measured]
     found: list[Drawn] = []
     if shown:
         caption = (
             f"Every measure, {who}. Boxes hold the middle half, whiskers end at the 10 and 90 percentiles."
         )
         found.append(Drawn("measures", box_figure(definition, trials, shown, who), caption))
-    if rated:
-        caption = f"Ratings on the scales of the questionnaire, {who}; higher is more agreement."
-        found.append(Drawn("ratings", box_figure(definition, trials, rated, who), caption))
+    if ratings is not None:
+        caption = (
+            f"Answers to the questionnaire's scales, {who}: shares of all answers; agreement to the right."
+        )
+        found.append(Drawn("ratings", likert_figure(definition, ratings.rated, who), caption))
     if {"time_s", "idle_s"} <= measured:
         caption = f"Time taken, and in the lighter shade the part of it without input, {who}."
         found.append(Drawn("idle", idle_figure(definition, trials, who), caption))

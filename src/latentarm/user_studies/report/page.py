@@ -16,11 +16,13 @@ from latentarm.studies.statistics import format_p
 from latentarm.style import FIGURE_DPI
 from latentarm.types import Row
 from latentarm.user_studies.analysis.analysis import Analysis
+from latentarm.user_studies.answers.scales import Ratings
 from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.printed import WRONG
 from latentarm.user_studies.report.designs import WORDS, claim_head, order_words
 from latentarm.user_studies.report.figures import Drawn
 from latentarm.user_studies.report.people import HEAD as PEOPLE_HEAD
+from latentarm.user_studies.report.whose import QUOTED, PeopleWords
 from latentarm.user_studies.report.words import (
     claim_line,
     condition_parts,
@@ -32,16 +34,7 @@ from latentarm.user_studies.report.words import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-NOTICE: Final = (
-    "Everything here is simulated: the arm, the things, the demonstrator and the people who drive. No person"
-    " took part."
-)
-
-QUOTED: Final = "Figures of the paper are quoted as the paper's and come from real people."
-
-NO_OPINIONS: Final = (
-    "Simulated people have no opinions: nobody was asked, and every claim about ratings could not be tested."
-)
+RATED_HEAD: Final = ("scale", "condition", "people", "score, mean ± SD", "Cronbach's α [95 %]")
 
 
 @final
@@ -56,7 +49,9 @@ class Content:
         people: what the people are like, lines below `latentarm.user_studies.report.people.HEAD`.
         figures: to show.
         who: the people, in words, such as ``12 simulated people``.
+        words: of these people.
         command: that repeats the run.
+        ratings: of people's answers, if there are any.
     """
 
     definition: Definition
@@ -65,7 +60,9 @@ class Content:
     people: Sequence[tuple[str, ...]]
     figures: Sequence[Drawn]
     who: str
+    words: PeopleWords
     command: str
+    ratings: Ratings | None = None
 
 
 def report_page(content: Content) -> str:
@@ -83,7 +80,7 @@ def report_page(content: Content) -> str:
         definition=definition,
         who=content.who,
         command=content.command,
-        notice=f"{NOTICE} {QUOTED}" if definition.printed else NOTICE,
+        notice=f"{content.words.notice} {QUOTED}" if definition.printed else content.words.notice,
         design=WORDS[definition.design],
         practice=_practice(definition),
         order_words=order_words(definition),
@@ -108,7 +105,9 @@ def report_page(content: Content) -> str:
         anova_lines=_anova_lines(definition, analysis),
         printed_lines=_printed_lines(definition, analysis),
         wrong_lines=_wrong_lines(analysis),
-        questionnaire_words=NO_OPINIONS,
+        questionnaire_words=_questionnaire_words(content),
+        rated_head=RATED_HEAD,
+        rated_lines=_rated_lines(content),
         item_lines=_item_lines(definition),
     )
 
@@ -178,6 +177,31 @@ def _wrong_lines(analysis: Analysis) -> list[str]:
     for one in analysis.as_printed:
         texts.setdefault(WRONG[one.printed.test], []).append(one.printed.text)
     return [f"{listed(printed)}: {wrong}" for wrong, printed in texts.items()]
+
+
+def _questionnaire_words(content: Content) -> str:
+    if content.ratings is None:
+        return content.words.unasked
+    return (
+        f"{content.ratings.answers} answers. A score is the mean of a scale's items, reversed ones turned; a"
+        " person who left out an item of a scale has no score of it. Alpha is computed over the people of one"
+        " condition, its interval is that of Feldt (1965)."
+    )
+
+
+def _rated_lines(content: Content) -> list[tuple[str, ...]]:
+    if content.ratings is None:
+        return []
+    return [
+        (
+            content.definition.label(one.scale),
+            one.condition,
+            str(one.n),
+            format_figure(one.mean, one.sd),
+            ABSENT if one.alpha is None else f"{one.alpha:.2f} [{one.alpha_low:.2f}, {one.alpha_high:.2f}]",
+        )
+        for one in content.ratings.rated
+    ]
 
 
 def _item_lines(definition: Definition) -> list[tuple[str, str]]:

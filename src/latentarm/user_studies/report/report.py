@@ -6,11 +6,15 @@ from typing import Final
 from latentarm.files import write_text
 from latentarm.style import save_figure
 from latentarm.types import Row
+from latentarm.user_studies.analysis.analysis import Analysis
+from latentarm.user_studies.answers.scales import Ratings
 from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.recorded import Recorded
 from latentarm.user_studies.report.figures import draw, figure_names
 from latentarm.user_studies.report.page import Content, report_page
 from latentarm.user_studies.report.pdf import WITHOUT, find_browser, print_page
 from latentarm.user_studies.report.people import people_lines
+from latentarm.user_studies.report.whose import REAL, SIMULATED
 from latentarm.user_studies.run import Ran
 
 PAGE: Final = "report.html"
@@ -39,12 +43,52 @@ def write_report(out: Path, ran: Ran, rows: list[Row], command: str) -> str:
     Raises:
         UserError: a file cannot be written.
     """
-    who = f"{len(ran.people)} simulated people"
+    who, people = f"{len(ran.people)} simulated people", people_lines(ran.people)
     figures = draw(ran.definition, ran.analysis.trials, ran.traces, who)
-    for one in figures:
+    return write_content(
+        out, Content(ran.definition, ran.analysis, rows, people, figures, who, SIMULATED, command)
+    )
+
+
+def write_report_of(
+    out: Path, recorded: Recorded, analysis: Analysis, rows: list[Row], ratings: Ratings | None, command: str
+) -> str:
+    """Draw and write the report of recorded trials.
+
+    Args:
+        out: a folder.
+        recorded: the trials, and whose they are.
+        analysis: of them.
+        rows: of ``results.json``.
+        ratings: of people's answers, if there are any.
+        command: that repeats it.
+
+    Returns:
+        Why there is no PDF, in a sentence; empty where there is one.
+
+    Raises:
+        UserError: a file cannot be written.
+    """
+    who = recorded.who
+    people = people_lines(recorded.simulated) if recorded.simulated else []
+    figures = draw(recorded.definition, analysis.trials, recorded.traces, who, ratings)
+    words = SIMULATED if recorded.people_are == "simulated" else REAL
+    return write_content(
+        out, Content(recorded.definition, analysis, rows, people, figures, who, words, command, ratings)
+    )
+
+
+def write_content(out: Path, content: Content) -> str:
+    """Write figures, page and PDF.
+
+    Returns:
+        Why there is no PDF, in a sentence; empty where there is one.
+
+    Raises:
+        UserError: a file cannot be written.
+    """
+    for one in content.figures:
         save_figure(one.figure, out / f"{one.name}.png")
-    people = people_lines(ran.people)
-    content = Content(ran.definition, ran.analysis, rows, people, figures, who, command)
     write_text(out / PAGE, report_page(content))
     browser = find_browser()
     if browser is None:

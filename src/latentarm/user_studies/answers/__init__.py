@@ -1,0 +1,1 @@
+"""What real people answered: sheets of items, their answers from a file, and scales of these."""
