@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.questionnaire import Scale
 from latentarm.user_studies.record import Trial
 
-QUESTIONNAIRE = "questionnaire"
+QUESTIONNAIRE: Final = "questionnaire"
 """What stands for a task in records of ratings."""
 
 
