@@ -40,6 +40,7 @@ DEFINITION: Final = Definition(
         "idle_s",
         "goal_error_m_s",
         "goal_error_m",
+        "input_magnitude",
         "path_length",
     ),
     questionnaire=(),
