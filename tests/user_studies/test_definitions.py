@@ -10,6 +10,7 @@ from latentarm.metrics.measures import MEASURES
 from latentarm.models.catalogue import KINDS
 from latentarm.user_studies.catalogue import NAMES, load_definition
 from latentarm.user_studies.definition import Condition, Definition
+from latentarm.user_studies.exclusion import Exclusion
 from latentarm.user_studies.hypothesis import Claim
 from latentarm.user_studies.questionnaire import Item, Scale
 from latentarm.user_studies.scenes import scene_of
@@ -114,6 +115,8 @@ def test_a_definition_that_contradicts_itself_is_refused() -> None:
     definition = DEFINITIONS["harmonic"]
     with pytest.raises(UserError, match="LA\\+SA"):
         dataclasses.replace(definition, hypotheses=DEFINITIONS["eating"].hypotheses)
+    with pytest.raises(UserError, match="is by stops"):
+        dataclasses.replace(definition, exclusions=(Exclusion("stops", "more", 9.0, "the arm stopped"),))
     with pytest.raises(UserError, match="4 items"):
         Scale("ease", "Ease", (Item("It was easy."),))
     with pytest.raises(UserError, match="margin"):

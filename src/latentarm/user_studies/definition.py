@@ -145,7 +145,7 @@ class Definition:
         design: whether a person meets all conditions or one.
 
     Raises:
-        UserError: a claim or an order names what the study does not have.
+        UserError: a claim, an order or an exclusion names what the study does not have.
     """
 
     name: str
@@ -183,6 +183,11 @@ class Definition:
                 missing = ", ".join(sorted(unknown)) or claim.measure
                 raise UserError(
                     f"A claim of the study {self.name} is about {missing}, which it does not have."
+                )
+        for rule in self.exclusions:
+            if rule.measure not in self.measures:
+                raise UserError(
+                    f"An exclusion of the study {self.name} is by {rule.measure}, which it does not measure."
                 )
         if self.design == "between" and self.orders:
             raise UserError(

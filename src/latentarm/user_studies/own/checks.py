@@ -133,7 +133,6 @@ def _check_measures(definition: Definition) -> None:
     if not definition.measures:
         raise UserError("measures: there must be one or more.")
     _known("measures", definition.measures, measured)
-    _known("exclusions: measure", (one.measure for one in definition.exclusions), definition.measures)
     known = (*definition.measures, *definition.scales)
     conditions = [one.name for one in definition.conditions]
     for one in definition.printed:
