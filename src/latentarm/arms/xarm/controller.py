@@ -12,10 +12,13 @@ from latentarm.arms.xarm.sdk import Sdk
 from latentarm.types import FloatArray
 
 ANSWER_S: Final = 0.08
-"""An answer that takes longer ends the connection, and with it what was not delivered, s."""
+"""If the answer to a motion takes longer, the connection ends, and with it what was not delivered, s."""
 
-SLOW_ANSWER_S: Final = 5.0
-"""Switching on the motors may take so long, s."""
+_QUERY_S: Final = 0.5
+"""The same for what moves nothing, s."""
+
+_SLOW_S: Final = 5.0
+"""The same for changes, such as switching on the motors, s."""
 
 ALL_JOINTS: Final = 8
 JOINT_VELOCITY: Final = 4
@@ -78,7 +81,7 @@ class Controller:
 
     def version(self) -> str:
         """Axes, type, serial numbers and firmware in one line."""
-        told = bytes(self._ask(self._commands.get_version, 1, slow=True)[1:])
+        told = bytes(self._ask(self._commands.get_version, 1, within_s=_SLOW_S)[1:])
         return told.split(b"\0")[0].decode("ascii", "replace")
 
     def state(self) -> int:
@@ -97,16 +100,19 @@ class Controller:
     def switch_on_motors(self) -> None:
         """Release the brakes."""
         self._done(
-            self._ask(lambda: self._commands.motion_en(ALL_JOINTS, 1), slow=True), "to switch on the motors"
+            self._ask(lambda: self._commands.motion_en(ALL_JOINTS, 1), within_s=_SLOW_S),
+            "to switch on the motors",
         )
 
     def set_mode(self, mode: int) -> None:
         """Choose what kind of commands are taken."""
-        self._done(self._ask(lambda: self._commands.set_mode(mode)), f"to go to mode {mode}")
+        self._done(
+            self._ask(lambda: self._commands.set_mode(mode), within_s=_SLOW_S), f"to go to mode {mode}"
+        )
 
     def take_commands(self) -> None:
         """Let the arm move when it is told to."""
-        self._done(self._ask(lambda: self._commands.set_state(_READY)), "to take commands")
+        self._done(self._ask(lambda: self._commands.set_state(_READY), within_s=_SLOW_S), "to take commands")
 
     def stop(self) -> None:
         """Stop the arm, and take no commands any more."""
@@ -114,8 +120,8 @@ class Controller:
 
     def clear(self) -> None:
         """Clear error and warning."""
-        self._ask(self._commands.clean_err, slow=True)
-        self._ask(self._commands.clean_war, slow=True)
+        self._ask(self._commands.clean_err, within_s=_SLOW_S)
+        self._ask(self._commands.clean_war, within_s=_SLOW_S)
 
     def move(self, velocity: FloatArray, duration_s: float) -> None:
         """Move at a velocity for a time.
@@ -127,7 +133,7 @@ class Controller:
         if not duration_s > 0.0:
             raise ValueError(f"the duration {duration_s} s would mean no end")
         speeds = [*velocity.tolist(), *[0.0] * (7 - len(velocity))]
-        self._ask(lambda: self._commands.vc_set_jointv(speeds, 1, duration_s))
+        self._ask(lambda: self._commands.vc_set_jointv(speeds, 1, duration_s), within_s=ANSWER_S)
 
     def round_trips(self, times: int = 20) -> tuple[float, float]:
         """The median and the longest time from a request to its answer, s."""
@@ -138,20 +144,21 @@ class Controller:
             spans.append(time.monotonic() - begun_s)
         return statistics.median(spans), max(spans)
 
-    def _ask(self, request: Callable[[], list[T]], figures: int = 0, *, slow: bool = False) -> list[T]:
+    def _ask(
+        self, request: Callable[[], list[T]], figures: int = 0, *, within_s: float = _QUERY_S
+    ) -> list[T]:
         """Ask, and check that the answer is one.
 
         Args:
             request: asks through the library.
             figures: how many figures the answer has at least.
-            slow: whether the answer may take a while.
+            within_s: how long the answer may take, s.
 
         Raises:
             LinkLostError: no answer in time, or it is none.
             RefusedError: the controller says that the request is invalid.
         """
-        limit_s = SLOW_ANSWER_S if slow else ANSWER_S
-        self._commands.set_timeout(limit_s)
+        self._commands.set_timeout(within_s)
         try:
             answer = request()
             code = int(answer[0])
@@ -172,7 +179,7 @@ class Controller:
         if code == _TIMEOUT:
             self.close()
             raise LinkLostError(
-                f"The arm's controller has not answered for {1000 * limit_s:.0f} ms: check its power and the"
+                f"The arm's controller has not answered for {1000 * within_s:.0f} ms: check its power and the"
                 " network cable, then enable the arm again."
             )
         if code not in _ANSWERED or len(answer) <= figures:
