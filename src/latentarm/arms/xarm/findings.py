@@ -68,7 +68,7 @@ def find_out(sdk: Sdk, session: Session, robot: Robot, *, bare: bool) -> Finding
     time.sleep(_RATE_OVER_S)
     rate_hz = (session.report.number - number) / (time.monotonic() - begun_s)
     now = unfit(sdk, session, robot)
-    if session.status.error:
+    if now and session.status.error:
         now = now.removesuffix(".") + "; an error that stays is cleared in UFACTORY Studio."
     refusals = (*((now,) if now else ()), *_setting_refusals(session, robot, bare=bare))
     if median_s > _SLOW_S:
