@@ -5,8 +5,8 @@ button, reflexes and how they are recovered from, the arm's stop after cycles wi
 asks for it, because a busy machine is late), and the hand's answer to a move that it was told to stop. No
 limits are enforced.
 
-As a program (``python franka_server.py HOST [CYCLES]``) it takes orders by line on standard input and answers
-in JSON; `FrankaStandIn` is its other end.
+As a program (``python franka_server.py HOST CYCLES [CLOCK]``) it takes orders by line on standard input and
+answers in JSON; `FrankaStandIn` is its other end.
 """
 
 import json
@@ -39,15 +39,19 @@ class FrankaStandIn:
     Args:
         host: loopback address to listen on, one that nobody else uses.
         lost_cycles: stop after so many cycles without a message; 0 for never.
+        clock_file: where the arm's clock is kept for `ArmClock`, if anywhere.
     """
 
-    def __init__(self, host: str, lost_cycles: int = 0) -> None:
+    def __init__(self, host: str, lost_cycles: int = 0, clock_file: Path | None = None) -> None:
         self.host = host
         self._lost_cycles = lost_cycles
+        self._clock_file = clock_file
         self.start()
 
     def start(self) -> None:
         command = [sys.executable, __file__, self.host, str(self._lost_cycles)]
+        if self._clock_file is not None:
+            command.append(str(self._clock_file))
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
         )
@@ -257,7 +261,11 @@ def _obey(order, server, robot, log, cycle) -> dict:
     return answer
 
 
-def _serve(host: str, lost_cycles: int) -> None:
+def _serve(host: str, lost_cycles: int, clock_file: str | None) -> None:
+    cycles = np.zeros(1, np.int64)
+    if clock_file is not None:
+        # It goes on where an earlier process has left it.
+        cycles = np.memmap(clock_file, np.int64, "r+", shape=(1,))
     simulation_server = _servers(lost_cycles)
     from franky_sim.mujoco_simulator import MujocoSimulator
 
@@ -288,6 +296,7 @@ def _serve(host: str, lost_cycles: int) -> None:
                 for arm in server.robot_servers:
                     arm.send_state()
                 cycle += 1
+                cycles[0] += 1
                 log.add(cycle, robot)
                 # Never catches up: a cycle that was late shifts those after it.
                 due_s = max(due_s + 1e-3, time.monotonic())
@@ -296,4 +305,4 @@ def _serve(host: str, lost_cycles: int) -> None:
 
 
 if __name__ == "__main__":
-    _serve(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 0)
+    _serve(sys.argv[1], int(sys.argv[2]), sys.argv[3] if len(sys.argv) > 3 else None)
