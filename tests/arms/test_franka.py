@@ -14,7 +14,9 @@ from latentarm.control.clock import MonotonicClock
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
 from latentarm.robots.fr3 import fr3
-from latentarm.types import Command, GripperCommand
+from latentarm.robots.robot import Robot
+from latentarm.testing.real_arms import RealArmContract, StandIn
+from latentarm.types import Command, FloatArray, GripperCommand
 
 pytest.importorskip("franky", reason="franky-control is not installed")
 pytest.importorskip("franky_sim", reason="franky-sim is not installed")
@@ -29,13 +31,18 @@ TREMBLE_RAD = 1e-3
 
 
 @pytest.fixture(scope="module")
-def stand_in():
-    with FrankaStandIn(HOST) as server:
-        yield server
+def server():
+    with FrankaStandIn(HOST) as running:
+        yield running
 
 
 @pytest.fixture
-def new_arm(stand_in):
+def stand_in(server):
+    return server
+
+
+@pytest.fixture
+def new_arm(server):
     driver = make_real_arm(ADDRESS, fr3(), MonotonicClock().now_s)
     yield driver
     driver.close()
@@ -120,78 +127,12 @@ def test_a_robot_with_its_joints_elsewhere_is_refused(stand_in):
         make_real_arm(ADDRESS, robot, MonotonicClock().now_s).connect()
 
 
-def test_it_moves_only_when_enabled_and_stops_when_commands_end(new_arm, stand_in):
-    before = stand_in.positions()
-    new_arm.connect()
-    drive(new_arm, stand_in, VELOCITY, 0.2)
-    assert new_arm.status().phase == "disabled"
-    new_arm.enable()
-    np.testing.assert_allclose(at_rest(stand_in), before, atol=TREMBLE_RAD)
-    assert new_arm.status().phase == "ready"
-    drive(new_arm, stand_in, VELOCITY, 0.5)
-    assert new_arm.status().phase == "moving"
-    moved = at_rest(stand_in) - before
-    assert (moved * np.sign(VELOCITY) > 0.003).all()
-    becomes(new_arm, "ready")
-    np.testing.assert_allclose(new_arm.read().q, stand_in.positions(), atol=TREMBLE_RAD)
-
-
-@pytest.mark.parametrize("how", ["stop", "disable"])
-def test_a_long_command_is_forgotten(arm, stand_in, how):
-    drive(arm, stand_in, -VELOCITY, 0.1)
-    arm.send(Command(-VELOCITY, duration_s=10.0))
-    getattr(arm, how)()
-    at_rest(stand_in)
-    becomes(arm, {"stop": "ready", "disable": "disabled"}[how])
-
-
 def test_a_long_command_ends_before_the_end_of_a_joint(arm, stand_in):
     velocity = np.array([0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0])
     arm.send(Command(velocity, duration_s=100.0))
     becomes(arm, "ready", within_s=60.0)
     rested = at_rest(stand_in)[3]
     assert START[3] + 0.5 < rested < fr3().limits.upper[3]
-
-
-@pytest.mark.parametrize("fault", ["break_down", "press_emergency_stop"])
-def test_after_a_stop_by_the_arm_it_moves_only_when_enabled_again(arm, stand_in, fault):
-    drive(arm, stand_in, VELOCITY, 0.2)
-    getattr(stand_in, fault)()
-    pressed = fault == "press_emergency_stop"
-    status = becomes(arm, "emergency_stop" if pressed else "fault")
-    assert status.reason.endswith(".")
-    rested = at_rest(stand_in)
-    drive(arm, stand_in, VELOCITY, 0.1)
-    if pressed:
-        stand_in.release_emergency_stop()
-        becomes(arm, "disabled")
-    else:
-        assert status.recoverable
-        becomes(arm, "disabled", recovering=True)
-    drive(arm, stand_in, VELOCITY, 0.1)
-    np.testing.assert_allclose(at_rest(stand_in), rested, atol=TREMBLE_RAD)
-    arm.enable()
-    drive(arm, stand_in, VELOCITY, 0.3)
-    assert arm.status().phase == "moving"
-    assert (np.abs(stand_in.positions() - rested) > TREMBLE_RAD).any()
-
-
-def test_cut_off_it_rests_and_nothing_old_moves_it_afterwards(arm, stand_in):
-    drive(arm, stand_in, VELOCITY, 0.2)
-    stand_in.cut()
-    try:
-        drive(arm, stand_in, VELOCITY, 0.6)
-        rested = at_rest(stand_in)
-        assert becomes(arm, "fault").recoverable
-    finally:
-        stand_in.repair()
-    drive(arm, stand_in, VELOCITY, 0.2)
-    becomes(arm, "disabled", recovering=True)
-    drive(arm, stand_in, VELOCITY, 0.2)
-    np.testing.assert_allclose(at_rest(stand_in), rested, atol=TREMBLE_RAD)
-    arm.enable()
-    drive(arm, stand_in, VELOCITY, 0.3)
-    assert (np.abs(stand_in.positions() - rested) > TREMBLE_RAD).any()
 
 
 def test_the_hand_goes_where_it_is_told_and_can_be_told_otherwise(arm, stand_in):
@@ -206,7 +147,57 @@ def test_the_hand_goes_where_it_is_told_and_can_be_told_otherwise(arm, stand_in)
     assert arm.status().takes_commands
 
 
-@pytest.mark.parametrize("wrong", [np.zeros(6), np.full(7, np.nan), np.zeros((1, 7))])
-def test_a_command_that_no_filter_would_send_is_an_error(arm, wrong):
-    with pytest.raises(ValueError, match="7 finite joint velocities"):
-        arm.send(Command(wrong, duration_s=0.02))
+class Served(StandIn):
+    """The stand-in as the contract knows it."""
+
+    def __init__(self, server: FrankaStandIn) -> None:
+        self._server = server
+
+    def positions(self) -> FloatArray:
+        return self._server.positions()
+
+    def press_emergency_stop(self) -> None:
+        self._server.press_emergency_stop()
+
+    def release_emergency_stop(self) -> None:
+        self._server.release_emergency_stop()
+
+    def break_down(self) -> None:
+        self._server.break_down()
+
+    def cut(self) -> None:
+        self._server.cut()
+
+    def repair(self) -> None:
+        self._server.repair()
+
+
+class TestFranka(RealArmContract):
+    tolerance_rad = TREMBLE_RAD
+    settling_s = 0.3
+    arrives = (0.1, 1.3)  # franky-sim is slower than real time on a small machine
+
+    @pytest.fixture
+    def robot(self) -> Robot:
+        return fr3()
+
+    @pytest.fixture
+    def stand_in(self, server):
+        return Served(server)
+
+    @pytest.fixture
+    def velocity(self, robot, stand_in):
+        middle = (robot.limits.lower + robot.limits.upper) / 2
+        return 0.3 * np.where(stand_in.positions() < middle, 1.0, -1.0)
+
+    @pytest.fixture
+    def make(self, server):
+        return lambda: make_real_arm(ADDRESS, fr3(), MonotonicClock().now_s)
+
+    @pytest.fixture
+    def refused(self, server):
+        return lambda: make_real_arm(ADDRESS, load_robot("panda"), MonotonicClock().now_s)
+
+    @pytest.fixture
+    def address(self, server):
+        return ADDRESS
