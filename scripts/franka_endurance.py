@@ -39,7 +39,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.robots.fr3 import fr3
-from latentarm.types import Command, FloatArray, Input, StepRecord
+from latentarm.types import FloatArray, Input, StepRecord
 
 HOST: Final = "127.0.9.1"
 ADDRESS: Final = f"franka://{HOST}?realtime=ignore"
@@ -49,9 +49,6 @@ QUIET_S: Final = 0.4
 """How long the arm must stay where it is before the person enables it again, s of its clock."""
 
 REST_RAD_S: Final = 0.005
-
-LAPSE_S: Final = 0.1
-"""How long the commands last whose end is measured, s."""
 
 _WALL_S: Final = 60.0
 
@@ -241,45 +238,6 @@ def endure(clock: ArmClock, clock_path: Path, minutes: float, seed: int) -> dict
     }
 
 
-def lapse(stand_in: FrankaStandIn, clock: ArmClock, tries: int, log: Path) -> dict[str, float]:
-    """Cease to send commands, and see when the arm begins to stop and when it rests, after they ran out."""
-    arm = make_real_arm(ADDRESS, fr3(), clock.now_s)
-    arm.connect()
-    begins_ms, rest_ms = np.zeros(tries), np.zeros(tries)
-    for index in range(tries):
-        arm.enable()
-        velocity = np.zeros(7)
-        velocity[0] = 0.4 if index % 2 else -0.4
-        end_s = clock.now_s() + DRIVE_S
-        while clock.now_s() < end_s:
-            arm.send(Command(velocity, LAPSE_S))
-            clock.wait_until(clock.now_s() + 0.01)
-        stand_in.ask("log")
-        arm.send(Command(velocity, LAPSE_S))
-        ran_out_s = clock.now_s() - _offset(stand_in, clock) + LAPSE_S
-        stand_in.wait(LAPSE_S + QUIET_S)
-        stand_in.ask(f"save {log}")
-        rows = np.load(log)
-        speed = np.abs(rows[:, 8])
-        slower = np.flatnonzero(speed < 0.95 * speed[:20].mean())
-        moving = np.flatnonzero(speed > REST_RAD_S)
-        begins_ms[index] = 1e3 * (rows[slower[0], 0] - ran_out_s)
-        rest_ms[index] = 1e3 * (rows[moving[-1], 0] - ran_out_s)
-    arm.close()
-    return {
-        "tries": tries,
-        "begins_ms_median": float(np.median(begins_ms)),
-        "begins_ms_max": float(begins_ms.max()),
-        "rest_ms_median": float(np.median(rest_ms)),
-        "rest_ms_max": float(rest_ms.max()),
-    }
-
-
-def _offset(stand_in: FrankaStandIn, clock: ArmClock) -> float:
-    """How far the clock that outlives restarts is ahead of the stand-in's own, s."""
-    return round(clock.now_s() - stand_in.time_s(), 2)
-
-
 def fault_try(
     fault: str, stand_in: FrankaStandIn, clock: ArmClock, driver: Driver, log: Path
 ) -> tuple[dict[str, float], Driver]:
@@ -356,7 +314,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--minutes", type=float, default=10.0)
     parser.add_argument("--tries", type=int, default=50)
-    parser.add_argument("--lapses", type=int, default=50, help="how often commands end")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--faults", nargs="*", default=FAULTS, choices=FAULTS)
     options = parser.parse_args()
@@ -368,8 +325,6 @@ def main() -> None:
             clock = ArmClock(clock_path)
             if options.minutes:
                 print(json.dumps(endure(clock, clock_path, options.minutes, options.seed)), flush=True)
-            if options.lapses:
-                print(json.dumps({"lapse": lapse(stand_in, clock, options.lapses, log)}), flush=True)
             for fault in options.faults if options.tries else ():
                 driver = Driver(clock_path, options.seed)
                 tries: list[dict[str, float]] = []
