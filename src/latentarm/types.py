@@ -129,16 +129,35 @@ class StatedJointLimits:
 
 
 @dataclass(frozen=True)
+class StatedGripper:
+    """What somebody states of a gripper; see `latentarm.robots.gripper.Gripper`.
+
+    Attributes:
+        joints: of the robot's model, that move its fingers or its jaw.
+        width: the largest opening, m.
+        speed: the fastest change of the opening, m/s.
+        force: the largest force between the fingers, N.
+    """
+
+    joints: tuple[str, ...]
+    width: float
+    speed: float
+    force: float
+
+
+@dataclass(frozen=True)
 class StatedLimits:
     """What somebody states of a robot's limits, as in a limits file.
 
     Attributes:
         joints: by name; joints that nothing is said of are left out.
         tool_speed: largest speed of the tool, m/s, or None.
+        gripper: its gripper, or None where nothing is said of one.
     """
 
     joints: Mapping[str, StatedJointLimits]
     tool_speed: float | None = None
+    gripper: StatedGripper | None = None
 
 
 @dataclass(frozen=True)

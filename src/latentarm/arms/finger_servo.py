@@ -1,4 +1,7 @@
-"""A gripper in MuJoCo: a position servo for each finger, as slow and as weak as it is told to be."""
+"""A gripper in MuJoCo: a position servo for each finger, as slow and as weak as it is told to be.
+
+What is in m below is a finger's share of the opening, also where its joint turns.
+"""
 
 from collections import deque
 from typing import Final, final
@@ -60,11 +63,13 @@ class FingerServo(SimulatedGripper):
         joints = np.array([model.joint(name).id for name in gripper.joints])
         self._positions, self._speeds = model.jnt_qposadr[joints], model.jnt_dofadr[joints]
         self._servos = slice(first_actuator, first_actuator + len(joints))
-        self._stiffness = float(model.actuator_gainprm[first_actuator, 0])
-        self._goal = self._target = gripper.width_m / 2.0
+        self._closed, self._per_m = np.array(gripper.closed), gripper.per_m
+        # Of a finger's share of the opening, N/m.
+        self._stiffness = float(model.actuator_gainprm[first_actuator, 0]) * self._per_m**2
+        self._goal = self._target = gripper.width_m / len(joints)
         self._per_step = 0.0
-        data.qpos[self._positions] = self._target
-        data.ctrl[self._servos] = self._target
+        data.qpos[self._positions] = self._closed + self._per_m * self._target
+        data.ctrl[self._servos] = data.qpos[self._positions]
         self._lead = self._moved_s = 0.0
         self._press(gripper.force_n)
         self._measured: deque[tuple[float, GripperReading]] = deque()
@@ -73,7 +78,7 @@ class FingerServo(SimulatedGripper):
     def prepare(self) -> bool:
         """Set the servos for the next time step; whether those after it need to be set anew."""
         # Plain numbers: NumPy takes several times as long for so few, and this runs in every time step.
-        where: list[float] = self._data.qpos[self._positions].tolist()
+        where = self._shares()
         if not self._stalled(where):
             self._moved_s = self._data.time
         if self._target == self._goal:
@@ -81,7 +86,7 @@ class FingerServo(SimulatedGripper):
         way = min(max(self._goal - self._target, -self._per_step), self._per_step)
         # Fingers that are held must not wind their servos up, or they would leap once they are free.
         self._target = min(max(self._target + way, max(where) - self._lead), min(where) + self._lead)
-        self._data.ctrl[self._servos] = self._target
+        self._data.ctrl[self._servos] = self._closed + self._per_m * self._target
         return True
 
     def note(self) -> None:
@@ -100,22 +105,29 @@ class FingerServo(SimulatedGripper):
         self._goal = self._target
 
     def _aim(self, width_m: float, speed_m_s: float, force_n: float) -> None:
-        self._goal, self._per_step = width_m / 2.0, speed_m_s / 2.0 * float(self._model.opt.timestep)
+        fingers = len(self._closed)
+        self._goal = width_m / fingers
+        self._per_step = speed_m_s / fingers * float(self._model.opt.timestep)
         self._press(force_n)
 
     def _press(self, force_n: float) -> None:
         self._lead = force_n / self._stiffness
-        self._model.actuator_forcerange[self._servos] = -force_n, force_n
+        torque = force_n / self._per_m
+        self._model.actuator_forcerange[self._servos] = -torque, torque
+
+    def _shares(self) -> list[float]:
+        """How far each finger is open, m."""
+        return ((self._data.qpos[self._positions] - self._closed) / self._per_m).tolist()
 
     def _reading(self) -> GripperReading:
-        where: list[float] = self._data.qpos[self._positions].tolist()
+        where = self._shares()
         holding = self._stalled(where) and self._data.time - self._moved_s >= _STALLED_S
         return GripperReading(sum(where), holding)
 
     def _stalled(self, where: list[float]) -> bool:
         """Whether the fingers, which are at these positions, m, stand still although their servos press."""
         pulled = min(where) - self._target
-        speed = abs(sum(self._data.qvel[self._speeds].tolist()))
+        speed = abs(sum(self._data.qvel[self._speeds].tolist()) / self._per_m)
         enough = max(min(_STALLED_M, 0.5 * self._lead), 0.5 * _LEAST_N / self._stiffness)
         return pulled > enough and speed < _STILL_M_S
 
@@ -126,7 +138,7 @@ def add_finger_servos(spec: mujoco.MjSpec, gripper: Gripper, moved_kg: FloatArra
     Args:
         spec: gets the servos.
         gripper: whose fingers these are.
-        moved_kg: what each of its joints moves, kg.
+        moved_kg: what each of its joints moves, kg (kg m² where it turns).
     """
     for name, mass in zip(gripper.joints, moved_kg, strict=True):
         stiffness = FREQUENCY_RAD_S**2 * mass
@@ -135,7 +147,7 @@ def add_finger_servos(spec: mujoco.MjSpec, gripper: Gripper, moved_kg: FloatArra
             target=name,
             trntype=mujoco.mjtTrn.mjTRN_JOINT,
             forcelimited=True,
-            forcerange=[-gripper.force_n, gripper.force_n],
+            forcerange=[-gripper.force_n / gripper.per_m, gripper.force_n / gripper.per_m],
         )
         servo.gaintype, servo.biastype = mujoco.mjtGain.mjGAIN_FIXED, mujoco.mjtBias.mjBIAS_AFFINE
         servo.gainprm[0] = stiffness

@@ -10,8 +10,8 @@ from latentarm.demonstrations.source import ActionKind, SourceData
 from latentarm.types import Demonstrations
 
 PLUGIN: Final = "latentarm"
-"""What LeRobot calls the robot of `lerobot_robot_latentarm`: positions in rad, the gripper's width in m. Which arm
-it drove is not said."""
+"""What LeRobot calls the robot of `lerobot_robot_latentarm`: positions in rad, the gripper's width in m.
+It does not say which arm that drove."""
 
 
 def read_lerobot(source: Path) -> SourceData:
@@ -45,10 +45,16 @@ def read_lerobot(source: Path) -> SourceData:
             import_record=info.import_record,
             objects=info.objects,
         ),
-        layout="dataset of this package" if info.native else f"LeRobot {info.version}{' by our plug-in' * by_plugin}",
+        layout=_layout(info),
         in_rad=info.native or by_plugin,
         actions=kind or "unknown",
     )
+
+
+def _layout(info: Info) -> str:
+    if info.native:
+        return "dataset of this package"
+    return f"LeRobot {info.version}{', recorded through latentarm' if info.robot == PLUGIN else ''}"
 
 
 def _actions(info: Info) -> ActionKind | None:

@@ -101,8 +101,9 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
         units, robot.joint_names, robot.limits, robot.chain.slide, full_turn=is_so_arm(given.robot)
     )
     kind = data.actions if told.actions == "known" else told.actions.removeprefix("joint_")
-    gripper = "" if columns.gripper is None else _gripper_feature(names[columns.gripper], motors)
-    episodes = tuple(_episode(one, columns, turned, kind, gripper) for one in given.episodes)
+    found = None if columns.gripper is None else _gripper_feature(names[columns.gripper], motors, robot)
+    gripper, per_unit = found or ("", 1.0)
+    episodes = tuple(_episode(one, columns, turned, kind, gripper, per_unit) for one in given.episodes)
     episodes, clipped = _clipped(episodes, robot, told.clip_rad)
     episodes, opening = widths_from_toggles(episodes, robot.gripper, told.gripper_starts, source)
     record = {
@@ -110,7 +111,7 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
         "recorded on": given.robot or "not said",
         "joints": f"{_pairs(robot, names, columns)} ({columns.how})",
         "units": how,
-        "gripper": opening or _gripper_text(given, columns, gripper),
+        "gripper": opening or _gripper_text(given, columns, gripper, motors, robot),
         "columns left out": ", ".join(names[index] for index in columns.dropped) or "none",
         "actions": _action_text(given.episodes[0], kind) if given.episodes else "none",
     }
@@ -221,12 +222,17 @@ def _radians_after_all(
     return ""
 
 
-def _gripper_feature(column: str, motors: bool) -> str:
-    """What the gripper's column is stored as."""
-    return GRIPPER_OPENING if motors else GRIPPER_WIDTH if is_width(column) else GRIPPER
+def _gripper_feature(column: str, motors: bool, robot: Robot) -> tuple[str, float]:
+    """What the gripper's column is stored as, and how much of that one of its units is."""
+    if motors:
+        opens = robot.gripper
+        return (GRIPPER_OPENING, 0.01) if opens is None else (GRIPPER_WIDTH, 0.01 * opens.width_m)
+    return (GRIPPER_WIDTH if is_width(column) else GRIPPER), 1.0
 
 
-def _episode(episode: Episode, columns: Columns, turned: Conversion, kind: str, gripper: str) -> Episode:
+def _episode(
+    episode: Episode, columns: Columns, turned: Conversion, kind: str, gripper: str, per_unit: float
+) -> Episode:
     if episode.state.ndim != 2:
         return episode  # validation says what is wrong
     joints, width = list(columns.joints), episode.state.shape[1]
@@ -235,13 +241,12 @@ def _episode(episode: Episode, columns: Columns, turned: Conversion, kind: str, 
         if name in extras and extras[name].ndim == 2 and extras[name].shape[1] == width:
             picked = extras[name][:, joints]
             extras[name] = picked if name == "observation.effort" else turned.rates(picked)
-    opening = 0.01 if gripper == GRIPPER_OPENING else 1.0
     if columns.gripper is not None:
-        extras[gripper] = opening * episode.state[:, [columns.gripper]]
+        extras[gripper] = per_unit * episode.state[:, [columns.gripper]]
     action = episode.action
     if action is not None and kind != "unknown" and action.ndim == 2 and action.shape[1] == width:
         if columns.gripper is not None and np.isfinite(action[:, columns.gripper]).all():
-            extras[ACTION_GRIPPER] = opening * action[:, [columns.gripper]]
+            extras[ACTION_GRIPPER] = per_unit * action[:, [columns.gripper]]
         if kind == "position":
             extras[TARGET_POSITION] = turned.positions(action[:, joints])
         action = turned.rates(action[:, joints]) if kind == "velocity" else None
@@ -274,13 +279,16 @@ def _pairs(robot: Robot, names: Sequence[str], columns: Columns) -> str:
     )
 
 
-def _gripper_text(given: Demonstrations, columns: Columns, feature: str) -> str:
+def _gripper_text(given: Demonstrations, columns: Columns, feature: str, motors: bool, robot: Robot) -> str:
     if columns.gripper is None:
         extras = given.episodes[0].extras if given.episodes else {}
         return ", ".join(name for name in OBSERVED if name in extras) or "none"
     column = given.joint_names[columns.gripper]
     if feature == GRIPPER_OPENING:
         return f"{column}, 0 to 100, stored as {GRIPPER_OPENING} from 0 (closed) to 1 (open)"
+    if motors and robot.gripper is not None:
+        most = f"{robot.gripper.width_m:g} m"
+        return f"{column}, 0 to 100, stored as {GRIPPER_WIDTH} from 0 to {most}, taken to grow evenly"
     if feature == GRIPPER_WIDTH:
         return f"{column}, stored as {GRIPPER_WIDTH}, m by its name"
     return f"{column}, stored as {GRIPPER} as recorded: its unit is not known"

@@ -6,6 +6,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
+from latentarm.errors import UserError
 from latentarm.kinematics.chain import Capsules
 from latentarm.kinematics.reader import read
 from latentarm.robots.attachment import ATTACHED_BODIES, Attachment
@@ -15,7 +16,7 @@ from latentarm.robots.limits import JointLimits, Source
 from latentarm.robots.limits_file import with_stated
 from latentarm.robots.robot import Robot
 from latentarm.robots.shapes import body_name, read_capsules, self_pairs
-from latentarm.types import BoolArray, FloatArray, StatedLimits
+from latentarm.types import BoolArray, FloatArray, StatedGripper, StatedLimits
 
 
 def assemble(
@@ -106,10 +107,36 @@ def restate(robot: Robot, stated: StatedLimits) -> Robot:
         tool_speed,
         robot.model_path,
         tool_speed_source=source,
-        gripper=robot.gripper,
+        gripper=robot.gripper if stated.gripper is None else _stated_gripper(robot, stated.gripper),
         attachment=robot.attachment,
     )
     return replace(anew, stated_limits=stated)
+
+
+def _stated_gripper(robot: Robot, stated: StatedGripper) -> Gripper:
+    """The gripper that a limits file states, on the joints of the model.
+
+    Raises:
+        UserError: the model has no such joints, or one of them is driven as the arm's or has no range.
+    """
+    model = robot.model()
+    travel: list[tuple[float, float]] = []
+    for name in stated.joints:
+        joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
+        if joint < 0:
+            raise UserError(f"The limits file names the gripper's joint {name!r}, which {robot.name} lacks.")
+        if name in robot.joint_names:
+            raise UserError(
+                f"The gripper's joint {name!r} is driven as one of the arm's: name an end-effector before it."
+            )
+        if not model.jnt_limited[joint]:
+            raise UserError(f"The gripper's joint {name!r} of {robot.name} has no range in the model.")
+        if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE:
+            low, high = model.jnt_range[joint]
+            travel.append((float(low), float(high)))
+    if travel and len(travel) < len(stated.joints):
+        raise UserError(f"The gripper of {robot.name} has joints that slide and joints that turn.")
+    return Gripper(stated.joints, stated.width, stated.speed, stated.force, tuple(travel))
 
 
 def _names(model: mujoco.MjModel, joints: frozenset[int]) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ def arm_model(robot: Robot) -> "mujoco.MjModel":
 
     from latentarm.kinematics.reader import reference_positions
 
-    fingers = () if robot.gripper is None else robot.gripper.joints
+    fingers = () if robot.gripper is None else robot.gripper.slides
     if not fingers:
         return robot.model()
     model = robot.model()

@@ -10,6 +10,12 @@ An example in TOML::
     velocity_rad_per_s = 3.14
     acceleration_rad_per_s2 = 8.0
     jerk_rad_per_s3 = 500.0
+
+    [gripper]
+    joints = ["gripper"]
+    width_m = 0.08
+    speed_m_per_s = 0.1
+    force_n = 10
 """
 
 import math
@@ -23,7 +29,7 @@ import yaml
 
 from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
-from latentarm.types import StatedJointLimits, StatedLimits
+from latentarm.types import StatedGripper, StatedJointLimits, StatedLimits
 from latentarm.untrusted.opening import read_bytes
 
 MOST_BYTES: Final = 100_000
@@ -33,6 +39,10 @@ _DEEPEST: Final = 4
 """Tables within tables of YAML; the parser takes time with the square of the depth."""
 
 TOOL_SPEED: Final = "tool_speed_m_per_s"
+
+GRIPPER: Final = "gripper"
+
+_GRIPPER_FIGURES: Final = {"width_m": "width", "speed_m_per_s": "speed", "force_n": "force"}
 
 _FIGURES: Final = {
     "lower": "",
@@ -90,16 +100,18 @@ def parse_limits(document: object, where: str) -> StatedLimits:
         UserError: a key is unknown, given twice or in the wrong unit, or its value is no sensible number.
     """
     top = _mapping(document, where, "")
-    _check_keys(top, ("joints", TOOL_SPEED), where, "")
+    _check_keys(top, ("joints", TOOL_SPEED, GRIPPER), where, "")
     joints = _mapping(top.get("joints", {}), where, "joints")
     tool_speed = _number(top[TOOL_SPEED], where, TOOL_SPEED) if TOOL_SPEED in top else None
     if tool_speed is not None and tool_speed <= 0.0:
         raise UserError(f"{where}: {TOOL_SPEED} is {tool_speed:g}; it must be above zero.")
-    if not joints and tool_speed is None:
+    gripper = _gripper(top[GRIPPER], where) if GRIPPER in top else None
+    if not joints and tool_speed is None and gripper is None:
         raise UserError(f"{where} states no limits: give figures under joints, or {TOOL_SPEED}.")
     return StatedLimits(
         joints={name: _joint(entry, where, f"joints.{name}") for name, entry in joints.items()},
         tool_speed=tool_speed,
+        gripper=gripper,
     )
 
 
@@ -117,6 +129,9 @@ def limits_document(stated: StatedLimits) -> dict[str, object]:
             if value is not None
         }
     document: dict[str, object] = {"joints": joints}
+    if stated.gripper is not None:
+        figures = {key: getattr(stated.gripper, name) for key, name in _GRIPPER_FIGURES.items()}
+        document[GRIPPER] = {"joints": list(stated.gripper.joints), **figures}
     return document if stated.tool_speed is None else document | {TOOL_SPEED: stated.tool_speed}
 
 
@@ -200,6 +215,22 @@ def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
         jerk=values.get("jerk"),
         sliding=next(iter(sliding), None),
     )
+
+
+def _gripper(entry: object, where: str) -> StatedGripper:
+    given = _mapping(entry, where, GRIPPER)
+    needed = ("joints", *_GRIPPER_FIGURES)
+    _check_keys(given, needed, where, f"{GRIPPER}.")
+    for key in needed:
+        if key not in given:
+            raise UserError(f"{where}: {GRIPPER} lacks {key}: give {', '.join(needed)}.")
+    figures = {name: _number(given[key], where, f"{GRIPPER}.{key}") for key, name in _GRIPPER_FIGURES.items()}
+    if min(figures.values()) <= 0.0:
+        raise UserError(f"{where}: the figures of {GRIPPER} must be above zero.")
+    joints = cast("list[object]", given["joints"]) if isinstance(given["joints"], list) else []
+    if not joints or not all(isinstance(joint, str) for joint in joints):
+        raise UserError(f'{where}: {GRIPPER}.joints must be a list of names, such as ["gripper"].')
+    return StatedGripper(joints=tuple(map(str, joints)), **figures)
 
 
 def _mapping(value: object, where: str, key: str) -> Mapping[str, Any]:

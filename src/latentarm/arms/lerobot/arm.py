@@ -23,7 +23,7 @@ STOPS_AFTER_S: Final = 0.05
 """Its process sees that a command has run out in its next round; a round takes 10 ms, and 50 ms at most where
 the bus is slow. A process that is slower than that, or killed, tells the servos nothing new."""
 
-_LOADING_S: Final = 120.0
+_LOADING_S: Final = 240.0
 """LeRobot is imported within this time, s."""
 
 _BUS_S: Final = 10.0

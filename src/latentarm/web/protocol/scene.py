@@ -64,7 +64,7 @@ def drawable(place: Place, scene: Scene | None) -> Drawable:
     model = robot.model()
     reading = read(model, [tool.name for tool in robot.chain.tools])
     geoms = _visible(model)
-    fingers = _finger_of(model, () if robot.gripper is None else robot.gripper.joints)
+    fingers = _finger_of(model, () if robot.gripper is None else robot.gripper.slides)
     positions = [goal.pose.position for goal in place.goals]
     return Drawable(
         description={
