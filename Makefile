@@ -18,7 +18,7 @@ PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BI
 PARALLEL := --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-thorough check message-types format bench docs dist lock arms clean
+.PHONY: help demo test test-all test-thorough check message-types format bench docs dist lock arms lerobot clean
 
 help: ## Show what can be made.
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -69,6 +69,12 @@ arms: $(VENV)/installed-dev ## Fetch some 25 arms of other packages (420 MB), lo
 	$(BIN)/python scripts/fetch_arms.py
 	$(BIN)/python scripts/arms_table.py
 	$(BIN)/python -m pytest tests/robots/test_arms.py
+
+# LeRobot wants torch below 2.12, so the lock does not apply here.
+lerobot: $(VENV)/installed ## An environment with LeRobot 0.6 and our plug-in, for its tests (Python 3.12, several GB).
+	$(BIN)/python scripts/uv.py venv --quiet --allow-existing --python 3.12 .venv-lerobot-06
+	$(BIN)/python scripts/uv.py pip install --quiet --python .venv-lerobot-06/bin/python \
+		--editable '.[lerobot,testing]' --editable plugins/lerobot_robot_latentarm
 
 bench: $(VENV)/installed ## The online step and the batched fit, as ratios in one run.
 	$(BIN)/latentarm bench
