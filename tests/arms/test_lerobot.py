@@ -27,6 +27,7 @@ from latentarm.robots.catalogue import load_robot
 from latentarm.robots.gripper import Gripper
 from latentarm.robots.limits_file import parse_limits
 from latentarm.robots.robot import Robot
+from latentarm.testing.real_arms import RealArmContract, StandIn
 from latentarm.types import Command, GripperCommand
 from lerobot_environment import lerobot_python, plugin_environment
 
@@ -366,3 +367,60 @@ def test_what_is_no_arm_on_a_bus_is_refused(robot: Robot, calibration: Path, kin
     address = parse_address(f"lerobot://{kind}?port=/dev/null&calibration={calibration}")
     with pytest.raises(UserError, match="so101_follower"):
         LerobotArm(robot, address, now_s)
+
+
+class SimulatedServos(StandIn):
+    """An arm of simulated servos, whose joints are at zero in the middle of their range."""
+
+    def __init__(self, bus: FeetechBus) -> None:
+        self._bus = bus
+
+    def positions(self) -> np.ndarray:
+        """See the base class."""
+        return _places(self._bus) - 2000.0 / STEPS_PER_RAD
+
+    def break_down(self) -> None:
+        """A motor lets go."""
+        self._bus.servos[2].registers[TORQUE] = 0
+
+    def cut(self) -> None:
+        """See the base class."""
+        self._bus.silent = True
+
+    def repair(self) -> None:
+        """See the base class."""
+        self._bus.silent = False
+
+
+@needs_lerobot
+class TestLerobotArm(RealArmContract):
+    """One driver for all tests, because LeRobot takes many seconds to import."""
+
+    @pytest.fixture(scope="class")
+    @classmethod
+    def bus(cls) -> Iterator[FeetechBus]:
+        with FeetechBus() as bus:
+            yield bus
+
+    @pytest.fixture(scope="class")
+    @classmethod
+    def only(cls, robot: Robot, calibration: Path, bus: FeetechBus) -> LerobotArm:
+        return LerobotArm(robot, _address(Path(bus.port), calibration), now_s)
+
+    @pytest.fixture
+    def robot(self, robot: Robot) -> Robot:
+        return robot
+
+    @pytest.fixture
+    def stand_in(self, bus: FeetechBus) -> SimulatedServos:
+        return SimulatedServos(bus)
+
+    @pytest.fixture
+    def make(self, only: LerobotArm) -> Callable[[], LerobotArm]:
+        return lambda: only
+
+    @pytest.fixture
+    def refused(self, only: LerobotArm, bus: FeetechBus) -> Iterator[Callable[[], LerobotArm]]:
+        bus.servos[3].registers[CELSIUS] = 66
+        yield lambda: only
+        bus.servos[3].registers[CELSIUS] = 30

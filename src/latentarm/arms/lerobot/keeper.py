@@ -31,6 +31,9 @@ PERIOD_S: Final = 0.01
 _FAILURES: Final = 5
 """After so many rounds in which the bus did not answer the arm has a fault."""
 
+_SILENT_PERIOD_S: Final = 0.2
+"""Of the rounds after that: the servos' SDK waits for an answer without sleeping."""
+
 _TORQUE_ROUNDS: Final = 10
 """In every so many rounds it is seen whether all motors are still under power."""
 
@@ -78,7 +81,8 @@ class Keeper:
                     self._heed(message)
                 if self._phase != "off":
                     self._round()
-                due_s = max(due_s + PERIOD_S, now_s() - PERIOD_S)
+                period_s = PERIOD_S if self._failures < _FAILURES else _SILENT_PERIOD_S
+                due_s = max(due_s + period_s, now_s() - PERIOD_S)
                 time.sleep(max(due_s - now_s(), 0.0))
         except EOFError:
             pass
