@@ -3,6 +3,7 @@
 import json
 import socket
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +15,11 @@ from lerobot_environment import ROOT, lerobot_python, plugin_environment
 
 
 @pytest.fixture
-def ports() -> tuple[MessagePort, MessagePort]:
+def ports() -> Iterator[tuple[MessagePort, MessagePort]]:
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    return MessagePort(ours), MessagePort(theirs)
+    yield MessagePort(ours), MessagePort(theirs)
+    ours.close()
+    theirs.close()
 
 
 @pytest.fixture
