@@ -109,6 +109,8 @@ class RosbridgeServer(StandIn):
         self.publishers = 1
         self.clock_s = time.time() - now_s
         self.states_as: str = "good"
+        self._stamp_s = now_s + self.clock_s
+        self._told = (self.arm.q.tolist(), self.arm.dq.tolist())
         self.gripper_fails = False
         self._clients: set[_Client] = set()
         self._goal: tuple[_Client, dict[str, Any]] | None = None
@@ -169,6 +171,10 @@ class RosbridgeServer(StandIn):
     def repair(self) -> None:
         """What has waited arrives all at once."""
         self._do(self._uncut.set)
+
+    def set_states(self, how: str) -> None:
+        """Joint states are ``good``, ``none``, ``frozen``, ``repeated``, ``nan`` or ``missing`` one."""
+        self.states_as = how
 
     def jump_clock(self, by_s: float) -> None:
         """The clock of ROS is set."""

@@ -1,6 +1,7 @@
 """A connection to rosbridge that is opened once, and never waits once it is open."""
 
 import importlib.util
+import logging
 import socket
 from collections.abc import Callable, Mapping
 from typing import Any, Final, final
@@ -40,6 +41,8 @@ class Link:
         import roslibpy
         from roslibpy.core import RosTimeoutError
 
+        # It warns that it does not open a lost link again, which it was told not to.
+        logging.getLogger("roslibpy").setLevel(logging.ERROR)
         self._lib: Any = roslibpy
         self._topics: dict[str, Any] = {}
         self._actions: dict[str, Any] = {}
