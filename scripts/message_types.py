@@ -12,11 +12,11 @@ from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 
 from latentarm.web.protocol.learning_messages import LearningState
 from latentarm.web.protocol.page_messages import ClientMessage
-from latentarm.web.protocol.server_messages import Refused, State, Welcome
+from latentarm.web.protocol.server_messages import Poses, Refused, State, Welcome
 
 TARGET: Final = Path(__file__).parents[1] / "src/latentarm/web/pages/connection/messages.d.ts"
 
-_SERVER: Final = (Welcome, State, LearningState, Refused)
+_SERVER: Final = (Welcome, State, LearningState, Poses, Refused)
 _PLAIN: Final = {
     "integer": "number",
     "number": "number",

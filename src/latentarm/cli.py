@@ -54,7 +54,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     ),
     "teleop": (
         "teleop:teleop",
-        "Drive a simulated arm from a web page: stick, buttons, keyboard, gamepad or switches.",
+        "Drive an arm from a web page, simulated or real: stick, buttons, keyboard, gamepad or switches.",
     ),
     "export": (
         "export:export",
@@ -89,6 +89,14 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "bench:bench",
         "Time the online step, and training ten seeds in one fit and one after the other.",
     ),
+    "arms list": (
+        "arms:list_arms",
+        "List what `--arm` takes: simulated arms by name, real ones by the scheme of their address.",
+    ),
+    "arms check": (
+        "arms:check",
+        "Look at a real arm without moving it: what it is, whether it can be driven, and if not, why.",
+    ),
     "robots": (
         "robots:robots",
         "List the robots, or show one: joints, limits and end-effector.",
@@ -101,6 +109,7 @@ module of the command that runs is imported.
 """
 
 GROUPS = {
+    "arms": "List what can be driven, and look at a real arm before it moves; `arms --help` lists how.",
     "reproduce": "Reproduce a study of the paper; `reproduce --help` lists them.",
     "study": "Send simulated people through the paper's user studies; `study --help` lists how.",
 }

@@ -40,5 +40,5 @@ def test_an_unknown_option_is_refused_with_those_that_there_are():
 
 
 def test_an_unknown_scheme_is_refused(the_panda):
-    with pytest.raises(UserError, match="--arm wooden://host names the driver 'wooden'"):
-        make_real_arm("wooden://host", the_panda, lambda: 0.0)
+    with pytest.raises(UserError, match="--arm brass://host names the driver 'brass'"):
+        make_real_arm("brass://host", the_panda, lambda: 0.0)

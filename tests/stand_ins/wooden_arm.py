@@ -12,7 +12,7 @@ import numpy as np
 
 from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import ArmSpec, ArmStatus
-from latentarm.arms.real import Fact, Findings, RealArm
+from latentarm.arms.real import Fact, Findings, FoundLimits, RealArm
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
 from latentarm.types import Command, GripperReading, Reading
@@ -55,7 +55,8 @@ class WoodenArm(RealArm):
             Fact("joints", str(len(state["q"]))),
             Fact("round trip", f"{1000 * (self._now_s() - began_s):.1f} ms"),
         )
-        return Findings(facts, refusals)
+        limits = FoundLimits(*(np.array(state[name]) for name in ("lower", "upper", "velocity")))
+        return Findings(facts, refusals, limits)
 
     def connect(self) -> None:
         self.close()

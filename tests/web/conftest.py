@@ -208,6 +208,7 @@ class Client:
     state: dict[str, Any] = field(default_factory=dict)
     welcome: dict[str, Any] = field(default_factory=dict)
     learning: dict[str, Any] = field(default_factory=dict)
+    poses: list[str] = field(default_factory=list)
     refused: str | None = None
     closed: int | None = None
     u: list[float] | None = None
@@ -255,6 +256,8 @@ class Client:
                     self.welcome = message
                 elif message["type"] == "learning":
                     self.learning = message
+                elif message["type"] == "poses":
+                    self.poses = message["names"]
                 else:
                     self.refused = message["notice"]["code"]
         self.closed = self.socket.close_code

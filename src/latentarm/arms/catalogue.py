@@ -6,7 +6,7 @@ from typing import Final, Protocol, cast
 
 from latentarm.arms.address import is_address
 from latentarm.arms.contract import Arm, SceneArm
-from latentarm.arms.real_catalogue import make_real_arm
+from latentarm.arms.real_catalogue import check_address, make_real_arm
 from latentarm.errors import UserError
 from latentarm.plugins import Catalogue
 from latentarm.robots.robot import Robot
@@ -83,12 +83,39 @@ def make_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], flo
     return _checked(name, ARMS.find(name, "--arm")(robot, state, now_s))
 
 
+def check_named(name: str) -> None:
+    """Check what ``--arm`` names, without making it.
+
+    Args:
+        name: a name in `ARMS`, or the address of a real arm.
+
+    Raises:
+        UserError: there is no such arm or driver, or it does not load.
+    """
+    if is_address(name):
+        check_address(name)
+    else:
+        ARMS.find(name, "--arm")
+
+
+def check_simulated(name: str) -> None:
+    """Check what ``--arm`` names where time is simulated; see `check_named`.
+
+    Raises:
+        UserError: as `check_named`, and for the address of a real arm.
+    """
+    if is_address(name):
+        raise _real(name)
+    check_named(name)
+
+
 def make_simulated_arm(name: str, robot: Robot, state: FloatArray, now_s: Callable[[], float]) -> Arm:
     """An arm for simulated time; see `make_arm`.
 
     Raises:
         UserError: as `make_arm`, and where the arm is real: it would not wait for simulated time.
     """
+    check_simulated(name)
     return _simulated(name, make_arm(name, robot, state, now_s))
 
 
@@ -107,6 +134,7 @@ def make_scene_arm(
     Raises:
         UserError: as `make_arm`, and where the arm can have no things about it.
     """
+    check_simulated(name)
     factory = ARMS.find(name, "--arm")
     if "scene" not in inspect.signature(factory).parameters:
         raise UserError(f"--arm {name} has no things about it to touch or hold: use --arm {PHYSICAL_ARM}.")
@@ -118,11 +146,15 @@ def make_scene_arm(
 
 def _simulated(name: str, arm: Arm) -> Arm:
     if not arm.spec.simulated:
-        raise UserError(
-            f"--arm {name} is a real arm, and time is simulated here: choose a simulated one, such as"
-            f" {DEFAULT_ARM}."
-        )
+        raise _real(name)
     return arm
+
+
+def _real(name: str) -> UserError:
+    return UserError(
+        f"--arm {name} is a real arm, and time is simulated here: choose a simulated one, such as"
+        f" {DEFAULT_ARM}."
+    )
 
 
 def _checked(name: str, arm: object) -> Arm:

@@ -162,11 +162,42 @@ def check_arm(spec: ArmSpec, robot: Robot) -> None:
         robot: what is to be driven.
 
     Raises:
-        UserError: its joints are not the robot's, or the robot's gripper is missing; nobody knows when it
-            stops by itself, or it is too late; or the arm is real and one of its limits is assumed.
+        UserError: the first of `arm_refusals`.
     """
-    if spec.joint_names != robot.joint_names:
+    for refusal in arm_refusals(spec, robot):
+        raise UserError(refusal)
+
+
+def check_rate(spec: ArmSpec, dt_s: float) -> None:
+    """Refuse an arm that takes fewer commands per second than a loop sends.
+
+    Args:
+        spec: what the arm's driver knows of it.
+        dt_s: the loop's period, s.
+
+    Raises:
+        UserError: it does.
+    """
+    if spec.rate_hz < (1.0 - 1e-9) / dt_s:
         raise UserError(
+            f"The loop runs at {1.0 / dt_s:g} Hz, but the arm takes {spec.rate_hz:g} commands"
+            " per second: choose a lower rate."
+        )
+
+
+def arm_refusals(spec: ArmSpec, robot: Robot) -> tuple[str, ...]:
+    """Why an arm cannot be driven safely, a sentence each; empty where it can.
+
+    Its joints are not the robot's, or the robot's gripper is missing; nobody knows when it stops by itself,
+    or it is too late; or the arm is real and one of its limits is assumed.
+
+    Args:
+        spec: what the arm's driver knows of it.
+        robot: what is to be driven.
+    """
+    found: list[str] = []
+    if spec.joint_names != robot.joint_names:
+        found.append(
             f"The arm has the joints {', '.join(spec.joint_names)}, and {robot.name} has"
             f" {', '.join(robot.joint_names)}: choose the robot that the arm is."
         )
@@ -176,17 +207,16 @@ def check_arm(spec: ArmSpec, robot: Robot) -> None:
             if spec.stops_after_s is None or math.isnan(spec.stops_after_s)
             else f"This arm takes {1000 * spec.stops_after_s:.0f} ms until it"
         )
-        raise UserError(
+        found.append(
             f"{known} stops by itself when no more commands come: an arm must do so within"
             f" {1000 * STOPS_AFTER_S:.0f} ms."
         )
     if robot.gripper is not None and spec.gripper is None:
-        raise UserError(
-            f"{robot.name} has a gripper, and the arm has none: choose the robot that the arm is."
-        )
+        found.append(f"{robot.name} has a gripper, and the arm has none: choose the robot that the arm is.")
     assumed = assumed_limits(robot)
     if assumed and not spec.simulated:
-        raise UserError(
+        found.append(
             f"{robot.name} is a real arm, and its {assumed} is not known but assumed: state the"
             " manufacturer's figures in a file and name it with --limits FILE."
         )
+    return tuple(found)

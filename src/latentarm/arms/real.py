@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import final
 
 from latentarm.arms.contract import Arm
+from latentarm.types import FloatArray
 
 
 @final
@@ -22,6 +23,22 @@ class Fact:
 
 
 @final
+@dataclass(frozen=True, eq=False)
+class FoundLimits:
+    """The limits that an arm keeps by itself, as it tells them.
+
+    Attributes:
+        lower: (n,), lowest positions, rad.
+        upper: (n,), highest positions, rad.
+        velocity: (n,), largest speeds, rad/s.
+    """
+
+    lower: FloatArray
+    upper: FloatArray
+    velocity: FloatArray
+
+
+@final
 @dataclass(frozen=True)
 class Findings:
     """What a driver finds out about an arm without moving it.
@@ -29,10 +46,12 @@ class Findings:
     Attributes:
         facts: firmware, limits, payload, clock, round trip, stop time, ... as far as the arm tells them.
         refusals: why it is not driven, each one sentence that says what to do; empty where it can be.
+        limits: its own, where it tells them.
     """
 
     facts: tuple[Fact, ...]
     refusals: tuple[str, ...] = ()
+    limits: FoundLimits | None = None
 
 
 class RealArm(Arm, ABC):

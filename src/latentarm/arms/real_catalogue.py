@@ -47,6 +47,15 @@ REAL_ARMS: Final = Catalogue(
 )
 
 
+def check_address(address: str) -> None:
+    """Check that there is a driver for an address.
+
+    Raises:
+        UserError: it is no address, or names no driver, or that does not load.
+    """
+    REAL_ARMS.find(parse_address(address).scheme, f"--arm {address}")
+
+
 def make_real_arm(address: str, robot: Robot, now_s: Callable[[], float]) -> RealArm:
     """The driver of a real arm; it is not connected yet.
 

@@ -2,18 +2,15 @@
 
 from typing import TYPE_CHECKING, Literal
 
-from latentarm.arms.catalogue import ARMS
 from latentarm.assistance.catalogue import BELIEFS
 from latentarm.models.catalogue import KINDS
 from latentarm.tasks.catalogue import HELD_OUT, SCENE_TASKS, TASKS
 
 if TYPE_CHECKING:
-    ArmName = str
     BeliefName = str
     ModelName = str
     TaskName = str
 else:
-    ArmName = Literal[tuple(ARMS)]
     BeliefName = Literal[tuple(BELIEFS)]
     ModelName = Literal[tuple(KINDS)]
     TaskName = Literal[(*TASKS, *SCENE_TASKS, HELD_OUT)]

@@ -7,6 +7,7 @@ from typing import Annotated, Final, Literal
 
 from tyro.conf import Positional, arg
 
+from latentarm.arms.catalogue import check_simulated
 from latentarm.assistance.catalogue import AssistanceName
 from latentarm.commands.choices import BeliefName, TaskName
 from latentarm.commands.options import Arm, EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seed
@@ -118,6 +119,8 @@ class DriveOptions:
         check_processes(self.jobs, "joblib")
         check_count("drives for each goal", self.drives)
         check_positive("rationality beta", self.beta)
+        if self.arm is not None:
+            check_simulated(self.arm)
         if self.time_limit_s is not None:
             check_positive("time limit in s", self.time_limit_s)
         if self.driver in MODE_SWITCHED and self.profile is not None:

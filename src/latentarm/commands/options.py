@@ -6,13 +6,25 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
-from latentarm.commands.choices import ArmName
+from latentarm.arms.catalogue import ARMS
 
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
 Seed = Annotated[int, arg(help="Seed of all randomness.")]
+_ARMS = ",".join(ARMS)
 Arm = Annotated[
-    ArmName | None,
-    arg(help="What moves; by default kinematic, and mujoco at a task with things, which only physics holds."),
+    str | None,
+    arg(
+        metavar=f"{{{_ARMS}}}",
+        help="What moves; by default kinematic, and mujoco at a task with things, which only physics holds.",
+    ),
+]
+AnyArm = Annotated[
+    str | None,
+    arg(
+        metavar=f"{{{_ARMS},URL}}",
+        help="What moves; by default kinematic, and mujoco at a task with things, which only physics holds. A"
+        " real arm is named by its address, such as franka://172.16.0.2; see docs/your-arm.md.",
+    ),
 ]
 RobotName = Annotated[
     str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")

@@ -9,7 +9,7 @@ from tyro.conf import Positional, arg
 
 from latentarm.commands.choices import TaskName
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Arm, Json, Seed
+from latentarm.commands.options import AnyArm, EndEffector, Json, LimitsFile, Seed
 from latentarm.commands.output import draws_blocks, say
 
 
@@ -27,7 +27,13 @@ def teleop(
     ] = None,
     certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
-    arm: Arm = None,
+    arm: AnyArm = None,
+    robot: Annotated[
+        str | None,
+        arg(help="A robot's name or the path of an MJCF or URDF file; that of the run or task by default."),
+    ] = None,
+    end_effector: EndEffector = None,
+    limits: LimitsFile = None,
     task: Annotated[
         TaskName | None,
         arg(help="What the arm is driven at; the run's own task, or a table, where none is named."),
@@ -43,11 +49,12 @@ def teleop(
     pin: Annotated[bool, arg(help="People may protect their records by a PIN.")] = False,
     json: Json = False,
 ) -> int:
-    """Drive a simulated arm from a web page: stick, buttons, keyboard, gamepad or switches.
+    """Drive an arm from a web page, simulated or real: stick, buttons, keyboard, gamepad or switches.
 
     Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
     """
     from latentarm.control.journal_limits import JournalLimits
+    from latentarm.web.arm_process.beginning import RobotOptions
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.server.addresses import TeleopConfig
     from latentarm.web.server.app import serve
@@ -58,6 +65,8 @@ def teleop(
             print(json_format.dumps({"address": address}), flush=True)
 
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
-    config = TeleopConfig(Spec(run, profile, seed, out, room, arm, task), host, port, certfile, keyfile, pin)
+    named = RobotOptions(robot, end_effector, limits)
+    spec = Spec(run, profile, seed, out, room, arm, task, robot=named)
+    config = TeleopConfig(spec, host, port, certfile, keyfile, pin)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

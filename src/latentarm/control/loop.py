@@ -9,11 +9,10 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import Arm, ArmPhase, ArmStatus, check_arm
+from latentarm.arms.contract import Arm, ArmPhase, ArmStatus, check_arm, check_rate
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
-from latentarm.errors import UserError
 from latentarm.types import StepRecord, Stop, StopCode
 
 ENABLING_S: Final = 5.0
@@ -138,11 +137,7 @@ class ControlLoop:
         observers: Sequence[Callable[[StepRecord], None]] = (),
     ) -> None:
         check_arm(arm.spec, step.robot)
-        if arm.spec.rate_hz < (1.0 - 1e-9) / step.dt_s:
-            raise UserError(
-                f"The loop runs at {1.0 / step.dt_s:g} Hz, but the arm takes {arm.spec.rate_hz:g} commands"
-                " per second: choose a lower rate."
-            )
+        check_rate(arm.spec, step.dt_s)
         self._step = step
         self._arm = arm
         self._source = source

@@ -20,7 +20,7 @@ from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
-from latentarm.web.arm_process.way_back import AT_START_RAD, ENDED, WayBack
+from latentarm.web.arm_process.way_back import AT_START_RAD, WayBack, ending
 from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import Channel, parse_stop
 from latentarm.web.protocol.notice import Notice, notice_of_stop
@@ -34,6 +34,7 @@ from latentarm.web.protocol.orders import (
     HelpLevel,
     ModeName,
     Order,
+    PoseToGoTo,
     Record,
     Reset,
     Return,
@@ -105,12 +106,14 @@ class Drive:
         self._writer = writer
         self._orphaned = orphaned
         self._steering = steering
-        self._step = setup.step(arm)
+        self._to_pose = setup.to_pose()
+        self._step = setup.step(arm, self._to_pose)
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
         self._neutral = NeutralFirst(self._inputs)
         self._way_back = WayBack(self._neutral, self._inputs, setup.start)
+        self._ended: Notice | None = None
         self._late = LateStops()
         self._loop = ControlLoop(self._step, arm, self._way_back, clock, [self._observe, *observers])
         self._stop_version = channel.stop.version
@@ -196,8 +199,8 @@ class Drive:
             case ChooseMode(mode=mode, axes=axes):
                 if mode in self._setup.modes:
                     self._choose(mode, self._steering.axes if axes is None else axes, self._steering.help)
-            case Return(on=True):
-                self._set_out(record)
+            case Return(on=True, pose=pose):
+                self._set_out(record, pose)
             case Return():
                 self._end_way_back()
             case ChooseHelp(level=level):
@@ -243,8 +246,13 @@ class Drive:
         else:
             self._choose("latent" if level == "off" else "assisted", self._steering.axes, level)
 
-    def _set_out(self, record: StepRecord) -> None:
-        """Begin the way back to the start."""
+    def _set_out(self, record: StepRecord, pose: PoseToGoTo | None) -> None:
+        """Begin the way back to the start, or the way to a saved pose."""
+        goal = self._setup.start if pose is None else np.array(pose.q)
+        limits = self._setup.task.robot.limits
+        if goal.shape != limits.lower.shape or limits.violation(goal).any():
+            self._say(Notice(code="pose_unreachable", parameters={"pose": "" if pose is None else pose.name}))
+            return
         if self._step.stopped is not None or not self._step.at_rest or self._inputs.deflected:
             self._say(Notice(code="return_not_now"))
             return
@@ -252,8 +260,9 @@ class Drive:
         self._end_episode()
         self._note_until_s = -math.inf
         self._setup.help.level = "off"
+        self._to_pose.lead_to(goal)
         self._step.choose_mode(self._setup.way_back)
-        self._way_back.begin(record.time_s)
+        self._way_back.begin(record.time_s, goal, None if pose is None else pose.name)
 
     def _end_way_back(self) -> None:
         self._choose(self._steering.mode, self._steering.axes, self._steering.help)
@@ -261,7 +270,7 @@ class Drive:
     def _follow_way_back(self, record: StepRecord) -> None:
         """End the way back where it is over, or the arm was stopped."""
         if not self._way_back.on:
-            if record.input.any() and self._note in ENDED.values():
+            if record.input.any() and self._note is not None and self._note == self._ended:
                 self._note_until_s = -math.inf
             return
         self._step.forget()
@@ -269,7 +278,8 @@ class Drive:
             self._end_way_back()
         elif (outcome := self._way_back.outcome(self._observed.q, record.time_s)) is not None:
             self._end_way_back()
-            self._say(ENDED[outcome])
+            self._ended = ending(outcome, self._way_back.pose)
+            self._say(self._ended)
 
     def _begin_episode(self, task: str, person: str) -> None:
         self._steering.ending_episode = False
@@ -342,6 +352,7 @@ class Drive:
             reason=self._reason(self._step.stopped),
             held_back=held_back[0] if held_back and phase == "moving" else None,
             returning=self._way_back.on,
+            bound_for=self._way_back.pose if self._way_back.on else None,
             at_start=self._way_back.away(q) <= AT_START_RAD,
             let_go_first=self._neutral.waiting,
             late_stops=self._late.count,

@@ -1,37 +1,38 @@
 """What a page drives: the task, its modes and their controllers. Used by both processes."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.catalogue import ARMS, make_scene_arm
+from latentarm.arms.address import is_address
+from latentarm.arms.catalogue import check_named
 from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.goal_blending import GoalBlending
+from latentarm.context import BELIEF
 from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
-from latentarm.controllers.back_to_start import BackToStart
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.joined import JoinedController
 from latentarm.controllers.latent import latent_controller
+from latentarm.controllers.to_pose import ToPose
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.errors import UserError
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
-from latentarm.runs.tasks import task_of_run, task_without_run, usual_arm
+from latentarm.runs.tasks import usual_arm
 from latentarm.scene.scene import Scene
-from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.place import Place, ScenePlace
 from latentarm.tasks.surroundings import surroundings_of, watched
 from latentarm.tasks.task import Task
 from latentarm.types import FloatArray
+from latentarm.web.arm_process.beginning import RobotOptions, begin, begin_real
 from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
-from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
+from latentarm.web.arm_process.task_run import Todo
 from latentarm.web.protocol.orders import HelpLevel, ModeName
 
 SEEDS: Final = 2**31
@@ -52,8 +53,6 @@ RELEASE_FRACTION: Final = 0.8
 
 MOST_JOINTS: Final = 64
 MOST_GOALS: Final = 200
-MOST_THINGS: Final = 200
-MOST_GRAINS: Final = 2000
 """Largest sizes that fit into the report of a tick."""
 
 COMMAND_PERIODS: Final = 5.0
@@ -71,9 +70,12 @@ class Spec:
         seed: of where the arm starts and where things stand.
         out: folder for recordings.
         journal: how much room a recording may take.
-        arm: what moves, a name of `latentarm.arms.catalogue`; None for the task's usual one.
+        arm: what moves, a name of `latentarm.arms.catalogue` or the address of a real arm; None for the
+            task's usual one.
         task: a name of `latentarm.tasks.catalogue`; None for the run's own, or the table-top task.
         choice: index of what is done first, of the task's choices or goals.
+        robot: which robot, where the run or the task is not to say.
+        found: what was found out about a real arm, names and values.
 
     Raises:
         UserError: the seed is out of range, or a profile is named without a run.
@@ -87,6 +89,8 @@ class Spec:
     arm: str | None = None
     task: str | None = None
     choice: int = 0
+    robot: RobotOptions = field(default_factory=RobotOptions)
+    found: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
@@ -104,14 +108,14 @@ class DriveSetup:
 
     Attributes:
         spec: what was asked for.
-        arm: what moves, a name of `latentarm.arms.catalogue`.
+        arm: what moves, a name of `latentarm.arms.catalogue` or the address of a real arm.
         task: the robot, its goals and what it must keep clear of.
         controller: all modes: the latent actions first where there are any, then the pairs of axes of the
             end-effector.
         latent_dim: d, axes of the latent actions; 0 without a run.
         axes: names of the pairs of axes of end-effector control.
         help: how much the robot helps.
-        start: (n,), where the arm starts, rad.
+        start: (n,), where a simulated arm starts, and where the way back leads, rad.
         todo: what is to be done.
         run_fingerprint: of the run's weights; "" without a run.
         scene: what stands about the arm, or None where things are of no account.
@@ -128,6 +132,11 @@ class DriveSetup:
     todo: Todo
     run_fingerprint: str = ""
     scene: Scene | None = None
+
+    @property
+    def real(self) -> bool:
+        """Whether the arm exists: it is where it is, and nobody sees what stands about it."""
+        return is_address(self.arm)
 
     @property
     def modes(self) -> tuple[ModeName, ...]:
@@ -192,14 +201,19 @@ class DriveSetup:
 
     @property
     def way_back(self) -> int:
-        """Index of the mode that `step` has after those of the controller: the way back to the start."""
+        """Index of the mode that `step` has after those of the controller: slow motions to a pose."""
         return len(self.controller.modes)
 
-    def step(self, arm: Arm | None = None) -> Step:
+    def to_pose(self) -> ToPose:
+        """Slow motions to a pose; to the start at first."""
+        return ToPose(self.task.robot, self.start)
+
+    def step(self, arm: Arm | None = None, to_pose: ToPose | None = None) -> Step:
         """Algorithm 1 with its safety filters, disengaged.
 
         Args:
             arm: what is driven; None only to see whether it could be. It says where things are by now.
+            to_pose: the controller of the slow motions; None where nobody tells it where to lead.
         """
         objects = self.controller.objects
         if self.scene is None:
@@ -212,7 +226,7 @@ class DriveSetup:
         goals = np.array([goal.configuration for goal in self.task.goals])
         return Step(
             self.task.robot,
-            JoinedController([self.controller, BackToStart(self.task.robot, self.start)]),
+            JoinedController([self.controller, to_pose or self.to_pose()]),
             SafetyConfig(
                 input_timeout_s=INPUT_TIMEOUT_S,
                 input_grace_s=INPUT_GRACE_S,
@@ -255,8 +269,11 @@ def load_setup(spec: Spec) -> DriveSetup:
     run = None if spec.run is None else read_run(spec.run)
     name = spec.task or (None if run is None else run.task)
     arm = spec.arm or usual_arm(name)
-    ARMS.find(arm, "--arm")  # so that the error appears where the command was typed
-    begun = _begin(run, name, arm, spec.choice, np.random.default_rng(spec.seed))
+    check_named(arm)  # so that the error appears where the command was typed
+    if is_address(arm):
+        begun = begin_real(run, name, spec.choice, spec.robot)
+    else:
+        begun = begin(run, name, arm, spec.choice, spec.robot, np.random.default_rng(spec.seed))
     task = begun.place
     latent = None if spec.run is None else latent_controller(spec.run, spec.profile, task.robot)
     if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
@@ -278,46 +295,21 @@ def load_setup(spec: Spec) -> DriveSetup:
         run_fingerprint="" if spec.run is None else weights_fingerprint(spec.run),
         scene=begun.scene,
     )
+    if setup.real and run is not None:
+        _check_blind(run, setup)
     setup.step()  # what cannot be driven fails now rather than later
     return setup
 
 
-@final
-@dataclass(frozen=True, eq=False)
-class _Begun:
-    """How a run of a task begins: where the arm is and starts, (n,), rad, what is about it and to be done."""
-
-    place: Place
-    start: FloatArray
-    todo: Todo
-    scene: Scene | None = None
-
-
-def _begin(run: Run | None, name: str | None, arm: str, choice: int, rng: np.random.Generator) -> _Begun:
-    """The same for equal specs."""
-    if name is not None and name in SCENE_TASKS:
-        with_things = make_scene_task(name)
-        _check_choice(choice, with_things.choices)
-        begun = with_things.begin(choice, rng)
-        _check_things(name, begun.scene)
-        # Made here too, so that an arm that can touch nothing is refused where the command was typed.
-        make_scene_arm(arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
-        place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles, begun.objects)
-        return _Begun(place, begun.state, things_to_do(with_things, choice, begun), begun.scene)
-    task = task_without_run(name) if run is None else task_of_run(run, name, option=False)
-    _check_choice(choice, task.goals)
-    return _Begun(task, task.sample_start(choice, rng), goal_to_reach(task, choice))
-
-
-def _check_choice(choice: int, choices: Sequence[object]) -> None:
-    if not 0 <= choice < max(len(choices), 1):
-        raise UserError(f"There are {len(choices)} things to choose from, from 0 on, and no choice {choice}.")
-
-
-def _check_things(task: str, scene: Scene) -> None:
-    grains = sum(len(one.positions) for one in scene.grains)
-    if len(scene.things) > MOST_THINGS or grains > MOST_GRAINS:
+def _check_blind(run: Run, setup: DriveSetup) -> None:
+    """Refuse a model that must know of things or goals which nobody sees about a real arm."""
+    if setup.controller.objects:
         raise UserError(
-            f"The task {task} has {len(scene.things)} things and {grains} grains: the page shows"
-            f" {MOST_THINGS} and {MOST_GRAINS} at most."
+            f"{run.folder} looks at where {', '.join(setup.controller.objects)} are, and nothing sees them"
+            " about a real arm: train a model that does not, with --context joints."
+        )
+    if BELIEF in run.context and not setup.task.goals:
+        raise UserError(
+            f"{run.folder} sees a belief over goals, and nothing sees where they are about a real arm: train"
+            " a model that does not, with --context joints."
         )

@@ -8,6 +8,7 @@ import gc
 import multiprocessing
 import os
 import signal
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -19,13 +20,13 @@ from typing import Final, TypeVar, final
 
 from threadpoolctl import threadpool_limits
 
-from latentarm.arms.catalogue import make_arm, make_scene_arm
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.errors import UserError
 from latentarm.untrusted.terminal import one_line
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
+from latentarm.web.arm_process.driven_arm import first_arm, next_arm
 from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
@@ -67,7 +68,12 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
         clock = MonotonicClock()
         writer = EpisodeWriter(spec.out, spec.journal)
         steering = Steering(setup.first_mode(USUAL_HELP))
-        arm = _arm(setup, clock)
+        try:
+            arm = first_arm(setup, clock)
+        except UserError as error:
+            # It may have gone since the server looked at it; pages hear that this process has ended.
+            sys.stderr.write(f"latentarm: {one_line(str(error))}\n")
+            raise SystemExit(2) from error
         # Nothing loaded by now is ever garbage, so the collector need not scan it.
         gc.collect()
         gc.freeze()
@@ -90,9 +96,12 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                     case ChooseRun(run=run):
                         spec = replace(setup.spec, run=Path(run), profile=None, choice=0)
                         before = arm
-                        (setup, arm), note = _loaded(partial(_other_run, spec, clock), (setup, arm))
+                        (setup, arm), note = _loaded(
+                            partial(_other_run, spec, setup, arm, clock), (setup, arm)
+                        )
                         if note is None:
-                            before.close()
+                            if arm is not before:
+                                before.close()
                             steering.run = None
                             steering.mode, steering.axes = setup.first_mode(steering.help), 0
         finally:
@@ -105,16 +114,6 @@ def _ask_for_priority() -> None:
     """Run before ordinary processes, if the system allows it: a busy computer makes us late."""
     with suppress(OSError, AttributeError):  # not allowed, or not supported by the system
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
-
-
-def _arm(setup: DriveSetup, clock: Clock) -> Arm:
-    name, robot, scene = setup.arm, setup.task.robot, setup.scene
-    if scene is None:
-        arm = make_arm(name, robot, setup.start, clock.now_s)
-    else:
-        arm = make_scene_arm(name, robot, setup.start, clock.now_s, scene)
-    arm.connect()
-    return arm
 
 
 def _other_profile(setup: DriveSetup, name: str | None) -> DriveSetup:
@@ -133,16 +132,16 @@ def _begun_again(
         choice=spec.choice if order.choice is None else order.choice,
         seed=(spec.seed + order.anew) % SEEDS,
     )
-    (after, moved), note = _loaded(partial(_other_run, begun, clock), (setup, arm))
+    (after, moved), note = _loaded(partial(_other_run, begun, setup, arm, clock), (setup, arm))
     if moved is not arm:
         arm.close()
     return after, moved, note
 
 
-def _other_run(spec: Spec, clock: Clock) -> tuple[DriveSetup, Arm]:
+def _other_run(spec: Spec, before: DriveSetup, arm: Arm, clock: Clock) -> tuple[DriveSetup, Arm]:
     setup = load_setup(spec)
     setup.step()
-    return setup, _arm(setup, clock)
+    return setup, next_arm(setup, before, arm, clock)
 
 
 def _loaded(load: Callable[[], T], before: T) -> tuple[T, Notice | None]:

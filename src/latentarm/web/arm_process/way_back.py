@@ -1,4 +1,4 @@
-"""The arm on its way back to its start, while the driver's page lives and the person does nothing else."""
+"""The arm on its way to its start or a saved pose, while the driver's page lives and nobody pushes."""
 
 import math
 from typing import Final, Literal, final
@@ -9,7 +9,7 @@ from latentarm.control.input_port import InputSource
 from latentarm.types import FloatArray, Input
 from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.page_inputs import PageInputs
-from latentarm.web.protocol.notice import Notice
+from latentarm.web.protocol.notice import Notice, NoticeCode
 
 ARRIVED_RAD: Final = 0.01
 """Every joint is at the start within this."""
@@ -27,45 +27,67 @@ _CLOSER_RAD: Final = 0.005
 
 Outcome = Literal["arrived", "stuck", "pushed"]
 
-ENDED: Final[dict[Outcome, Notice]] = {
-    "arrived": Notice(code="at_start"),
-    "stuck": Notice(code="return_stuck", parameters={"seconds": round(STUCK_S)}),
-    "pushed": Notice(code="return_pushed"),
+_BACK: Final[dict[Outcome, NoticeCode]] = {
+    "arrived": "at_start",
+    "stuck": "return_stuck",
+    "pushed": "return_pushed",
 }
-"""What people are told at its end."""
+_TO_POSE: Final[dict[Outcome, NoticeCode]] = {
+    "arrived": "at_pose",
+    "stuck": "pose_stuck",
+    "pushed": "pose_pushed",
+}
+
+
+def ending(outcome: Outcome, pose: str | None) -> Notice:
+    """What people are told at the end of a way.
+
+    Args:
+        outcome: how it ended.
+        pose: what the pose is called; None for the start.
+    """
+    parameters: dict[str, str | int] = {"seconds": round(STUCK_S)} if outcome == "stuck" else {}
+    if pose is None:
+        return Notice(code=_BACK[outcome], parameters=parameters)
+    return Notice(code=_TO_POSE[outcome], parameters={**parameters, "pose": pose})
 
 
 @final
 class WayBack(InputSource):
-    """The person's inputs; on the way back, the input that drives it, with the age of theirs.
+    """The person's inputs; on the way to a pose, the input that drives it, with the age of theirs.
 
     So the arm stops as for any motion where the page's inputs cease. Theirs must be neutral: any push, and
-    anything asked of the gripper, ends the way back.
+    anything asked of the gripper, ends the way.
 
     Args:
         gate: where the inputs pass.
         inputs: of the page.
-        start: (n,), where the way leads, rad.
+        start: (n,), where the way back leads, rad.
 
     Attributes:
         on: whether the arm is on its way.
+        pose: what the pose is called that it leads to; None for the start.
     """
 
     def __init__(self, gate: NeutralFirst, inputs: PageInputs, start: FloatArray) -> None:
         self._gate = gate
         self._inputs = inputs
-        self._start = start
+        self._start = self._goal = start
+        self.pose: str | None = None
         self._pushed = False
         self._began_s = self._closer_s = -math.inf
         self._closest = math.inf
         self.on = False
 
-    def begin(self, time_s: float) -> None:
+    def begin(self, time_s: float, goal: FloatArray, pose: str | None = None) -> None:
         """Set out, from the next tick on.
 
         Args:
             time_s: the loop's clock, s.
+            goal: (n,), where the way leads, rad.
+            pose: what that is called; None for the start.
         """
+        self._goal, self.pose = goal, pose
         self.on, self._pushed = True, False
         self._began_s = self._closer_s = time_s
         self._closest = math.inf
@@ -97,7 +119,7 @@ class WayBack(InputSource):
         return float(np.abs(self._start - q).max())
 
     def outcome(self, q: FloatArray, time_s: float) -> Outcome | None:
-        """How the way back has ended, or None where it goes on.
+        """How the way has ended, or None where it goes on.
 
         Args:
             q: (n,), joint positions, rad.
@@ -105,7 +127,7 @@ class WayBack(InputSource):
         """
         if self._pushed:
             return "pushed"
-        away = self.away(q)
+        away = float(np.abs(self._goal - q).max())
         if away <= ARRIVED_RAD:
             return "arrived"
         if away < self._closest - _CLOSER_RAD:

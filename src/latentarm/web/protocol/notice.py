@@ -19,6 +19,7 @@ NoticeCode = Literal[
     "arm_stopped",
     "asking",
     "asking_already",
+    "at_pose",
     "at_start",
     "checking_run",
     "copilot_began",
@@ -60,6 +61,10 @@ NoticeCode = Literal[
     "pin_needed",
     "pin_wait",
     "pin_wrong",
+    "pose_name_invalid",
+    "pose_pushed",
+    "pose_stuck",
+    "pose_unreachable",
     "profile_exists",
     "question_began",
     "record_unknown",
@@ -81,6 +86,7 @@ NoticeCode = Literal[
     "too_few_episodes",
     "too_many_axes",
     "too_many_people",
+    "too_many_poses",
     "work_broke_off",
 ]
 """Texts have the key ``notice.<code>``."""

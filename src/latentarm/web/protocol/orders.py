@@ -119,11 +119,30 @@ class ChooseRun(Message):
 
 
 @final
+class PoseToGoTo(Message):
+    """A saved pose.
+
+    Attributes:
+        name: what it is called.
+        q: (n,), joint positions, rad.
+    """
+
+    name: str
+    q: tuple[float, ...]
+
+
+@final
 class Return(Message):
-    """Move the arm back to its start, while it is enabled and the stick is let go; or end that."""
+    """Move the arm slowly, while it is enabled and the stick is let go; or end that.
+
+    Attributes:
+        on: whether to begin.
+        pose: where to; None for its start.
+    """
 
     order: Literal["return"] = "return"
     on: bool
+    pose: PoseToGoTo | None = None
 
 
 @final

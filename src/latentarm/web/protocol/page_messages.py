@@ -21,6 +21,7 @@ FRAME_LIMIT: Final = 4096
 Name = Annotated[str, Field(max_length=40)]
 Id = Annotated[str, Field(max_length=32)]
 Deflection = Annotated[float, Field(ge=-1.0, le=1.0)]
+PoseName = Annotated[str, Field(max_length=80)]
 
 
 @final
@@ -156,6 +157,30 @@ class ReturnArm(Message):
 
 
 @final
+class GoToPose(Message):
+    """Move the arm slowly to a saved pose, as `ReturnArm` does to its start."""
+
+    type: Literal["to_pose"]
+    name: PoseName
+
+
+@final
+class SavePose(Message):
+    """Save where the arm is, while it stands still; in place of a pose of the same name."""
+
+    type: Literal["save_pose"]
+    name: PoseName
+
+
+@final
+class DeletePose(Message):
+    """Forget a saved pose."""
+
+    type: Literal["delete_pose"]
+    name: PoseName
+
+
+@final
 class ResetArm(Message):
     """Put the simulated arm back to its start; while it is not enabled."""
 
@@ -190,6 +215,9 @@ ClientMessage = (
     | TrailClear
     | RecordEpisode
     | ReturnArm
+    | GoToPose
+    | SavePose
+    | DeletePose
     | ResetArm
     | BeginRun
     | Train

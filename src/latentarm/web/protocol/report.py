@@ -166,7 +166,8 @@ class ArmState(Message):
         note: shown for a while instead of what the arm does; None for nothing.
         reason: why the arm may not move; None if it may.
         held_back: why it moves slower than asked; None if it does not.
-        returning: whether it is on its way back to its start.
+        returning: whether it is on its way back to its start, or to a saved pose.
+        bound_for: what that pose is called; None on the way to the start, and on no way.
         at_start: whether it is there.
         let_go_first: whether the stick does something else by now: it must be let go before it moves the arm.
         late_stops: how often the arm has stopped because no input came in time, since this driver began to
@@ -191,6 +192,7 @@ class ArmState(Message):
     reason: Notice | None
     held_back: HeldBack | None
     returning: bool
+    bound_for: str | None
     at_start: bool
     let_go_first: bool
     late_stops: int

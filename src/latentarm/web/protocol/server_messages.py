@@ -37,6 +37,25 @@ class Limits(Message):
 
 
 @final
+class FoundFact(Message):
+    """Something that was found out about a real arm before it was driven, in English."""
+
+    name: str
+    value: str
+
+
+@final
+class RealArm(Message):
+    """A real arm.
+
+    Attributes:
+        facts: what was found out about it.
+    """
+
+    facts: tuple[FoundFact, ...]
+
+
+@final
 class StepToDo(Message):
     """A step of the task.
 
@@ -86,6 +105,7 @@ class Welcome(Message):
         limits: see `Limits`.
         gripper_width_m: how wide its gripper opens, m, or null where it has none that can be driven.
         task: see `TaskToDo`.
+        real: what is known of the arm where it is a real one; null where it is simulated.
     """
 
     type: Literal["welcome"] = "welcome"
@@ -103,6 +123,7 @@ class Welcome(Message):
     limits: Limits
     gripper_width_m: float | None
     task: TaskToDo
+    real: RealArm | None
 
 
 @final
@@ -149,6 +170,20 @@ class State(ArmState):
     recording: RecordingState | None
     trail: int
     you: bool
+
+
+@final
+class Poses(Message):
+    """The saved poses of a page's person for the robot that is driven.
+
+    Attributes:
+        names: in the order in which they were saved.
+        problem: why the last one could not be kept, or null.
+    """
+
+    type: Literal["poses"] = "poses"
+    names: tuple[str, ...]
+    problem: Notice | None
 
 
 @final

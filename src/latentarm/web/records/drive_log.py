@@ -47,6 +47,7 @@ class About:
         run: the run's name, or None.
         scene: what stands about the arm.
         chain: the arm.
+        real: whether the arm exists.
     """
 
     person: str | None
@@ -55,6 +56,7 @@ class About:
     run: str | None
     scene: Drawable
     chain: Chain
+    real: bool = False
 
 
 @final
@@ -227,6 +229,7 @@ class DriveLog:
                 "time_s": round(max(drive.enabled_s, 0.0), 2),
                 "moving_s": round(min(drive.moving_s, drive.enabled_s), 2),
                 "robot": about.robot[:200],
+                "real": about.real,
                 "task": about.todo.task[:200],
                 "choice": about.todo.choices[drive.last.task.choice][:200] if about.todo.choices else None,
                 "run": None if about.run is None else about.run[:200],

@@ -41,6 +41,7 @@ class DriveRecord(Message):
         time_s: from then until the task ended, or else until the arm was last enabled.
         moving_s: for how long of that the arm moved.
         robot: its name.
+        real: whether a real arm was driven, rather than a simulated one.
         task: its name.
         choice: which of the task's foods or cups was asked for; None where nobody chose.
         run: name of the run; None without one.
@@ -70,6 +71,7 @@ class DriveRecord(Message):
     time_s: Seconds
     moving_s: Seconds
     robot: Text
+    real: bool = False
     task: Text
     choice: Text | None = None
     run: Text | None

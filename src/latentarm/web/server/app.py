@@ -5,6 +5,7 @@ import shlex
 import socket
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from typing import Any, Final
 
 import uvicorn
@@ -14,9 +15,13 @@ from starlette.responses import JSONResponse, Response
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
+from latentarm.arms.checking import look_at
+from latentarm.arms.real_catalogue import make_real_arm
+from latentarm.control.clock import MonotonicClock
 from latentarm.control.recordings import JOURNAL_SUFFIX
+from latentarm.errors import UserError
 from latentarm.robots.notices import notices
-from latentarm.web.arm_process.drive_setup import DriveSetup, load_setup
+from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, load_setup
 from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.training import model_names
 from latentarm.web.protocol.notice import Notice
@@ -25,7 +30,7 @@ from latentarm.web.protocol.page_messages import FRAME_LIMIT
 from latentarm.web.records.calendar import SYSTEM_CALENDAR, Calendar
 from latentarm.web.records.exchange import IMPORT_LIMIT
 from latentarm.web.records.people import PersonRecord
-from latentarm.web.records.records import Records
+from latentarm.web.records.records import FOLDER, Records
 from latentarm.web.server.addresses import TeleopConfig, check_certificate, listen, origin
 from latentarm.web.server.assets import Assets
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
@@ -39,6 +44,7 @@ from latentarm.web.server.logs import LOGGING
 from latentarm.web.server.pages import PAGES, Pages
 from latentarm.web.server.people_routes import IMPORT, PeopleRoutes
 from latentarm.web.server.pins import Pins
+from latentarm.web.server.pose_book import PoseBook
 from latentarm.web.server.record_routes import RecordRoutes
 from latentarm.web.server.security import DRIVE, Gate, Keys
 from latentarm.web.server.sessions import Sessions
@@ -70,6 +76,8 @@ def serve(
     """
     check_certificate(config)
     setup = load_setup(config.spec)
+    if setup.real:
+        config, setup = _looked_at(config, setup, say)
     listening = listen(config)
     port = int(listening.getsockname()[1])
     base = origin(config.scheme, config.host, port)
@@ -111,6 +119,23 @@ def serve(
         say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
 
 
+def _looked_at(
+    config: TeleopConfig, setup: DriveSetup, say: Callable[[str], None]
+) -> tuple[TeleopConfig, DriveSetup]:
+    """What is known of a real arm from now on; the control process connects to it afterwards.
+
+    Raises:
+        UserError: it cannot be driven.
+    """
+    robot = setup.task.robot
+    found = look_at(make_real_arm(setup.arm, robot, MonotonicClock().now_s), robot, PERIOD_S)
+    for refusal in found.refusals:
+        raise UserError(refusal)
+    say(f"A real arm is at {setup.arm}: {'; '.join(f'{fact.name}: {fact.value}' for fact in found.facts)}.")
+    spec = replace(setup.spec, found=tuple((fact.name, fact.value) for fact in found.facts))
+    return replace(config, spec=spec), replace(setup, spec=spec)
+
+
 def build_app(
     setup: DriveSetup, control: ControlProcess, config: TeleopConfig, calendar: Calendar
 ) -> FastAPI:
@@ -130,7 +155,8 @@ def build_app(
     learning = Learning(control, states, run_list, spec.out)
     history = History(states, sessions, records, calendar)
     pins = Pins(records.people, wanted=config.pins)
-    drive = DriveSocket(control, states, sessions, learning, records.people, pins, history)
+    poses = PoseBook(records.people, spec.out / FOLDER)
+    drive = DriveSocket(control, states, sessions, learning, records.people, pins, history, poses)
 
     def driven_with(person: PersonRecord) -> bool:
         report = states.report
@@ -156,6 +182,7 @@ def build_app(
         finally:
             for task in following:
                 task.cancel()
+            await poses.settled()
             await history.close()
             await learning.close()
 

@@ -27,7 +27,9 @@ from latentarm.web.protocol.page_messages import (
     AskToDrive,
     BeginRun,
     ClientMessage,
+    DeletePose,
     DriverInput,
+    GoToPose,
     HandOver,
     Hello,
     HelpFromRobot,
@@ -39,6 +41,7 @@ from latentarm.web.protocol.page_messages import (
     Release,
     ResetArm,
     ReturnArm,
+    SavePose,
     TrailClear,
     parse_message,
 )
@@ -50,6 +53,7 @@ from latentarm.web.server.frames import TOO_MANY
 from latentarm.web.server.history import History
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.pins import Pins
+from latentarm.web.server.pose_book import PoseBook
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
 from latentarm.web.server.sessions import MOST, Page, Sessions
 from latentarm.web.server.states import PageMemory, States
@@ -100,6 +104,7 @@ class DriveSocket:
         people: whose records there are.
         pins: says whose records a visitor may open.
         history: logs what is driven.
+        poses: that people have saved.
     """
 
     def __init__(
@@ -111,6 +116,7 @@ class DriveSocket:
         people: People,
         pins: Pins,
         history: History,
+        poses: PoseBook,
     ) -> None:
         self._control = control
         self._states = states
@@ -119,6 +125,7 @@ class DriveSocket:
         self._people = people
         self._pins = pins
         self._history = history
+        self._poses = poses
         self._open = 0
         self._asked: AskedGripper | None = None
 
@@ -192,16 +199,21 @@ class DriveSocket:
         """
         shown = PageMemory()
         loaded = None
-        tick = learning = -1
+        tick = learning = poses = -1
         with suppress(RuntimeError, WebSocketDisconnect):
             while True:
                 if loaded is not self._states.loaded:
                     loaded = self._states.loaded
                     shown = PageMemory()
+                    poses = -1
                     await socket.send_text(loaded.welcome(page.id).model_dump_json())
                 if learning != self._learning.number:
                     learning = self._learning.number
                     await socket.send_text(self._learning.text)
+                if poses != self._poses.number:
+                    poses = self._poses.number
+                    told = self._poses.told(page.person, loaded.robot_name)
+                    await socket.send_text(told.model_dump_json())
                 tick = await self._states.after(tick)
                 if loaded is not self._states.loaded:
                     continue
@@ -269,6 +281,14 @@ class DriveSocket:
                 self._control.order(Record(on=on, task=task, person=_recorded_as(page)))
             case ReturnArm(on=on):
                 self._control.order(Return(on=on))
+            case GoToPose(name=name):
+                pose = self._poses.find(page.person, self._states.loaded.robot_name, name)
+                if pose is not None:
+                    self._control.order(Return(on=True, pose=pose))
+            case SavePose(name=name):
+                self._save_pose(page, name)
+            case DeletePose(name=name):
+                self._poses.delete(page.person, self._states.loaded.robot_name, name)
             case ResetArm():
                 self._control.order(Reset())
                 self._end_drive("reset")
@@ -294,6 +314,11 @@ class DriveSocket:
                     self._note_profile(page)
             case _:
                 pass
+
+    def _save_pose(self, page: Page, name: str) -> None:
+        report = self._states.report
+        if report is not None and report.phase not in ("moving", "stopping"):
+            self._poses.save(page.person, self._states.loaded.robot_name, name, report.q)
 
     def _end_drive(self, ending: Ending) -> None:
         """A drive ends where the arm is put elsewhere, which it is only at rest."""

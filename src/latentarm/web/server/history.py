@@ -99,6 +99,7 @@ class History:
                 run=loaded.name,
                 scene=loaded.scene,
                 chain=loaded.chain,
+                real=loaded.real,
             ),
         )
 

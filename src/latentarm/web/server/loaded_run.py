@@ -11,7 +11,16 @@ from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.protocol.report import Report
 from latentarm.web.protocol.scene import drawable
-from latentarm.web.protocol.server_messages import Limits, NamedGoal, NamedThing, StepToDo, TaskToDo, Welcome
+from latentarm.web.protocol.server_messages import (
+    FoundFact,
+    Limits,
+    NamedGoal,
+    NamedThing,
+    RealArm,
+    StepToDo,
+    TaskToDo,
+    Welcome,
+)
 
 Beginning = tuple[str | None, int, int]
 """The run that is driven, its seed, and what is to be done: they decide how everything stands at first."""
@@ -37,6 +46,7 @@ class LoadedRun:
         self.scene = drawable(setup.task, setup.shown)
         self.chain = setup.task.robot.chain
         self.robot_name = setup.task.robot.name
+        self.real = setup.real
         self.todo = setup.todo
         self.input_dim = setup.controller.input_dim
         self.latent_dim = setup.latent_dim
@@ -82,6 +92,7 @@ class LoadedRun:
             ),
             end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),
+            real=_found(setup) if self.real else None,
             gripper_width_m=None if gripper is None else gripper.width_m,
             task=TaskToDo(
                 name=setup.todo.task,
@@ -91,6 +102,10 @@ class LoadedRun:
                 steps=tuple(StepToDo(kind=step.kind, thing=step.thing) for step in setup.todo.steps),
             ),
         )
+
+
+def _found(setup: DriveSetup) -> RealArm:
+    return RealArm(facts=tuple(FoundFact(name=name, value=value) for name, value in setup.spec.found))
 
 
 def load_reported_run(spec: Spec, report: Report, name: str | None) -> LoadedRun:

@@ -241,6 +241,7 @@ class States:
             reason=None if away else report.reason,
             held_back=None if away else report.held_back,
             returning=report.returning and not away,
+            bound_for=None if away else report.bound_for,
             at_start=report.at_start,
             let_go_first=report.let_go_first,
             late_stops=report.late_stops,

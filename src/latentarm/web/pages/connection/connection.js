@@ -1,13 +1,13 @@
 /**
  * The page's connection to the server: one WebSocket, JSON both ways, opened again when it breaks.
  *
- * Events: "open" when it has opened or closed; "welcome", "state", "learning" and "refused" when such a message has
+ * Events: "open" when it has opened or closed; "welcome", "state", "learning", "poses" and "refused" when such a message has
  * come; "run_changed" when another run is driven from now on. What they carry is in `detail`.
  */
 
 import { OwnPages } from "./own_pages.js";
 
-/** @import {ClientMessage, Refused, ServerMessage, State, Welcome, LearningState} from "./messages.js" */
+/** @import {ClientMessage, Poses, Refused, ServerMessage, State, Welcome, LearningState} from "./messages.js" */
 
 /** How old the newest state may be before inputs are held back, ms: the server would not take them anyway. */
 const STALE_MS = 200;
@@ -25,6 +25,8 @@ export class Connection extends EventTarget {
     this.state = null;
     /** @type {LearningState | null} What is learned, tried and kept. */
     this.learning = null;
+    /** @type {Poses | null} The saved poses of who sits here. */
+    this.poses = null;
     this.open = false;
     /** @type {boolean | null} Whether this page drove when it last heard of the arm; null before. */
     this.drove = null;
@@ -111,6 +113,9 @@ export class Connection extends EventTarget {
         if (before !== null && before.run !== message.run) this._tell("run_changed", message.run);
         break;
       }
+      case "poses":
+        this.poses = message;
+        break;
       case "learning":
         this.learning = message;
         break;

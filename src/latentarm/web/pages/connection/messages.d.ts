@@ -51,6 +51,11 @@ export interface CopilotState {
   pace: number;
 }
 
+export interface DeletePose {
+  type: "delete_pose";
+  name: string;
+}
+
 export interface DiscardAlignment {
   type: "discard_alignment";
 }
@@ -75,11 +80,21 @@ export interface Fill {
   enough: number | null;
 }
 
+export interface FoundFact {
+  name: string;
+  value: string;
+}
+
 export interface Ghosts {
   up: [number, number, number][];
   down: [number, number, number][];
   left: [number, number, number][];
   right: [number, number, number][];
+}
+
+export interface GoToPose {
+  type: "to_pose";
+  name: string;
 }
 
 export interface GripperState {
@@ -151,7 +166,7 @@ export interface NamedThing {
 }
 
 export interface Notice {
-  code: "arm_emergency_stop" | "arm_fault" | "arm_off" | "clock_jumped" | "clock_stood_still" | "controller_failed" | "controller_invalid" | "gripper_invalid" | "input_invalid" | "input_late" | "joint_astray" | "joint_frozen" | "joint_jumped" | "joints_invalid" | "let_go_first" | "loop_late" | "no_smooth_path" | "not_enabled" | "reading_invalid" | "reading_old" | "readings_unsteady" | "slide_astray" | "slide_jumped" | "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "at_start" | "checking_run" | "copilot_began" | "copilot_changed" | "copilot_ended" | "copilot_gone" | "copilot_late" | "disk_full" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "import_invalid" | "journal_full" | "journal_lost" | "journal_unwritable" | "joints_unreadable" | "latch_ended" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_loaded" | "nothing_recorded" | "page_refused" | "page_stopped" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "pin_needed" | "pin_wait" | "pin_wrong" | "profile_exists" | "question_began" | "record_unknown" | "record_unreadable" | "recording_cut" | "recording_ended" | "recording_in_use" | "recording_left_out" | "recording_unreadable" | "request_invalid" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "work_broke_off";
+  code: "arm_emergency_stop" | "arm_fault" | "arm_off" | "clock_jumped" | "clock_stood_still" | "controller_failed" | "controller_invalid" | "gripper_invalid" | "input_invalid" | "input_late" | "joint_astray" | "joint_frozen" | "joint_jumped" | "joints_invalid" | "let_go_first" | "loop_late" | "no_smooth_path" | "not_enabled" | "reading_invalid" | "reading_old" | "readings_unsteady" | "slide_astray" | "slide_jumped" | "arm_process_ended" | "arm_process_silent" | "arm_stopped" | "asking" | "asking_already" | "at_pose" | "at_start" | "checking_run" | "copilot_began" | "copilot_changed" | "copilot_ended" | "copilot_gone" | "copilot_late" | "disk_full" | "disk_too_slow" | "driver_changed" | "driver_expired" | "driver_gone" | "driver_released" | "episodes_too_short" | "error" | "expired" | "full" | "handed_over" | "import_invalid" | "journal_full" | "journal_lost" | "journal_unwritable" | "joints_unreadable" | "latch_ended" | "loading_run" | "message_invalid" | "model_unknown" | "name_invalid" | "no_hello" | "no_run" | "not_loaded" | "nothing_recorded" | "page_refused" | "page_stopped" | "person_driving" | "person_name_invalid" | "person_name_taken" | "person_unknown" | "pin_needed" | "pin_wait" | "pin_wrong" | "pose_name_invalid" | "pose_pushed" | "pose_stuck" | "pose_unreachable" | "profile_exists" | "question_began" | "record_unknown" | "record_unreadable" | "recording_cut" | "recording_ended" | "recording_in_use" | "recording_left_out" | "recording_unreadable" | "request_invalid" | "return_not_now" | "return_pushed" | "return_stuck" | "run_exists" | "run_too_slow" | "stop_first" | "stop_pressed" | "stop_pressed_by" | "too_few_episodes" | "too_many_axes" | "too_many_people" | "too_many_poses" | "work_broke_off";
   parameters: Record<string, string | number>;
 }
 
@@ -180,6 +195,12 @@ export interface PickRun {
   run: string;
 }
 
+export interface Poses {
+  type: "poses";
+  names: string[];
+  problem: Notice | null;
+}
+
 export interface PressEnable {
   type: "enable";
 }
@@ -197,6 +218,10 @@ export interface Profile {
 export interface QuestionBefore {
   type: "question_before";
   question: number;
+}
+
+export interface RealArm {
+  facts: FoundFact[];
 }
 
 export interface RecordEpisode {
@@ -236,6 +261,11 @@ export interface ReturnArm {
   on: boolean;
 }
 
+export interface SavePose {
+  type: "save_pose";
+  name: string;
+}
+
 export interface ShownMotion {
   duration_s: number;
   frames: number[][][];
@@ -255,6 +285,7 @@ export interface State {
   reason: Notice | null;
   held_back: "clearance" | "freshness" | "workspace" | "joint_position" | null;
   returning: boolean;
+  bound_for: string | null;
   at_start: boolean;
   let_go_first: boolean;
   late_stops: number;
@@ -364,6 +395,7 @@ export interface Welcome {
   limits: Limits;
   gripper_width_m: number | null;
   task: TaskToDo;
+  real: RealArm | null;
 }
 
 export interface Why {
@@ -371,6 +403,6 @@ export interface Why {
   thing: string;
 }
 
-export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | HelpFromRobot | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ReturnArm | ResetArm | BeginRun | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace;
+export type ClientMessage = Hello | DriverInput | PressEnable | PressStop | Mode | HelpFromRobot | Profile | AskToDrive | HandOver | Release | TrailClear | RecordEpisode | ReturnArm | GoToPose | SavePose | DeletePose | ResetArm | BeginRun | Train | CancelTraining | PickRun | BeginPersonalise | AnswerQuestion | SkipQuestion | QuestionBefore | CancelPersonalise | TryAlignment | KeepAlignment | DiscardAlignment | AskToCopilot | AcceptCopilot | EndCopilot | CopilotPace;
 
-export type ServerMessage = Welcome | State | LearningState | Refused;
+export type ServerMessage = Welcome | State | LearningState | Poses | Refused;

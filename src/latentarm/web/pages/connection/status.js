@@ -56,10 +56,13 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
  * @param {boolean} canEnable
  * @param {Reader} reader
  */
-function driverWords({ phase, note, reason, held_back, returning, let_go_first, copilot }, canEnable, reader) {
+function driverWords({ phase, note, reason, held_back, returning, bound_for, let_go_first, copilot }, canEnable, reader) {
   if (concerns(note, true)) return sayTo(note, reader);
   const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
   const cause = held_back && say(`held_back.${held_back}`);
+  if (returning && bound_for !== null) {
+    return cause === null ? say("status.to_pose", { pose: bound_for }) : say("status.to_pose_held_back", { pose: bound_for, cause });
+  }
   if (returning) return cause === null ? say("status.returning") : say("status.returning_held_back", { cause });
   switch (phase) {
     case "ready":
@@ -79,11 +82,11 @@ function driverWords({ phase, note, reason, held_back, returning, let_go_first, 
  * @param {boolean} asked whether this page has asked to drive
  * @param {Reader} reader
  */
-function watcherWords({ phase, note, reason, held_back, returning, driver, driver_name }, canEnable, asked, reader) {
+function watcherWords({ phase, note, reason, held_back, returning, bound_for, driver, driver_name }, canEnable, asked, reader) {
   if (concerns(note, false)) return sayTo(note, reader);
   const name = driver_name === null ? say("driver.somebody_else") : sayName(driver_name);
   const parameters = { name, reason: reason === null ? "" : sayTo(reason, reader) };
-  if (returning) return say("status.returning_watching");
+  if (returning) return bound_for === null ? say("status.returning_watching") : say("status.to_pose_watching", { pose: bound_for });
   switch (phase) {
     case "ready": return say("status.ready_watching", parameters);
     case "moving": return held_back === null

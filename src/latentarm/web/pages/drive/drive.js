@@ -28,9 +28,11 @@ import { attachViews } from "../views/attach_views.js";
 import { motionWords } from "../views/directions.js";
 import { attachPredictions, personalPaths } from "../views/predictions.js";
 import { attachBelief } from "./belief.js";
+import { attachChecklist } from "./checklist.js";
 import { attachLateStops } from "./late_stops.js";
 import { attachHelp } from "./help.js";
 import { attachModes } from "./modes.js";
+import { attachPoses } from "./poses.js";
 import { attachProfileChoice } from "./profile_choice.js";
 import { attachRecording } from "./recording.js";
 import { attachTask } from "./task_panel.js";
@@ -69,16 +71,26 @@ attachNeutralFirst(connection, input);
 const practice = attachPractice(connection, input, settings);
 attachCard(connection, settings);
 
+const checklist = attachChecklist({
+  panel: byId("checklist"), facts: byId("checklist-facts"), why: byId("checklist-why"),
+  boxes: ["stop", "area", "payload"].map((id) => byId(`checklist-${id}`, HTMLInputElement)),
+}, connection);
+
 /** This page drives first, if nobody else does, and then enables the arm: one press for both. */
 const enable = () => {
   // Behind a dialog nothing moves. A press that enables asks nobody for anything.
   if (dialogIsOpen()) return;
-  if (!connection.driving && connection.state?.driver) status.refused();
+  if (!checklist.done()) checklist.refuse();
+  else if (!connection.driving && connection.state?.driver) status.refused();
   else if (!connection.engaged) lease.ask(() => input.enable());
 };
 attachEnableButton(byId("enable"), connection, enable);
 attachLateStops(byId("late-stops"), connection);
 const wayBack = attachWayBack({ button: byId("way-back"), why: byId("way-back-why") }, connection);
+
+const poses = attachPoses({
+  list: byId("poses"), why: byId("poses-why"), name: byId("pose-name", HTMLInputElement), save: byId("pose-save"),
+}, connection);
 
 const modes = attachModes({ mode: byId("mode"), axes: byId("axes") }, connection, settings);
 const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {number} */ y) =>
@@ -122,7 +134,9 @@ const scanner = attachScanning({
   if (does === "ask") return [{ id: "ask", label: say(label), act: () => connection.send({ type: "ask_to_drive" }) }, stopIt];
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
-  const more = moreChoices(help.choices(), [...wayBack.choices(), ...practice.choices()], stopIt);
+  const more = moreChoices(help.choices(), [...wayBack.choices(), ...poses.choices(), ...practice.choices()], stopIt);
+  const unconfirmed = checklist.choices();
+  if (unconfirmed.length) return [...unconfirmed, stopIt, more];
   return input.live ? [...directionChoices(), ...gripper.choices(), mode, stopIt, more]
     : [{ id: "enable", label: say("layout.enable"), act: enable }, mode, ...task.choices(), more];
 });

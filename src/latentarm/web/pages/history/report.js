@@ -24,8 +24,9 @@ export function report(drives, name) {
   const period = drives.length
     ? say("report.period", { since: date(drives[drives.length - 1].started), until: date(drives[0].started) })
     : say("report.nothing");
+  const honest = say(drives.some(({ real }) => real) ? "report.real" : "report.simulated");
   /** @type {HTMLElement[]} */
-  const parts = [head, create("p", { textContent: period }), create("p", { className: "honest", textContent: say("report.simulated") })];
+  const parts = [head, create("p", { textContent: period }), create("p", { className: "honest", textContent: honest })];
   if (!drives.length) return parts;
   const weekly = create("div", { className: "charts" });
   weekly.append(...charts(drives));

@@ -8,6 +8,7 @@
  * @property {string} started
  * @property {number} time_s
  * @property {number} moving_s
+ * @property {boolean} real whether a real arm was driven
  * @property {string} task
  * @property {string | null} choice
  * @property {string | null} run

@@ -1,4 +1,4 @@
-"""The way back to the start as a controller: it passes the same safety filters as a person's motion."""
+"""A slow motion to a pose as a controller: it passes the same safety filters as a person's motion."""
 
 from typing import Final, final
 
@@ -16,32 +16,44 @@ TOOL_SPEED: Final = 0.15
 """Of the tool, m/s: as fast as a full push of the stick along a straight line."""
 
 _SLOWING: Final = 3.0
-"""Near the start, the speed of the farthest joint for each rad that it has still to go, 1/s."""
+"""Near the pose, the speed of the farthest joint for each rad that it has still to go, 1/s."""
 
 
 @final
-class BackToStart(Controller):
-    """One axis: a full input moves all joints straight towards the start, so that they arrive together.
+class ToPose(Controller):
+    """One axis: a full input moves all joints straight towards a pose, so that they arrive together.
 
     Args:
         robot: the arm; its first tool is kept slow.
-        start: (n,), where the arm started, rad.
+        pose: (n,), where it leads at first, rad.
 
     Raises:
-        UserError: the start is not n finite numbers.
+        UserError: the pose is not n finite numbers.
     """
 
-    def __init__(self, robot: Robot, start: FloatArray) -> None:
-        goal = np.asarray(start, dtype=np.float64)
-        if goal.shape != (robot.dof,) or not np.isfinite(goal).all():
-            raise UserError(f"The start of this arm is {robot.dof} finite joint positions.")
+    def __init__(self, robot: Robot, pose: FloatArray) -> None:
         self._chain = robot.chain
-        self._start = goal
+        self._dof = robot.dof
+        self.lead_to(pose)
+
+    def lead_to(self, pose: FloatArray) -> None:
+        """Lead somewhere else from now on.
+
+        Args:
+            pose: (n,), rad.
+
+        Raises:
+            UserError: it is not n finite numbers.
+        """
+        goal = np.array(pose, dtype=np.float64)
+        if goal.shape != (self._dof,) or not np.isfinite(goal).all():
+            raise UserError(f"A pose of this arm is {self._dof} finite joint positions.")
+        self._pose = goal
 
     @property
     def modes(self) -> tuple[str, ...]:
         """One."""
-        return ("back to start",)
+        return ("to a pose",)
 
     @property
     def input_dim(self) -> int:
@@ -53,8 +65,8 @@ class BackToStart(Controller):
         return u
 
     def action(self, z: FloatArray, context: Context, mode: int) -> FloatArray:
-        """Joint velocities (..., n) towards the start, rad/s; zero at the start."""
-        away = self._start - context.state
+        """Joint velocities (..., n) towards the pose, rad/s; zero there."""
+        away = self._pose - context.state
         farthest = np.abs(away).max(axis=-1, keepdims=True)
         speed = np.minimum(JOINT_SPEED, _SLOWING * farthest)
         velocity = away * (speed / np.maximum(farthest, np.finfo(np.float64).tiny))

@@ -1,0 +1,73 @@
+"""Looking at a real arm before it is driven: what its driver finds out, and what all arms must be."""
+
+from typing import Final
+
+import numpy as np
+
+from latentarm.arms.contract import arm_refusals, check_rate
+from latentarm.arms.real import Fact, Findings, FoundLimits, RealArm
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
+
+_BEYOND: Final = 1e-3
+"""A limit of the robot may lie this far beyond the arm's own, rad or rad/s: such figures are rounded."""
+
+
+def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
+    """What there is to know of an arm before it is driven; nothing moves.
+
+    Args:
+        arm: its driver, not connected.
+        robot: what it is to be driven as.
+        dt_s: period of the loop that is to drive it, s.
+
+    Returns:
+        What the driver found, with what holds for all arms; refusals without repetition.
+
+    Raises:
+        UserError: there is no arm, or what is there does not answer as one.
+    """
+    spec, found = arm.spec, arm.look()
+    refusals = [*arm_refusals(spec, robot), *found.refusals]
+    try:
+        check_rate(spec, dt_s)
+    except UserError as error:
+        refusals.append(str(error))
+    if found.limits is not None:
+        refusals += _beyond(found.limits, robot)
+    stops = "not known" if spec.stops_after_s is None else f"after {1000 * spec.stops_after_s:.0f} ms"
+    common = (
+        Fact("robot", robot.name),
+        Fact("joints", ", ".join(spec.joint_names)),
+        Fact("gripper", "none" if spec.gripper is None else f"opens {1000 * spec.gripper.width_m:.0f} mm"),
+        Fact("commands", f"up to {spec.rate_hz:g} per second"),
+        Fact("stops by itself", stops),
+    )
+    told = {fact.name for fact in found.facts}
+    facts = (*(fact for fact in common if fact.name not in told), *found.facts)
+    return Findings(facts, tuple(dict.fromkeys(refusals)), found.limits)
+
+
+def _beyond(own: FoundLimits, robot: Robot) -> list[str]:
+    """Limits of the robot that the arm would not let it use: it would stop there with a fault."""
+    shape = (robot.dof,)
+    if not own.lower.shape == own.upper.shape == own.velocity.shape == shape:
+        return [
+            f"The arm tells limits of {len(own.lower)} joints, and {robot.name} has {robot.dof}: choose the"
+            " robot that the arm is."
+        ]
+    limits = robot.limits
+    beyond = {
+        "lower": limits.lower < own.lower - _BEYOND,
+        "upper": limits.upper > own.upper + _BEYOND,
+        "velocity": limits.velocity > own.velocity + _BEYOND,
+    }
+    said: list[str] = []
+    for name, joints in beyond.items():
+        for joint in np.flatnonzero(joints):
+            mine, arms = getattr(limits, name)[joint], getattr(own, name)[joint]
+            said.append(
+                f"The {name} limit of {robot.joint_names[joint]} is {mine:.4g} for {robot.name} and"
+                f" {arms:.4g} for the arm: state the arm's own with --limits FILE."
+            )
+    return said

@@ -1,0 +1,97 @@
+"""`latentarm arms`: what arms there are, and what is known of a real one before it moves."""
+
+import json as json_format
+from pathlib import Path
+from typing import Annotated
+
+from rich.table import Table
+from tyro.conf import Positional, arg
+
+from latentarm.arms.address import is_address
+from latentarm.arms.catalogue import ARMS
+from latentarm.arms.checking import look_at
+from latentarm.arms.real import Findings
+from latentarm.arms.real_catalogue import REAL_ARMS, make_real_arm
+from latentarm.commands.options import EndEffector, Json, LimitsFile
+from latentarm.commands.output import note, print_renderables, say
+from latentarm.control.clock import MonotonicClock
+from latentarm.errors import UserError
+from latentarm.web.arm_process.beginning import RobotOptions
+from latentarm.web.arm_process.drive_setup import PERIOD_S, Spec, load_setup
+
+
+def check_arm_at(address: str, run: Path | None, robot: RobotOptions) -> Findings:
+    """What there is to know of a real arm before it is driven from the page; nothing moves.
+
+    Args:
+        address: of the arm, such as ``franka://172.16.0.2``.
+        run: what it is to be driven with, or None.
+        robot: what the arm is, where the run is not to say.
+
+    Raises:
+        UserError: the address, the run or the robot cannot be used. What the arm itself is refused for is
+            among the findings, and so is that there is none.
+    """
+    if not is_address(address):
+        raise UserError(f"{address} is not the address of a real arm: write SCHEME://HOST.")
+    driven = load_setup(Spec(run, arm=address, robot=robot)).task.robot
+    arm = make_real_arm(address, driven, MonotonicClock().now_s)
+    try:
+        return look_at(arm, driven, PERIOD_S)
+    except UserError as error:
+        return Findings((), (str(error),))
+    finally:
+        arm.close()
+
+
+def check(
+    address: Annotated[Positional[str], arg(metavar="URL", help="Where the arm is: SCHEME://HOST[:PORT].")],
+    run: Annotated[
+        Positional[Path | None], arg(metavar="RUN", help="A trained run that the arm is to be driven with.")
+    ] = None,
+    robot: Annotated[
+        str | None,
+        arg(
+            help="A robot's name or the path of an MJCF or URDF file; by default that of the run, or a Panda."
+        ),
+    ] = None,
+    end_effector: EndEffector = None,
+    limits: LimitsFile = None,
+    json: Json = False,
+) -> int:
+    """Look at a real arm without moving it: what it is, whether it can be driven, and if not, why.
+
+    Exits with 2 where it is refused. For example: latentarm arms check franka://172.16.0.2
+    """
+    found = check_arm_at(address, run, RobotOptions(robot, end_effector, limits))
+    if json:
+        facts = [{"name": fact.name, "value": fact.value} for fact in found.facts]
+        print(json_format.dumps({"address": address, "facts": facts, "refusals": found.refusals}, indent=2))
+    elif found.facts:
+        table = Table("what", "found", title=address)
+        for fact in found.facts:
+            table.add_row(fact.name, fact.value)
+        print_renderables(table)
+    if found.refusals:
+        note([f"Refused: {sentence}" for sentence in found.refusals])
+        return 2
+    words = f"latentarm teleop {'' if run is None else f'{run} '}--arm {address}"
+    say(f"It can be driven. Nothing was moved. To drive it: {words}", json)
+    return 0
+
+
+def list_arms(json: Json = False) -> int:
+    """List what `--arm` takes: simulated arms by name, real ones by the scheme of their address.
+
+    For example: latentarm arms list
+    """
+    if json:
+        print(json_format.dumps({"simulated": list(ARMS), "real": list(REAL_ARMS)}, indent=2))
+        return 0
+    table = Table("--arm", "what it is")
+    for name in ARMS:
+        table.add_row(name, "simulated")
+    for name in REAL_ARMS:
+        table.add_row(f"{name}://HOST", "real")
+    print_renderables(table)
+    return 0

@@ -1,0 +1,159 @@
+"""How a run of a task begins: with things in physics, without any, or about a real arm."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.arms.catalogue import make_scene_arm
+from latentarm.errors import UserError
+from latentarm.robots.assemble import restate
+from latentarm.robots.catalogue import load_robot
+from latentarm.robots.limits_file import read_limits
+from latentarm.robots.robot import Robot
+from latentarm.runs.folder import Run
+from latentarm.runs.tasks import task_of_run, task_without_run
+from latentarm.scene.scene import Scene
+from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
+from latentarm.tasks.place import Place, ScenePlace
+from latentarm.types import FloatArray, StatedLimits
+from latentarm.web.arm_process.task_run import Todo, goal_to_reach, things_to_do
+
+FREE: Final = "free"
+"""What is done where no task is named: nothing in particular."""
+
+MOST_THINGS: Final = 200
+MOST_GRAINS: Final = 2000
+"""Largest sizes that fit into the report of a tick."""
+
+
+@final
+@dataclass(frozen=True)
+class RobotOptions:
+    """Which robot is driven, where the run or the task is not to say.
+
+    Attributes:
+        robot: its name or model file.
+        end_effector: site, body or link of a model file.
+        limits: a limits file.
+    """
+
+    robot: str | None = None
+    end_effector: str | None = None
+    limits: Path | None = None
+
+    @property
+    def stated(self) -> StatedLimits | None:
+        """What the limits file says.
+
+        Raises:
+            UserError: it cannot be read.
+        """
+        return None if self.limits is None else read_limits(self.limits)
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Begun:
+    """How a run of a task begins.
+
+    Attributes:
+        place: where the arm is driven.
+        start: (n,), where a simulated arm starts, and where the way back leads, rad.
+        todo: what is to be done.
+        scene: what stands about a simulated arm, or None where things are of no account.
+    """
+
+    place: Place
+    start: FloatArray
+    todo: Todo
+    scene: Scene | None = None
+
+
+def begin(
+    run: Run | None, task: str | None, arm: str, choice: int, robot: RobotOptions, rng: np.random.Generator
+) -> Begun:
+    """Begin with a simulated arm; the same for equal arguments.
+
+    Args:
+        run: what is driven, or None.
+        task: a name of the catalogue; None for the run's own, or a table.
+        arm: a name of `latentarm.arms.catalogue`.
+        choice: index of what is done.
+        robot: where it is not that of the run or the task.
+        rng: of where the arm starts and where things stand.
+
+    Raises:
+        UserError: any of these does not exist, or they do not fit each other.
+    """
+    if task is not None and task in SCENE_TASKS:
+        with_things = make_scene_task(task)
+        _check_own_robot(task, with_things.robot, robot)
+        _check_choice(choice, with_things.choices)
+        begun = with_things.begin(choice, rng)
+        _check_things(task, begun.scene)
+        # Made here too, so that an arm that can touch nothing is refused where the command was typed.
+        make_scene_arm(arm, with_things.robot, begun.state, lambda: 0.0, begun.scene)
+        place = ScenePlace(with_things.robot, begun.goals, with_things.obstacles, begun.objects)
+        return Begun(place, begun.state, things_to_do(with_things, choice, begun), begun.scene)
+    named = (robot.robot, robot.end_effector, robot.stated)
+    made = task_without_run(task, *named) if run is None else task_of_run(run, task, *named, option=False)
+    _check_choice(choice, made.goals)
+    return Begun(made, made.sample_start(choice, rng), goal_to_reach(made, choice))
+
+
+def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptions) -> Begun:
+    """Begin with a real arm, wherever it is; the way back leads to the home of its robot.
+
+    Nobody sees what stands about a real arm. Of a task with things only the robot and what it must keep clear
+    of count; goals are those of a run's demonstrations, or of a task that was named.
+
+    Args:
+        run: what is driven, or None.
+        task: a name of the catalogue; None for the run's own, or for nothing in particular.
+        choice: index of what is done.
+        robot: where it is not that of the run or the task.
+
+    Raises:
+        UserError: any of these does not exist, or they do not fit each other.
+    """
+    if task is not None and task in SCENE_TASKS:
+        with_things = make_scene_task(task)
+        _check_own_robot(task, with_things.robot, robot)
+        arm = with_things.robot if robot.stated is None else restate(with_things.robot, robot.stated)
+        return _free(arm, ScenePlace(arm, (), tuple(with_things.obstacles)))
+    if run is None and task is None:
+        arm = load_robot(robot.robot or "panda", robot.end_effector, robot.stated)
+        return _free(arm, ScenePlace(arm, (), ()))
+    named = (robot.robot, robot.end_effector, robot.stated)
+    made = task_without_run(task, *named) if run is None else task_of_run(run, task, *named, option=False)
+    _check_choice(choice, made.goals)
+    place = ScenePlace(made.robot, made.goals, tuple(made.obstacles))
+    return Begun(place, made.robot.home, goal_to_reach(made, choice))
+
+
+def _free(robot: Robot, place: Place) -> Begun:
+    return Begun(place, robot.home, Todo(FREE, (), 0, ()))
+
+
+def _check_own_robot(task: str, own: Robot, options: RobotOptions) -> None:
+    if options.robot not in (None, own.name) or options.end_effector is not None:
+        raise UserError(
+            f"The task {task} has a robot of its own, {own.name}: leave --robot and --end-effector out."
+        )
+
+
+def _check_choice(choice: int, choices: Sequence[object]) -> None:
+    if not 0 <= choice < max(len(choices), 1):
+        raise UserError(f"There are {len(choices)} things to choose from, from 0 on, and no choice {choice}.")
+
+
+def _check_things(task: str, scene: Scene) -> None:
+    grains = sum(len(one.positions) for one in scene.grains)
+    if len(scene.things) > MOST_THINGS or grains > MOST_GRAINS:
+        raise UserError(
+            f"The task {task} has {len(scene.things)} things and {grains} grains: the page shows"
+            f" {MOST_THINGS} and {MOST_GRAINS} at most."
+        )

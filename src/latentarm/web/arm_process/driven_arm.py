@@ -1,0 +1,67 @@
+"""The arm that a control process drives: a simulated one is made anew for each start, a real one never."""
+
+import numpy as np
+
+from latentarm.arms.catalogue import make_arm, make_scene_arm
+from latentarm.arms.contract import Arm
+from latentarm.control.clock import Clock
+from latentarm.errors import UserError
+from latentarm.robots.robot import Robot
+from latentarm.web.arm_process.drive_setup import DriveSetup
+
+
+def first_arm(setup: DriveSetup, clock: Clock) -> Arm:
+    """The arm of a setup, connected.
+
+    Raises:
+        UserError: it cannot be made or connected.
+    """
+    name, robot = setup.arm, setup.task.robot
+    if setup.scene is None:
+        arm = make_arm(name, robot, setup.start, clock.now_s)
+    else:
+        arm = make_scene_arm(name, robot, setup.start, clock.now_s, setup.scene)
+    arm.connect()
+    return arm
+
+
+def next_arm(setup: DriveSetup, before: DriveSetup, arm: Arm, clock: Clock) -> Arm:
+    """The arm for what is driven next: a real one stays as it is, and where it is.
+
+    Args:
+        setup: what is driven next.
+        before: what was driven.
+        arm: what moved then.
+        clock: the loop's.
+
+    Raises:
+        UserError: the arm is real and connected as another robot, or a simulated one cannot be made.
+    """
+    if not setup.real:
+        return first_arm(setup, clock)
+    if not _alike(setup.task.robot, before.task.robot):
+        raise UserError(
+            f"{setup.spec.run or 'This'} is for the robot {setup.task.robot.name} with its limits and tool,"
+            f" and the arm is connected as {before.task.robot.name} with others: end teleop and start it with"
+            " that run."
+        )
+    return arm
+
+
+def _alike(one: Robot, other: Robot) -> bool:
+    """Whether a driver that was made for one robot is right for the other, whatever they are called."""
+    here, there = one.limits, other.limits
+    return (
+        one.joint_names == other.joint_names
+        and one.gripper == other.gripper
+        and _carried(one) == _carried(other)
+        and all(
+            np.array_equal(getattr(here, figure), getattr(there, figure))
+            for figure in ("lower", "upper", "velocity", "acceleration", "jerk")
+        )
+        and np.allclose(one.chain.forward(one.home).position, other.chain.forward(one.home).position)
+    )
+
+
+def _carried(robot: Robot) -> str | None:
+    return None if robot.attachment is None else robot.attachment.name

@@ -1,0 +1,38 @@
+/** What a person confirms before a real arm is enabled for the first time. */
+
+import { create } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {Choice} from "../inputs/scanner.js" */
+
+/**
+ * @param {{panel: HTMLElement, facts: HTMLElement, boxes: HTMLInputElement[], why: HTMLElement}} parts
+ * @param {Connection} connection
+ */
+export function attachChecklist(parts, connection) {
+  const done = () => !connection.welcome?.real || parts.boxes.every((box) => box.checked);
+  const show = () => {
+    const real = connection.welcome?.real ?? null;
+    parts.panel.hidden = done();
+    parts.facts.replaceChildren(...(real?.facts ?? []).flatMap(({ name, value }) => [create("dt", { textContent: name }), create("dd", { textContent: value })]));
+    if (done()) parts.why.hidden = true;
+  };
+  for (const box of parts.boxes) box.addEventListener("change", show);
+  connection.addEventListener("welcome", show);
+  show();
+
+  return {
+    done,
+    /** Says what is missing, and leads there. */
+    refuse() {
+      parts.why.hidden = false;
+      parts.boxes.find((box) => !box.checked)?.focus();
+    },
+    /** What is still to be confirmed, for a switch. @returns {Choice[]} */
+    choices() {
+      if (done()) return [];
+      return parts.boxes.filter((box) => !box.checked).map((box) => ({ id: box.id, label: box.labels?.[0]?.textContent?.trim() ?? box.id, act: () => box.click() }));
+    },
+  };
+}

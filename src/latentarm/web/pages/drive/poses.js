@@ -1,0 +1,87 @@
+/** Saved poses: a button for each drives the arm there; where the arm stands can be saved as another one. */
+
+import { create, setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+import { sayTo } from "../connection/notices.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {Choice} from "../inputs/scanner.js" */
+/** @import {WordKey} from "../layout/words.js" */
+
+/**
+ * Whether the arm can go to a pose now, and what is said about it.
+ *
+ * @param {Pick<Connection, "driving" | "engaged" | "state">} connection
+ * @returns {{goes: boolean, why: WordKey}}
+ */
+export function goingOf({ driving, engaged, state }) {
+  if (!driving || state === null) return { goes: false, why: "poses.driver_only" };
+  if (state.returning) return { goes: false, why: "poses.on" };
+  if (!engaged) return { goes: false, why: "poses.enable_first" };
+  if (state.phase === "moving" || state.let_go_first) return { goes: false, why: "poses.let_go" };
+  return { goes: true, why: "poses.help" };
+}
+
+/** @param {Pick<Connection, "driving" | "state">} connection whether where the arm stands can be saved now */
+export function savesOf({ driving, state }) {
+  return driving && state !== null && state.phase !== "moving" && state.phase !== "stopping";
+}
+
+/**
+ * @param {{list: HTMLElement, why: HTMLElement, name: HTMLInputElement, save: HTMLElement}} parts
+ * @param {Connection} connection
+ */
+export function attachPoses(parts, connection) {
+  const go = (/** @type {string} */ name) => {
+    if (goingOf(connection).goes) connection.send({ type: "to_pose", name });
+  };
+  const save = () => {
+    const name = parts.name.value.trim();
+    if (name === "") parts.name.focus();
+    else if (savesOf(connection)) {
+      connection.send({ type: "save_pose", name });
+      parts.name.value = "";
+    }
+  };
+  const disable = (/** @type {Element} */ button, /** @type {boolean} */ off) => {
+    if (button.getAttribute("aria-disabled") !== String(off)) button.setAttribute("aria-disabled", String(off));
+  };
+  const show = () => {
+    const { goes, why } = goingOf(connection);
+    const problem = connection.poses?.problem ?? null;
+    setText(parts.why, problem === null ? say(why) : sayTo(problem, { you: true, own: connection.own, late: null }));
+    for (const button of parts.list.querySelectorAll("[data-go]")) disable(button, !goes);
+    for (const button of parts.list.querySelectorAll("[data-delete]")) disable(button, !connection.driving);
+    disable(parts.save, !savesOf(connection));
+  };
+  const list = () => {
+    const rows = (connection.poses?.names ?? []).map((name) => {
+      const there = create("button", { type: "button", textContent: say("poses.go", { pose: name }) });
+      there.dataset.go = name;
+      there.addEventListener("click", () => go(name));
+      const forget = create("button", { type: "button", className: "quiet", textContent: "×", ariaLabel: say("poses.delete", { pose: name }) });
+      forget.dataset.delete = name;
+      forget.addEventListener("click", () => {
+        if (connection.driving) connection.send({ type: "delete_pose", name });
+      });
+      const row = create("li", { className: "row" });
+      row.append(there, forget);
+      return row;
+    });
+    parts.list.replaceChildren(...rows);
+    show();
+  };
+  parts.save.addEventListener("click", save);
+  connection.addEventListener("poses", list);
+  connection.addEventListener("state", show);
+  connection.addEventListener("open", show);
+  list();
+
+  return {
+    /** The poses among the choices of a switch, where the arm can go to them. @returns {Choice[]} */
+    choices() {
+      if (!goingOf(connection).goes) return [];
+      return (connection.poses?.names ?? []).map((name) => ({ id: `pose-${name}`, label: say("poses.go", { pose: name }), act: () => go(name) }));
+    },
+  };
+}

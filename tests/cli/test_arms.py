@@ -1,0 +1,80 @@
+"""`latentarm arms`: what there is is listed, and a real arm is looked at without being moved."""
+
+import json
+import os
+
+import numpy as np
+import pytest
+from wooden_server import wooden_server
+
+from documentation import ROOT, blocks, lines_of, serve
+from latentarm.cli import main
+from latentarm.robots.panda import panda
+
+
+@pytest.fixture(scope="module")
+def server():
+    with wooden_server(panda()) as server:
+        yield server
+
+
+def test_simulated_arms_and_schemes_of_real_ones_are_listed(capsys):
+    assert main(["arms", "list", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert {"kinematic", "mujoco"} <= set(listed["simulated"])
+    assert "wooden" in listed["real"]
+
+
+def test_an_arm_that_can_be_driven_is_described_and_does_not_move(server, capsys):
+    before = server.positions()
+    assert main(["arms", "check", server.address]) == 0
+    told = capsys.readouterr().out
+    assert "firmware" in told
+    assert f"latentarm teleop --arm {server.address}" in told
+    np.testing.assert_array_equal(server.positions(), before)
+    assert set(server.requests) == {"hello"}
+
+
+def test_everything_that_an_arm_is_refused_for_is_said_at_once(capsys):
+    with wooden_server(panda(), firmware="1.9") as old:
+        assert main(["arms", "check", f"{old.address}?rate=30&stops_after=0.3", "--json"]) == 2
+    told = capsys.readouterr()
+    refusals = json.loads(told.out)["refusals"]
+    assert len(refusals) == 3
+    assert all(sentence.endswith(".") and sentence in told.err for sentence in refusals)
+
+
+def test_limits_beyond_those_of_the_arm_are_refused(server, capsys, tmp_path):
+    limits = tmp_path / "limits.toml"
+    limits.write_text("[joints.joint1]\nvelocity_rad_per_s = 9.0\n")
+    assert main(["arms", "check", server.address, "--robot", "panda", "--limits", str(limits)]) == 2
+    assert "The velocity limit of joint1 is 9 for panda" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [("arms", "check", "mujoco"), ("drive", "--arm", "wooden://127.0.0.1:1")])
+def test_real_and_simulated_arms_are_told_apart(words, capsys):
+    assert main(list(words)) == 2
+    assert "real arm" in capsys.readouterr().err
+
+
+def test_where_there_is_no_arm_it_says_so(capsys):
+    assert main(["arms", "check", "wooden://127.0.0.1:1"]) == 2
+    assert "There is no wooden arm at 127.0.0.1:1." in capsys.readouterr().err
+
+
+PAGE = ROOT / "docs" / "your-arm.md"
+LINES = [line for block in blocks(PAGE) if block.language == "bash" for line in lines_of(block)]
+
+
+@pytest.mark.parametrize("line", [line for line in LINES if line.startswith("latentarm arms check")])
+def test_the_commands_of_the_page_about_your_arm_run(line, server, trained, workplace):
+    (workplace / "limits.toml").write_text("[joints.joint1]\nvelocity_rad_per_s = 0.7\n")
+    said = line.replace("franka://172.16.0.2", server.address).replace("runs/mine", str(trained))
+    assert main(said.split()[1:]) == 0
+
+
+@pytest.mark.parametrize("line", [line for line in LINES if line.startswith("latentarm teleop")])
+def test_the_page_is_served_as_the_page_about_your_arm_says(line, server, trained, monkeypatch):
+    stand_ins = ROOT / "tests" / "stand_ins"
+    monkeypatch.setenv("PYTHONPATH", f"{stand_ins}:{os.environ.get('PYTHONPATH', '')}")
+    serve(line.replace("franka://172.16.0.2", server.address).replace("runs/mine", str(trained)))

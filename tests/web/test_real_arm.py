@@ -1,0 +1,125 @@
+"""A real arm behind the page: made and connected once, kept, never moved by anything but driving."""
+
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from wooden_server import wooden_server
+
+from latentarm.control.clock import MonotonicClock
+from latentarm.errors import UserError
+from latentarm.robots.panda import panda
+from latentarm.web.arm_process.beginning import RobotOptions
+from latentarm.web.arm_process.drive_setup import Spec, load_setup
+from latentarm.web.arm_process.driven_arm import first_arm, next_arm
+from latentarm.web.server.addresses import TeleopConfig
+from latentarm.web.server.app import serve
+from latentarm.web.server.loaded_run import LoadedRun
+
+NOWHERE = "wooden://127.0.0.1:1"
+
+
+@pytest.fixture(scope="module")
+def server():
+    with wooden_server(panda()) as server:
+        yield server
+
+
+def test_without_a_run_a_real_arm_has_nothing_about_it_and_its_way_back_leads_home():
+    setup = load_setup(Spec(arm=NOWHERE))
+    assert setup.real
+    assert (setup.task.goals, tuple(setup.task.obstacles), setup.scene) == ((), (), None)
+    np.testing.assert_array_equal(setup.start, setup.task.robot.home)
+    assert LoadedRun(setup, None).welcome("me").real is not None
+
+
+def test_the_robot_of_a_real_arm_can_be_named_with_its_limits(tmp_path):
+    limits = tmp_path / "limits.toml"
+    limits.write_text("[joints.joint1]\nvelocity_rad_per_s = 0.7\n")
+    setup = load_setup(Spec(arm=NOWHERE, robot=RobotOptions("panda", limits=limits)))
+    assert setup.task.robot.limits.velocity[0] == 0.7
+
+
+def test_a_task_with_things_drives_a_real_arm_without_physics():
+    setup = load_setup(Spec(arm=NOWHERE, task="marshmallows"))
+    assert setup.scene is None
+    assert setup.shown is None
+    assert setup.task.goals == ()
+    assert len(setup.task.obstacles) > 0
+    assert setup.task.robot.attachment is not None
+
+
+def test_a_run_goes_with_a_real_arm_and_its_goals_are_those_of_its_demonstrations(trained):
+    setup = load_setup(Spec(trained, arm=NOWHERE))
+    assert len(setup.task.goals) == 3
+    assert setup.modes[0] == "latent"
+
+
+@pytest.mark.parametrize("arm", ["brass://127.0.0.1", "wooden://", "brass"])
+def test_an_address_without_a_driver_is_refused_where_it_was_typed(arm):
+    with pytest.raises(UserError, match=r"^--arm.*\.$"):
+        load_setup(Spec(arm=arm))
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ("?rate=30", "loop runs at 100 Hz, but the arm takes 30"),
+        ("?stops_after=0.3", "takes 300 ms until it stops by itself"),
+        ("?colour=red", "option colour"),
+    ],
+)
+def test_an_arm_that_cannot_be_driven_is_refused_before_anything_is_served(server, options, said):
+    config = TeleopConfig(Spec(arm=server.address + options), port=0)
+    with pytest.raises(UserError, match=said):
+        serve(config, lambda sentence: None, pytest.fail)
+
+
+def test_no_arm_at_all_is_one_sentence():
+    with pytest.raises(UserError, match=r"^There is no wooden arm at 127.0.0.1:1\.$"):
+        serve(TeleopConfig(Spec(arm=NOWHERE), port=0), lambda sentence: None, pytest.fail)
+
+
+def test_a_real_arm_is_connected_once_and_kept_for_the_same_robot(server, trained):
+    clock = MonotonicClock()
+    before = load_setup(Spec(arm=server.address))
+    arm = first_arm(before, clock)
+    try:
+        hellos = server.requests.count("hello")
+        again = load_setup(replace(before.spec, seed=1))
+        assert next_arm(again, before, arm, clock) is arm
+        with_run = load_setup(replace(before.spec, run=trained))
+        assert next_arm(with_run, before, arm, clock) is arm
+        assert server.requests.count("hello") == hellos
+        other = load_setup(Spec(arm=server.address, task="marshmallows"))
+        with pytest.raises(UserError, match="connected as panda"):
+            next_arm(other, before, arm, clock)
+    finally:
+        arm.close()
+
+
+@pytest.mark.clock
+def test_a_page_drives_it_and_what_ends_the_page_stops_it(serve_arm, server):
+    with serve_arm(server) as site, site.page() as page:
+        assert page.welcome["real"]["facts"]
+        begun = server.positions()
+        time.sleep(0.3)
+        np.testing.assert_array_equal(server.positions(), begun)
+        page.send(type="mode", mode="end_effector", axes=0)
+        page.enable()
+        page.u = [1.0, 0.0]
+        page.wait(lambda state: state["phase"] == "moving")
+        time.sleep(0.5)
+        assert np.abs(server.positions() - begun).max() > 0.01
+        site.control.end()
+        rested = server.positions()
+        time.sleep(0.2)
+        np.testing.assert_allclose(server.positions(), rested, atol=1e-3)
+
+
+@pytest.fixture
+def serve_arm(serve, tmp_path):
+    return lambda server: serve(
+        Spec(arm=server.address, out=tmp_path / "teleop", found=(("firmware", "2.1"),))
+    )
