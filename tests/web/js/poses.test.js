@@ -1,0 +1,43 @@
+/** Saved poses, and what is confirmed before a real arm is enabled. */
+
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+
+import { attachChecklist } from "#pages/drive/checklist.js";
+import { goingOf, savesOf } from "#pages/drive/poses.js";
+import { FakeElement, newBrowser, stateOf, welcomeOf } from "./browser.js";
+
+beforeEach(newBrowser);
+
+const DRIVING = { driving: true, engaged: true };
+
+test("the arm goes to a pose only while it is enabled, at rest and let go, and says why not", () => {
+  const why = (fields, connection = DRIVING) => goingOf({ ...connection, state: stateOf({ phase: "ready", ...fields }) }).why;
+  assert.equal(why({}), "poses.help");
+  assert.equal(why({ phase: "moving" }), "poses.let_go");
+  assert.equal(why({ let_go_first: true }), "poses.let_go");
+  assert.equal(why({ returning: true }), "poses.on");
+  assert.equal(why({}, { driving: true, engaged: false }), "poses.enable_first");
+  assert.equal(why({}, { driving: false, engaged: false }), "poses.driver_only");
+  assert.ok(goingOf({ ...DRIVING, state: stateOf({ phase: "ready" }) }).goes);
+});
+
+test("a pose is saved while the arm stands still, enabled or not, by the person who drives", () => {
+  assert.ok(savesOf({ driving: true, state: stateOf({ phase: "disengaged" }) }));
+  assert.ok(!savesOf({ driving: true, state: stateOf({ phase: "moving" }) }));
+  assert.ok(!savesOf({ driving: false, state: stateOf({ phase: "ready" }) }));
+});
+
+test("a real arm is enabled once everything was confirmed, a simulated one at once", () => {
+  const boxes = Array.from({ length: 3 }, () => Object.assign(new FakeElement(), { checked: false }));
+  const parts = { panel: new FakeElement(), facts: new FakeElement(), why: new FakeElement(), boxes };
+  const connection = Object.assign(new EventTarget(), { welcome: welcomeOf({ real: null }) });
+  const checklist = attachChecklist(parts, connection);
+  assert.ok(checklist.done());
+  connection.welcome = welcomeOf({ real: { facts: [{ name: "firmware", value: "2.1" }] } });
+  assert.ok(!checklist.done());
+  assert.equal(checklist.choices().length, 3);
+  for (const box of boxes) box.checked = true;
+  assert.ok(checklist.done());
+  assert.deepEqual(checklist.choices(), []);
+});
