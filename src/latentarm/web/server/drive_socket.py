@@ -212,7 +212,7 @@ class DriveSocket:
                     await socket.send_text(self._learning.text)
                 if poses != self._poses.number:
                     poses = self._poses.number
-                    told = self._poses.told(page.person, loaded.robot_name)
+                    told = self._poses.told(page.person, self._states.loaded.robot_name)
                     await socket.send_text(told.model_dump_json())
                 tick = await self._states.after(tick)
                 if loaded is not self._states.loaded:
