@@ -35,6 +35,7 @@ COMMANDS = [
     "reproduce",
     "study",
     "bench",
+    "arms",
     "robots",
 ]
 STUDIES = ["properties", "shared-autonomy", "alignment", "tasks"]
@@ -45,9 +46,10 @@ Run = Callable[..., tuple[int, str, str]]
 
 @pytest.mark.parametrize(
     "command",
-    [name for name in COMMANDS if name not in ("reproduce", "study")]
+    [name for name in COMMANDS if name not in ("reproduce", "study", "arms")]
     + [f"reproduce {study}" for study in STUDIES]
-    + [f"study {verb}" for verb in VERBS],
+    + [f"study {verb}" for verb in VERBS]
+    + ["arms list", "arms check"],
 )
 def test_every_command_shows_an_example_and_json(run: Run, command: str) -> None:
     code, out, _ = run(*command.split(), "--help")
