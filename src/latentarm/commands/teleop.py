@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-from tyro.conf import Positional, arg
+from tyro.conf import Positional, UseAppendAction, arg
 
 from latentarm.commands.choices import TaskName
 from latentarm.commands.configuration import write_options
@@ -46,6 +46,14 @@ def teleop(
     keep_free_gb: Annotated[
         float, arg(metavar="GB", help="End the recording when less than this is free on the disk.")
     ] = 0.5,
+    camera: Annotated[
+        UseAppendAction[tuple[str, ...]],
+        arg(
+            metavar="NAME=ADDRESS",
+            help="A camera for the page, up to 4: front=/dev/video0, side=rtsp://HOST/PATH, a video file, or"
+            " testsrc, a test pattern.",
+        ),
+    ] = (),
     pin: Annotated[bool, arg(help="People may protect their records by a PIN.")] = False,
     json: Json = False,
 ) -> int:
@@ -56,17 +64,20 @@ def teleop(
     from latentarm.control.journal_limits import JournalLimits
     from latentarm.web.arm_process.beginning import RobotOptions
     from latentarm.web.arm_process.drive_setup import Spec
+    from latentarm.web.cameras.sources import kept, parse_cameras
     from latentarm.web.server.addresses import TeleopConfig
     from latentarm.web.server.app import serve
 
+    cameras = parse_cameras(camera)
+
     def ready(address: str) -> None:
-        write_options(out, "teleop")
+        write_options(out, "teleop", camera=kept(camera))
         if json:
             print(json_format.dumps({"address": address}), flush=True)
 
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
     named = RobotOptions(robot, end_effector, limits)
     spec = Spec(run, profile, seed, out, room, arm, task, robot=named)
-    config = TeleopConfig(spec, host, port, certfile, keyfile, pin)
+    config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

@@ -21,6 +21,8 @@ NoticeCode = Literal[
     "asking_already",
     "at_pose",
     "at_start",
+    "cameras_full",
+    "cameras_gone",
     "checking_run",
     "copilot_began",
     "copilot_changed",

@@ -9,6 +9,7 @@ from typing import Final, final
 
 from latentarm.errors import UserError
 from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.cameras.sources import CameraSource
 
 _BACKLOG: Final = 2048
 """Backlog of connections that are not accepted yet; large, so that bursts are not refused."""
@@ -28,6 +29,7 @@ class TeleopConfig:
         certfile: for TLS, PEM.
         keyfile: its private key, PEM.
         pins: whether people may protect their records by a PIN.
+        cameras: what is seen of the arm, besides the drawing.
 
     Raises:
         UserError: the address cannot be one that people open, or only one file for TLS is named.
@@ -39,6 +41,7 @@ class TeleopConfig:
     certfile: Path | None = None
     keyfile: Path | None = None
     pins: bool = False
+    cameras: tuple[CameraSource, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0 <= self.port <= 65535:

@@ -23,6 +23,7 @@ from latentarm.errors import UserError
 from latentarm.robots.notices import notices
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, load_setup
 from latentarm.web.arm_process.process import ControlProcess
+from latentarm.web.cameras.process import CameraProcess
 from latentarm.web.jobs.training import model_names
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import ChooseProfile
@@ -33,6 +34,7 @@ from latentarm.web.records.people import PersonRecord
 from latentarm.web.records.records import FOLDER, Records
 from latentarm.web.server.addresses import TeleopConfig, check_certificate, listen, origin
 from latentarm.web.server.assets import Assets
+from latentarm.web.server.camera_routes import CameraRoutes
 from latentarm.web.server.connections import HEAD_LIMIT, ConnectionLimits, Connections, limits_here
 from latentarm.web.server.drive_socket import DriveSocket
 from latentarm.web.server.frames import MeteredSocket
@@ -72,13 +74,15 @@ def serve(
         calendar: dates what is kept of people and drives.
 
     Raises:
-        UserError: the run or profile cannot be loaded, the address is taken, or a file for TLS is broken.
+        UserError: the run or profile cannot be loaded, the address is taken, a file for TLS is broken, or a
+            camera gives no picture.
     """
     check_certificate(config)
     setup = load_setup(config.spec)
     if setup.real:
         config, setup = _looked_at(config, setup, say)
     listening = listen(config)
+    cameras = _cameras(config, listening)
     port = int(listening.getsockname()[1])
     base = origin(config.scheme, config.host, port)
     keys = None if config.loopback else Keys()
@@ -90,7 +94,7 @@ def serve(
     before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     control = ControlProcess(config.spec)
     try:
-        app = build_app(setup, control, config, calendar)
+        app = build_app(setup, control, config, calendar, cameras)
         gate = gated(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
         )
@@ -114,6 +118,8 @@ def serve(
         say("The page is closed.")
     finally:
         control.end()
+        if cameras is not None:
+            cameras.end()
         listening.close()
     for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):
         say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
@@ -136,8 +142,27 @@ def _looked_at(
     return replace(config, spec=spec), replace(setup, spec=spec)
 
 
+def _cameras(config: TeleopConfig, listening: socket.socket) -> CameraProcess | None:
+    """The cameras, each of which has given a picture; None where none were asked for.
+
+    Raises:
+        UserError: one gives none; nothing listens then.
+    """
+    if not config.cameras:
+        return None
+    try:
+        return CameraProcess(config.cameras, listening.getsockname()[0])
+    except UserError:
+        listening.close()
+        raise
+
+
 def build_app(
-    setup: DriveSetup, control: ControlProcess, config: TeleopConfig, calendar: Calendar
+    setup: DriveSetup,
+    control: ControlProcess,
+    config: TeleopConfig,
+    calendar: Calendar,
+    cameras: CameraProcess | None = None,
 ) -> FastAPI:
     """The application: the pages and what they load, the scene, and the socket that drives.
 
@@ -146,6 +171,7 @@ def build_app(
         control: drives it.
         config: says whether people may have PINs.
         calendar: dates what is kept of people and drives.
+        cameras: sends pictures to pages; None without cameras.
     """
     sessions = Sessions()
     spec = setup.spec
@@ -172,11 +198,16 @@ def build_app(
             control.order(ChooseProfile(name=None))
 
     assets = Assets()
-    pages = Pages(assets, model_names())
+    camera_names = [] if cameras is None else [source.name for source in cameras.sources]
+    pages = Pages(assets, model_names(), camera_names)
+    camera_routes = None if cameras is None else CameraRoutes(cameras, sessions)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
-        following = [asyncio.create_task(one.follow()) for one in (states, learning, history)]
+        follow = [states.follow, learning.follow, history.follow]
+        if camera_routes is not None:
+            follow.append(camera_routes.follow)
+        following = [asyncio.create_task(one()) for one in follow]
         try:
             yield
         finally:
@@ -204,6 +235,8 @@ def build_app(
     app.add_route("/mesh/{number}", mesh)
     PeopleRoutes(records, history, busy, let_go, pins).add_to(app)
     RecordRoutes(records, history, pins).add_to(app)
+    if camera_routes is not None:
+        camera_routes.add_to(app)
     for page in PAGES:
         app.add_route(page.path, pages.answer)
     app.add_route("/static/{version}/{name:path}", assets.answer)

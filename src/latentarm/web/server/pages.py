@@ -77,9 +77,10 @@ class Pages:
     Args:
         assets: what pages load.
         models: names in the catalogue of models, in the order of the Teach page.
+        cameras: names of the cameras, shown as text.
     """
 
-    def __init__(self, assets: Assets, models: Sequence[str]) -> None:
+    def __init__(self, assets: Assets, models: Sequence[str], cameras: Sequence[str] = ()) -> None:
         templates = Environment(
             loader=FileSystemLoader(FOLDER), autoescape=True, undefined=StrictUndefined, trim_blocks=True
         )
@@ -89,6 +90,7 @@ class Pages:
                 page=page,
                 pages=PAGES,
                 asset=assets.path,
+                cameras=cameras,
                 modules=assets.modules(page.script),
                 language=words.language,
                 languages=list(languages().values()),

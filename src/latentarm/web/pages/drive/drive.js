@@ -213,3 +213,5 @@ attachViews(settings, say("drive.cannot_draw"), (loaded) => {
   drawing.pace(() => input.lateness.frameGapMs > 0, () => input.goFirst());
   show();
 });
+
+if (document.getElementById("cameras")) import("../cameras/cameras.js").then(({ attachCameras }) => attachCameras(settings, connection));

@@ -9,7 +9,7 @@ import { groupOf } from "./scanning.js";
 
 /** Buttons of the page, most wanted first. */
 const BUTTONS = [
-  "copilot-accept", "copilot-end", "trial-keep", "trial-discard", "record", "trail-clear", "hand-over", "ask", "release",
+  "copilot-accept", "copilot-end", "trial-keep", "trial-discard", "record", "picture", "trail-clear", "hand-over", "ask", "release",
 ];
 
 /**

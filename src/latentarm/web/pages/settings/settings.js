@@ -31,6 +31,7 @@ import * as storage from "./storage.js";
  * @property {"any" | "0" | "1" | "2" | "3"} gamepadStop button that stops
  * @property {boolean} shortcuts whether letters and digits drive
  * @property {"facing" | "behind"} seat where the person sits
+ * @property {"camera" | "drawn"} picture what is seen of the arm where there are cameras
  * @property {boolean} showGhosts
  * @property {boolean} showTrail
  * @property {boolean} showBound
@@ -69,6 +70,7 @@ export const DEFAULTS = Object.freeze({
   gamepadStop: "1",
   shortcuts: true,
   seat: "facing",
+  picture: "camera",
   showGhosts: true,
   showTrail: true,
   showBound: false,
@@ -97,6 +99,7 @@ const CHOICES = {
   help: ["off", "low", "medium", "high"],
   gamepadStop: ["any", "0", "1", "2", "3"],
   seat: ["facing", "behind"],
+  picture: ["camera", "drawn"],
   sounds: ["none", "success", "all"],
   theme: ["auto", "light", "dark"],
 };

@@ -62,6 +62,8 @@ export class Views {
     this._fence = null;
     this._heldMs = 0;
     this._pending = false;
+    /** Whether the page shows it. */
+    this._shown = true;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._soon = undefined;
     /** @type {"facing" | "behind"} */
@@ -98,7 +100,7 @@ export class Views {
 
   /** Something has changed: draw with the next frame; at once, as soon as all of it is known, where each frame takes long. */
   invalidate() {
-    if (this._pending || document.hidden) return;
+    if (this._pending || document.hidden || !this._shown) return;
     this._pending = true;
     if (this.smooth) requestAnimationFrame(() => this._frame());
     else queueMicrotask(() => this._frame());
@@ -130,7 +132,8 @@ export class Views {
   /** Fit the canvas and the cameras to the page. */
   layOut() {
     const box = this._canvas.getBoundingClientRect();
-    if (!box.width || !box.height) return;
+    this._shown = Boolean(box.width && box.height);
+    if (!this._shown) return;
     this._renderer.setPixelRatio(this._ratio);
     this._renderer.setSize(box.width, box.height, false);
     for (const view of this.views) {

@@ -1,0 +1,139 @@
+"""One camera at work: a thread that keeps its newest picture, and opens it again when it is lost."""
+
+import asyncio
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Final, Literal, final
+
+from latentarm.errors import UserError
+from latentarm.web.cameras.light import Light
+from latentarm.web.cameras.picture import Picture
+from latentarm.web.cameras.sources import CameraSource
+
+CameraState = Literal["opening", "live", "dark", "lost"]
+"""Being opened; seen; seen, but too dark; without a picture for `LOST_AFTER_S`."""
+
+LOST_AFTER_S: Final = 1.0
+
+_OPENING_S: Final = 8.0
+_RETRY_S: Final = 1.0
+_END_WITHIN_S: Final = 1.0
+
+OpenPictures = Callable[[CameraSource, threading.Event], Iterator[Picture]]
+
+
+@final
+class Camera:
+    """A camera that is open while somebody looks at it.
+
+    Args:
+        source: which one.
+        open_pictures: opens it.
+        loop: where its pictures are waited for.
+    """
+
+    def __init__(
+        self, source: CameraSource, open_pictures: OpenPictures, loop: asyncio.AbstractEventLoop
+    ) -> None:
+        self.source = source
+        self._open_pictures = open_pictures
+        self._loop = loop
+        self._lookers = 0
+        self._closing = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._light = Light()
+        self._newest: tuple[int, Picture] | None = None
+        self._shown_s = self._opened_s = -_OPENING_S
+        self._seen = False
+        self._come = asyncio.Event()
+
+    @property
+    def state(self) -> CameraState:
+        """How it is now."""
+        now_s = time.monotonic()
+        if now_s - self._shown_s <= LOST_AFTER_S:
+            return "dark" if self._light.dark else "live"
+        return "opening" if not self._seen and now_s - self._opened_s < _OPENING_S else "lost"
+
+    def look(self) -> None:
+        """Somebody begins to look: the first one opens it."""
+        self._lookers += 1
+        if self._lookers > 1:
+            return
+        self._closing = threading.Event()
+        self._newest, self._seen, self._opened_s = None, False, time.monotonic()
+        self._thread = threading.Thread(
+            target=self._work, args=[self._closing], name=f"camera {self.source.name}", daemon=True
+        )
+        self._thread.start()
+
+    def look_away(self) -> None:
+        """Somebody looks no longer: the last one closes it, soon."""
+        self._lookers -= 1
+        if self._lookers == 0:
+            self._closing.set()
+
+    def end(self) -> None:
+        """Close it and wait for that, shortly."""
+        self._closing.set()
+        if self._thread is not None:
+            self._thread.join(_END_WITHIN_S)
+
+    async def after(self, number: int) -> tuple[int, Picture]:
+        """The newest picture with its number, as soon as there is one with a higher number.
+
+        Args:
+            number: of the picture that was had before; -1 for none.
+        """
+        while self._newest is None or self._newest[0] <= number:
+            self._come.clear()
+            await self._come.wait()
+        return self._newest
+
+    def _work(self, closing: threading.Event) -> None:
+        number = 0
+        while not closing.is_set():
+            try:
+                for picture in self._open_pictures(self.source, closing):
+                    number += 1
+                    self._light.see(picture.planes)
+                    self._loop.call_soon_threadsafe(self._show, closing, number, picture)
+            except UserError:
+                pass  # the page says that there is no picture
+            except RuntimeError:
+                return  # the loop has ended, and with it this process
+            closing.wait(_RETRY_S)
+
+    def _show(self, closing: threading.Event, number: int, picture: Picture) -> None:
+        if closing.is_set():
+            return
+        self._newest, self._seen = (number, picture), True
+        self._shown_s = time.monotonic()
+        self._come.set()
+
+
+def check_camera(source: CameraSource, open_pictures: OpenPictures) -> str | None:
+    """Open a camera for one picture.
+
+    Args:
+        source: which one.
+        open_pictures: opens it.
+
+    Returns:
+        Why there is none, in a sentence; None if there is one.
+    """
+    closing = threading.Event()
+    pictures = open_pictures(source, closing)
+    try:
+        next(pictures)
+    except UserError as error:
+        return str(error)
+    except StopIteration:
+        return f"Camera {source.name} gives no picture."
+    finally:
+        closing.set()
+        close = getattr(pictures, "close", None)
+        if close is not None:
+            close()
+    return None

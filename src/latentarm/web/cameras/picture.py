@@ -1,0 +1,42 @@
+"""One picture of a camera, and when it was taken."""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+MOST_WIDE: Final = 640
+MOST_HIGH: Final = 480
+"""Larger pictures are made smaller, so that two cameras leave a small computer time for the arm."""
+
+MOST_PER_S: Final = 30
+"""Pictures per second that are sent at most."""
+
+
+@final
+@dataclass(frozen=True)
+class Picture:
+    """One picture.
+
+    Attributes:
+        planes: (3 H / 2, W) bytes, YUV 4:2:0 as one array: H rows of Y, then U and V. H and W are even.
+        captured_s: when it was taken, s; on the monotonic clock of this computer.
+    """
+
+    planes: NDArray[np.uint8]
+    captured_s: float
+
+
+def fitted(width: int, height: int) -> tuple[int, int]:
+    """The size of a picture that is sent: within the limits, of the same shape, with even sides.
+
+    Args:
+        width: as the camera has it, px.
+        height: px.
+
+    Returns:
+        Width and height, px; at least 2 each.
+    """
+    share = min(1.0, MOST_WIDE / width, MOST_HIGH / height)
+    return tuple(max(2, 2 * round(share * side / 2)) for side in (width, height))  # pyright: ignore[reportReturnType]

@@ -1,0 +1,49 @@
+/** The cameras instead of the drawn arm, as the person likes; loaded only where there are cameras. */
+
+import { byId, setHidden, setText } from "../layout/dom.js";
+import { say, sayNotice } from "../layout/words.js";
+import { CameraLink } from "./camera_link.js";
+import { CameraView } from "./camera_view.js";
+import { ServerClock } from "./picture_age.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {Settings} from "../settings/settings.js" */
+
+/** How often is looked how old the pictures are, ms. */
+const LOOK_MS = 50;
+
+/** @param {Settings} settings @param {Connection} connection */
+export function attachCameras(settings, connection) {
+  const [cameras, drawn, choice, why] = ["cameras", "views", "picture", "cameras-why"].map((id) => byId(id));
+  const clock = new ServerClock();
+  const views = [.../** @type {NodeListOf<HTMLElement>} */ (cameras.querySelectorAll(".camera"))].map((figure) => new CameraView(figure, clock));
+  const link = new CameraLink(views.length, clock, {
+    track: (number, track) => views[number]?.show(track),
+    told: (told) => told.forEach(({ state, rtp, at }, number) => {
+      const view = views[number];
+      view.state = state;
+      if (rtp !== null && at !== null) view.dated = { rtp, at };
+    }),
+    refused: (notice) => {
+      setHidden(why, notice === null);
+      if (notice) setText(why, sayNotice(notice));
+    },
+  });
+
+  const chosen = () => settings.values.picture === "camera";
+  const choose = () => {
+    setHidden(cameras, !chosen());
+    setHidden(drawn, chosen());
+    setText(choice, say(chosen() ? "cameras.drawn" : "cameras.show"));
+    // What nobody sees is not sent.
+    link.want(chosen() && !document.hidden && connection.open ? connection.welcome?.id ?? null : null);
+  };
+  choice.addEventListener("click", () => settings.change({ picture: chosen() ? "drawn" : "camera" }));
+  settings.addEventListener("change", choose);
+  for (const event of ["welcome", "open"]) connection.addEventListener(event, choose);
+  document.addEventListener("visibilitychange", choose);
+  setInterval(() => {
+    if (chosen()) for (const view of views) view.look(performance.now(), link.connected);
+  }, LOOK_MS);
+  choose();
+}

@@ -1,0 +1,59 @@
+"""The address under which a page asks to see the cameras."""
+
+import asyncio
+from typing import Annotated, Final, final
+
+from fastapi import FastAPI
+from pydantic import Field
+from starlette.requests import Request
+from starlette.responses import Response
+
+from latentarm.web.cameras.process import CameraProcess
+from latentarm.web.protocol.notice import Message, NoticeError
+from latentarm.web.server.answers import body_of, guarded, json_answer
+from latentarm.web.server.security import BODY_LIMIT
+from latentarm.web.server.sessions import Sessions
+
+CAMERAS: Final = "/cameras"
+
+_LOOK_S: Final = 0.25
+
+
+@final
+class _Offer(Message):
+    page: Annotated[str, Field(max_length=40)]
+    sdp: Annotated[str, Field(max_length=BODY_LIMIT)]
+
+
+@final
+class CameraRoutes:
+    """Lets pages see the cameras while they are connected to `/drive`, and no longer.
+
+    Args:
+        cameras: sends the pictures.
+        sessions: who is there.
+    """
+
+    def __init__(self, cameras: CameraProcess, sessions: Sessions) -> None:
+        self._cameras = cameras
+        self._sessions = sessions
+        self._looking: set[str] = set()
+
+    def add_to(self, app: FastAPI) -> None:
+        """Serve everything here."""
+        app.add_route(CAMERAS, guarded(self._offer), methods=["POST"])
+
+    async def follow(self) -> None:
+        """Take the pictures from pages that have gone, until cancelled."""
+        while True:
+            for page in [one for one in self._looking if self._sessions.named(one) is None]:
+                self._looking.discard(page)
+                self._cameras.leave(page)
+            await asyncio.sleep(_LOOK_S)
+
+    async def _offer(self, request: Request) -> Response:
+        offer = await body_of(request, _Offer)
+        if self._sessions.named(offer.page) is None:
+            raise NoticeError("request_invalid")
+        self._looking.add(offer.page)
+        return json_answer({"sdp": await self._cameras.answer(offer.page, offer.sdp)})
