@@ -29,6 +29,10 @@ def test_a_port_in_use_is_said(run):
         (["--certfile", "cert.pem"], "name both --certfile and --keyfile"),
         (["--certfile", "cert.pem", "--keyfile", "key.pem"], "not a certificate and key for TLS"),
         (["--seed", "-1"], "seed"),
+        (["--camera", "front=/dev/video77"], "Camera front: the device does not exist"),
+        (["--camera", "front=nowhere.mp4"], "Camera front: the file does not exist"),
+        (["--camera", "testsrc"], "Camera 1 is not NAME=ADDRESS"),
+        (["--camera", "a=testsrc", "--camera", "A=testsrc"], "Two cameras are called A"),
     ],
 )
 def test_what_the_user_can_fix_is_one_sentence(run, workplace, words, said):
@@ -36,3 +40,10 @@ def test_what_the_user_can_fix_is_one_sentence(run, workplace, words, said):
     assert code == 2
     assert said in err
     assert err.count("\n") == 1
+
+
+def test_cameras_need_their_extra(run, workplace, monkeypatch):
+    monkeypatch.setattr("latentarm.web.cameras.sources.find_spec", lambda name: None)
+    code, out, err = run("teleop", "--camera", "front=testsrc")
+    assert (code, out) == (2, "")
+    assert err == "latentarm: --camera needs the extra `camera`: pip install 'latentarm[camera]'.\n"

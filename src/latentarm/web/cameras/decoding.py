@@ -133,6 +133,7 @@ class _Pace:
         self._closing = closing
         self._came_s: dict[int, float] = {}
         self._began_s: float | None = None
+        self._next_s = self._last_s = -np.inf
         self._sent_s = -np.inf
         self.any = False
 
@@ -185,9 +186,12 @@ class _Pace:
         """When a frame of a file is due; waits for that, and plays on from there where it is late."""
         at_s = 0.0 if frame.pts is None else frame.time
         if self._began_s is None:
-            self._began_s = now_s - at_s
+            self._began_s = max(now_s, self._next_s) - at_s
         due_s = self._began_s + at_s
         if due_s < now_s - _BEHIND_S or due_s > now_s + _READ_WITHIN_S:
             self._began_s, due_s = now_s - at_s, now_s
+        # The last frame is shown as long as the one before it.
+        self._next_s = due_s + min(max(0.0, due_s - self._last_s), _READ_WITHIN_S)
+        self._last_s = due_s
         self._closing.wait(max(0.0, due_s - now_s))
         return due_s

@@ -12,8 +12,8 @@ import { ServerClock } from "./picture_age.js";
 /** How often is looked how old the pictures are, ms. */
 const LOOK_MS = 50;
 
-/** @param {Settings} settings @param {Connection} connection */
-export function attachCameras(settings, connection) {
+/** @param {Settings} settings @param {Connection} connection @param {() => void} draw loads the drawn arm */
+export function attachCameras(settings, connection, draw) {
   const [cameras, drawn, choice, why] = ["cameras", "views", "picture", "cameras-why"].map((id) => byId(id));
   const clock = new ServerClock();
   const views = [.../** @type {NodeListOf<HTMLElement>} */ (cameras.querySelectorAll(".camera"))].map((figure) => new CameraView(figure, clock));
@@ -30,11 +30,16 @@ export function attachCameras(settings, connection) {
     },
   });
 
+  let asked = false;
   const chosen = () => settings.values.picture === "camera";
   const choose = () => {
     setHidden(cameras, !chosen());
     setHidden(drawn, chosen());
     setText(choice, say(chosen() ? "cameras.drawn" : "cameras.show"));
+    if (!chosen() && !asked) {
+      asked = true;
+      draw();
+    }
     // What nobody sees is not sent.
     link.want(chosen() && !document.hidden && connection.open ? connection.welcome?.id ?? null : null);
   };

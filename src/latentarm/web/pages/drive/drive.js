@@ -208,10 +208,12 @@ connection.addEventListener("state", () => {
 connection.addEventListener("open", show);
 input.addEventListener("change", showSoon);
 
-attachViews(settings, say("drive.cannot_draw"), (loaded) => {
+const draw = () => attachViews(settings, say("drive.cannot_draw"), (loaded) => {
   drawing = loaded;
   drawing.pace(() => input.lateness.frameGapMs > 0, () => input.goFirst());
   show();
 });
-
-if (document.getElementById("cameras")) import("../cameras/cameras.js").then(({ attachCameras }) => attachCameras(settings, connection));
+// Whoever looks at cameras needs no drawing, until they ask for it.
+if (document.getElementById("cameras")) {
+  import("../cameras/cameras.js").then(({ attachCameras }) => attachCameras(settings, connection, draw));
+} else draw();
