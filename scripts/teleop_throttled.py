@@ -93,7 +93,7 @@ def drive(browser: Browser, address: str, rate: float, minutes: float) -> dict[s
         socket.send(json.dumps({"type": "hello", "version": 1, "name": "counts"}))
         began_s = time.monotonic()
         drawn = page.evaluate("frames_drawn")
-        presses = _to_and_fro(page, watcher, began_s + 60.0 * minutes)
+        presses = to_and_fro(page, watcher, began_s + 60.0 * minutes)
         took_s = time.monotonic() - began_s
         drawn = page.evaluate("frames_drawn") - drawn
     listener.join()
@@ -110,7 +110,7 @@ def drive(browser: Browser, address: str, rate: float, minutes: float) -> dict[s
     }
 
 
-def _to_and_fro(page: Page, watcher: Watcher, until_s: float) -> int:
+def to_and_fro(page: Page, watcher: Watcher, until_s: float) -> int:
     """Hold the left and the right arrow key in turn; how often Enable was pressed."""
     presses = 0
     keys = ("ArrowLeft", "ArrowRight")

@@ -67,11 +67,10 @@ export class CameraView {
 
   /** @param {boolean} old @param {number | null} age @param {boolean} connected */
   _words(old, age, connected) {
-    if (!connected || (this.state === "opening")) return say("cameras.opening");
+    if (!connected || this.state === "opening") return say("cameras.opening");
     if (this.state === "lost") return say("cameras.lost");
     if (this._rtp === null) return say("cameras.opening");
-    if (age === null) return say("cameras.age_unknown");
-    if (old) return say("cameras.old");
-    return this.state === "dark" ? say("cameras.dark") : "";
+    const doubt = age === null ? say("cameras.age_unknown") : old ? say("cameras.old") : "";
+    return this.state === "dark" ? `${say("cameras.dark")} ${doubt}`.trim() : doubt;
   }
 }
