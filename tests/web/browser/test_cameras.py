@@ -67,7 +67,7 @@ def cameras(start_server, tmp_path_factory, video):
 
 @pytest.fixture(scope="module")
 def without_graphics(chromium):
-    """A Chromium that draws all but three dimensions without OpenGL, as one without a graphics processor does."""
+    """A Chromium that draws pages without OpenGL, as it does without a graphics processor."""
     sandbox = ["--no-sandbox"] if os.getuid() == 0 else []
     flags = ["--enable-unsafe-swiftshader", *sandbox]
     browser = chromium.browser_type.launch(executable_path=find_chromium(), args=flags)
