@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.errors import UserError
+from latentarm.web.cameras.arrival import ArrivalClock
 from latentarm.web.cameras.camera import Camera, check_camera
 from latentarm.web.cameras.clock_pattern import BITS, ROWS, clock_picture
 from latentarm.web.cameras.decoding import CameraError, open_pictures
@@ -211,3 +212,24 @@ def test_no_address_is_left_of_an_offer(lines):
     left = without_candidates(offer).split("\r\n")
     assert "a=mid:0" in left
     assert not any(line.startswith("a=candidate") for line in left)
+
+
+@given(st.floats(-1e5, 1e5), st.lists(st.floats(0.0, 0.2), min_size=30, max_size=60), st.floats(-1e-4, 1e-4))
+def test_a_network_picture_is_as_old_as_its_delay_beyond_the_quickest(start, delays, drift):
+    clock = ArrivalClock()
+    ages = []
+    for number, delay in enumerate(delays):
+        taken_s = number / 20.0
+        now_s = taken_s + 0.03 + delay
+        clock.arrived(start + taken_s * (1.0 + drift), now_s)
+        ages.append(now_s - clock.taken_s(start + taken_s * (1.0 + drift), now_s))
+    quickest = np.minimum.accumulate(delays)
+    assert np.allclose(ages, np.array(delays) - quickest, atol=0.002)
+
+
+def test_a_picture_that_waited_in_a_queue_is_old():
+    clock = ArrivalClock()
+    clock.arrived(100.0, 5.0)
+    assert clock.taken_s(100.0, 5.0) == 5.0
+    clock.arrived(100.5, 6.0)
+    assert clock.taken_s(100.5, 6.0) == pytest.approx(5.5, abs=1e-3)

@@ -14,6 +14,7 @@ from av.video.frame import VideoFrame
 from av.video.stream import VideoStream
 
 from latentarm.errors import UserError
+from latentarm.web.cameras.arrival import ArrivalClock
 from latentarm.web.cameras.clock_pattern import clock_pictures
 from latentarm.web.cameras.picture import MOST_HIGH, MOST_PER_S, MOST_WIDE, Picture, fitted
 from latentarm.web.cameras.sources import CameraSource, Kind
@@ -27,7 +28,7 @@ _LATEST_STAMP_S: Final = 1.0
 """A device's own stamp counts if it lies this close before now: on Linux it is the monotonic clock's."""
 
 _BEHIND_S: Final = 0.2
-_MOST_WAITING: Final = 256
+_MOST_WAITED_S: Final = 2.0
 _SPARE: Final = 0.9
 
 _OPTIONS: Final[dict[Kind, dict[str, str]]] = {
@@ -71,7 +72,8 @@ def open_pictures(source: CameraSource, closing: threading.Event) -> Iterator[Pi
             pictures = _Pace(source, closing)
             while not closing.is_set():
                 for packet in container.demux(stream):
-                    pictures.arrived(packet.pts)
+                    if packet.pts is not None and packet.time_base is not None:
+                        pictures.arrived(float(packet.pts * packet.time_base))
                     for frame in packet.decode():
                         picture = pictures.of(frame)
                         if closing.is_set():
@@ -119,8 +121,8 @@ def _video_of(container: InputContainer, source: CameraSource) -> VideoStream:
 class _Pace:
     """Makes pictures of frames: no more than are sent, each with the moment when it was taken.
 
-    A device says when. What comes over the network was taken, at the latest, when the packet with it came. A
-    file is played at its own pace; a picture of it is taken when it is due.
+    A device says when. What comes over the network is dated by its stamp and by when it came. A file is
+    played at its own pace; a picture of it is taken when it is due.
 
     Args:
         source: of the frames.
@@ -131,7 +133,7 @@ class _Pace:
         self._kind = source.kind
         self._name = source.name
         self._closing = closing
-        self._came_s: dict[int, float] = {}
+        self._arrivals = ArrivalClock()
         self._began_s: float | None = None
         self._next_s = self._last_s = -np.inf
         self._sent_s = -np.inf
@@ -141,17 +143,13 @@ class _Pace:
         """The file is at its start again."""
         self._began_s = None
 
-    def arrived(self, stamp: int | None) -> None:
+    def arrived(self, stamp_s: float) -> None:
         """Note when a packet came.
 
         Args:
-            stamp: of the packet, which is not yet decoded.
+            stamp_s: of the packet, which is not yet decoded, s.
         """
-        if stamp is None or self._kind != "network":
-            return
-        if len(self._came_s) >= _MOST_WAITING:
-            self._came_s.clear()
-        self._came_s[stamp] = time.monotonic()
+        self._arrivals.arrived(stamp_s, time.monotonic())
 
     def of(self, frame: VideoFrame) -> Picture | None:
         """The picture of a frame; None if it is one too many, or another comes right after it.
@@ -160,12 +158,15 @@ class _Pace:
             frame: as decoded.
 
         Raises:
-            CameraError: it is too large.
+            CameraError: it is too large, or has waited in the network for so long that a new connection is
+                quicker.
         """
         if frame.width * frame.height > _MOST_PIXELS:
             raise CameraError(f"The pictures of camera {self._name} have become too large.")
         self.any = True
         captured_s = self._captured_s(frame)
+        if self._kind == "network" and time.monotonic() - captured_s > _MOST_WAITED_S:
+            raise CameraError(f"Camera {self._name} is too far behind.")
         if captured_s - self._sent_s < _SPARE / MOST_PER_S:
             return None
         self._sent_s = captured_s
@@ -178,7 +179,7 @@ class _Pace:
         if self._kind == "file":
             return self._due_s(frame, now_s)
         if self._kind == "network":
-            return now_s if frame.pts is None else self._came_s.pop(frame.pts, now_s)
+            return now_s if frame.pts is None else self._arrivals.taken_s(frame.time, now_s)
         stamp_s = -np.inf if frame.pts is None else frame.time
         return stamp_s if now_s - _LATEST_STAMP_S < stamp_s <= now_s else now_s
 
