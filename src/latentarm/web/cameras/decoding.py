@@ -72,7 +72,7 @@ def open_pictures(source: CameraSource, closing: threading.Event) -> Iterator[Pi
             pictures = _Pace(source, closing)
             while not closing.is_set():
                 for packet in container.demux(stream):
-                    if packet.pts is not None and packet.time_base is not None:
+                    if packet.pts is not None:
                         pictures.arrived(float(packet.pts * packet.time_base))
                     for frame in packet.decode():
                         picture = pictures.of(frame)
