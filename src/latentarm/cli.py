@@ -79,11 +79,11 @@ COMMANDS: dict[str, tuple[str, str]] = {
     ),
     "study questions": (
         "study_answers:questions",
-        "Write a study's questionnaire as a sheet for each person, as CSV or Markdown.",
+        "Write a study's questionnaire: after each condition all items, in a random order for each person.",
     ),
     "study analyse": (
         "study_answers:analyse_study",
-        "Analyse recorded trials, of simulated or of real people with their answers, and write the report.",
+        "Analyse recorded trials, with the answers of real people, and write the report.",
     ),
     "bench": (
         "bench:bench",
