@@ -19,9 +19,9 @@ from latentarm.testing.real_arms import RealArmContract, StandIn
 from latentarm.types import Command, FloatArray, GripperCommand
 
 pytest.importorskip("franky", reason="franky-control is not installed")
-pytest.importorskip("franky_sim", reason="franky-sim is not installed")
+pytest.importorskip("franky_sim", reason="franky-sim is not installed: latentarm[franka-sim]")
 
-pytestmark = pytest.mark.clock
+pytestmark = [pytest.mark.clock, pytest.mark.slow]
 
 HOST = "127.0.7.1"
 ADDRESS = f"franka://{HOST}?realtime=ignore"

@@ -49,6 +49,7 @@ def wait_for(what: Callable[[], bool]) -> None:
         time.sleep(0.005)
 
 
+@pytest.mark.slow  # 22 laws in real time
 class TestRos2Arm(RealArmContract):
     settling_s = 0.15
     gripper_s = 2.0

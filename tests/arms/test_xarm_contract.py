@@ -38,6 +38,7 @@ class _Controller(StandIn):
         self.server.do("mend")
 
 
+@pytest.mark.slow  # 22 laws in real time
 class TestXArm(RealArmContract):
     settling_s = 0.1
 

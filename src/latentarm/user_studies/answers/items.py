@@ -68,4 +68,4 @@ def sheet(definition: Definition, people: int, seed: int) -> list[Asked]:
 
 
 def _shuffled(names: Sequence[str], rng: np.random.Generator) -> list[str]:
-    return [names[place] for place in rng.permutation(len(names))]
+    return [names[int(place)] for place in rng.permutation(len(names))]
