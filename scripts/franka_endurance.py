@@ -38,7 +38,7 @@ from latentarm.control.loop import ControlLoop
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.robots.fr3 import fr3
+from latentarm.robots.panda import fr3
 from latentarm.types import FloatArray, Input, StepRecord
 
 HOST: Final = "127.0.9.1"

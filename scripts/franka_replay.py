@@ -28,7 +28,7 @@ from latentarm.arms.franka.limits import FR3, SHARE
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
-from latentarm.robots.fr3 import fr3
+from latentarm.robots.panda import fr3
 from latentarm.types import FloatArray, GripperAsk, GripperReading, Input, Reading, Stop
 
 CYCLES: Final = 10

@@ -13,7 +13,7 @@ from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
-from latentarm.robots.fr3 import fr3
+from latentarm.robots.panda import fr3
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arms import RealArmContract, StandIn
 from latentarm.types import Command, FloatArray, GripperCommand

@@ -11,6 +11,7 @@ from tyro.conf import Positional, arg
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, StudyOptions
 from latentarm.commands.output import note, print_renderables, say, show
+from latentarm.commands.study_name import StudyName
 from latentarm.errors import UserError
 from latentarm.user_studies.catalogue import NAMES, load_definition
 from latentarm.user_studies.definition import Definition
@@ -20,13 +21,6 @@ from latentarm.user_studies.sizes import PRESETS
 if TYPE_CHECKING:
     from latentarm.user_studies.run import Request
 
-Name = Annotated[
-    str,
-    arg(
-        metavar="{" + ",".join(NAMES) + ",FILE.json}",
-        help="The study, or a JSON file with the definition of one of your own.",
-    ),
-]
 Simulated = Annotated[
     int | None,
     arg(metavar="N", help="How many simulated people; by default as many as the definition plans."),
@@ -58,7 +52,7 @@ def list_studies(json: Json = False) -> int:
     return 0
 
 
-def show_study(name: Positional[Name], json: Json = False) -> int:
+def show_study(name: Positional[StudyName], json: Json = False) -> int:
     """Show a study's definition: conditions, tasks, hypotheses with their tests, and its hash.
 
     For example: latentarm study show eating
@@ -82,7 +76,7 @@ def show_study(name: Positional[Name], json: Json = False) -> int:
 
 
 def run_study(
-    name: Positional[Name],
+    name: Positional[StudyName],
     options: StudyOptions,
     simulated: Simulated = None,
     preset: Preset = "paper",
@@ -119,7 +113,7 @@ def run_study(
 
 
 def power_of_study(
-    name: Positional[Name],
+    name: Positional[StudyName],
     options: StudyOptions,
     results: Annotated[
         Path | None,

@@ -1,6 +1,7 @@
 """`latentarm study questions` and `latentarm study analyse`: what real people are asked, and their trials."""
 
 import hashlib
+import json as json_format
 from pathlib import Path
 from typing import Annotated
 
@@ -10,13 +11,15 @@ from tyro.conf import Positional, arg
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, Seed
 from latentarm.commands.output import note, say, show
-from latentarm.commands.study import Name
+from latentarm.commands.study_name import StudyName
+from latentarm.demonstrations.bounds import MAX_TEXT_BYTES
 from latentarm.errors import UserError
+from latentarm.untrusted.opening import read_bytes
 from latentarm.user_studies.own.definition_file import find_definition
 
 
 def questions(
-    name: Positional[Name],
+    name: Positional[StudyName],
     people: Annotated[
         int | None, arg(metavar="N", help="How many people; by default as many as the definition plans.")
     ] = None,
@@ -24,6 +27,7 @@ def questions(
         Path | None, arg(metavar="FILE", help="A .csv or .md file; by default NAME-questions.csv.")
     ] = None,
     seed: Seed = 0,
+    json: Json = False,
 ) -> int:
     """Write a study's questionnaire: after each condition all items, in a random order for each person.
 
@@ -39,7 +43,9 @@ def questions(
     path = Path(f"{definition.name}-questions.csv") if out is None else out
     asked = sheet(definition, count, seed)
     write_sheet(path, definition, asked)
-    say(f"{len(asked)} questions for {count} people are in {path}; people are numbered from 0.", False)
+    say(f"{len(asked)} questions for {count} people are in {path}; people are numbered from 0.", json)
+    if json:
+        print(json_format.dumps({"sheet": str(path), "questions": len(asked), "people": count}))
     return 0
 
 
@@ -76,7 +82,7 @@ def analyse_study(
             )
         given = read_answers(answers, definition, recorded.met)
         ratings = rate(definition, given, recorded.trials)
-        digest = hashlib.sha256(answers.read_bytes()).hexdigest()
+        digest = hashlib.sha256(read_bytes(answers, MAX_TEXT_BYTES)).hexdigest()
     about: dict[str, object] = {
         "analysed": str(folder),
         "people": len(recorded.met),

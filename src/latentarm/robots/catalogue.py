@@ -11,9 +11,8 @@ from latentarm.errors import UserError
 from latentarm.robots.assemble import restate
 from latentarm.robots.attachments import attach
 from latentarm.robots.end_effector import AmbiguousEndEffectorError
-from latentarm.robots.fr3 import fr3
 from latentarm.robots.model_file import load_model_file
-from latentarm.robots.panda import panda
+from latentarm.robots.panda import fr3, panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, StatedLimits, StrPath

@@ -1,4 +1,4 @@
-"""The Franka Emika Panda, built offline from the manufacturer's published figures."""
+"""The Franka Emika Panda and the Franka Research 3, built from the manufacturer's published figures."""
 
 from functools import cache
 
@@ -26,6 +26,23 @@ LIMITS = JointLimits(
 
 TORQUE_LIMIT = (87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
 """Of each joint, N m; the same documentation."""
+
+_FR3_LOWER = np.array([-2.7437, -1.7837, -2.9007, -3.0421, -2.8065, 0.5445, -3.0159])
+_FR3_UPPER = np.array([2.7437, 1.7837, 2.9007, -0.1518, 2.8065, 4.5169, 3.0159])
+
+FR3_LIMITS = JointLimits(
+    lower=np.maximum(_FR3_LOWER, LIMITS.lower),
+    upper=np.minimum(_FR3_UPPER, LIMITS.upper),
+    velocity=np.array([2.62, 2.62, 2.62, 2.62, 5.26, 4.18, 5.26]),
+    acceleration=np.full(7, 10.0),
+    jerk=np.full(7, 5000.0),
+    sources=LimitSources.same("manufacturer", 7),
+)
+"""The manufacturer's limits of the FR3 (https://frankarobotics.github.io/docs/robot_specifications.html).
+Positions end where the Panda's do too: beyond, it is not known which of the links cannot meet."""
+
+FR3_TOOL_SPEED_LIMIT = 3.0
+"""Cartesian limit of the FR3's end-effector, m/s."""
 
 TOOL_SPEED_LIMIT = 1.7
 """Cartesian limit of the end-effector, m/s."""
@@ -134,6 +151,16 @@ def panda() -> Robot:
     Returns the same object each time; do not write to its arrays.
     """
     return franka("panda", LIMITS, TOOL_SPEED_LIMIT)
+
+
+@cache
+def fr3() -> Robot:
+    """The FR3 with its hand; "tool" is the point between the fingertips.
+
+    Its links are as long as the Panda's, and its shell is taken for the same. Returns the same object each
+    time; do not write to its arrays.
+    """
+    return franka("fr3", FR3_LIMITS, FR3_TOOL_SPEED_LIMIT)
 
 
 def franka(model: str, limits: JointLimits, tool_speed_limit: float) -> Robot:

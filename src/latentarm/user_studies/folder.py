@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from latentarm.errors import UserError
 from latentarm.files import write_text
@@ -17,10 +17,13 @@ from latentarm.user_studies.analysis.means import person_mean
 from latentarm.user_studies.answers.scales import Ratings
 from latentarm.user_studies.catalogue import NAMES, load_definition
 from latentarm.user_studies.definition import Definition
+from latentarm.user_studies.folder_name import PREFIX, folder_name
 from latentarm.user_studies.own.definition_file import read_definition
 from latentarm.user_studies.power import Power
 from latentarm.user_studies.record import Trial, read_trial
-from latentarm.user_studies.run import PREFIX, Ran, Request, folder_name
+
+if TYPE_CHECKING:
+    from latentarm.user_studies.run import Ran, Request
 
 DEFINITION: Final = "definition.json"
 TRIALS: Final = "trials.json"
@@ -33,7 +36,7 @@ DOCUMENTS: Final = (DEFINITION, TRIALS, TRACES, "people.json", ANALYSIS, RESULTS
 """What follows from definition, sizes, people and seed alone: the same bytes wherever it is computed."""
 
 
-def claim(request: Request, further: Sequence[str]) -> None:
+def claim(request: "Request", further: Sequence[str]) -> None:
     """Make room in the folder, see `latentarm.runs.results_folder.ResultsFolder.claim`.
 
     Args:
@@ -47,7 +50,7 @@ def claim(request: Request, further: Sequence[str]) -> None:
     ResultsFolder(folder_name(request.definition), made).claim(request.out, request.about)
 
 
-def write_documents(request: Request, ran: Ran) -> list[Row]:
+def write_documents(request: "Request", ran: "Ran") -> list[Row]:
     """Write everything but the report.
 
     Returns:

@@ -16,6 +16,7 @@ from latentarm.untrusted.console import VisibleConsole
 from latentarm.user_studies.analysis.analysis import Analysis, analyse
 from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.designs.catalogue import design_of
+from latentarm.user_studies.folder_name import folder_name
 from latentarm.user_studies.record import Trial
 from latentarm.user_studies.session import SessionCell, go_through
 from latentarm.user_studies.sizes import Sizes, Stream
@@ -23,9 +24,6 @@ from latentarm.user_studies.trace import Trace
 from latentarm.user_studies.training import Trained, TrainingCell, train
 
 FEWEST_PEOPLE: Final = 2
-
-PREFIX: Final = "user study "
-"""Before a study's name, in what a folder of its results says that it is."""
 
 Cell = TypeVar("Cell")
 Result = TypeVar("Result")
@@ -104,11 +102,6 @@ class Ran:
     trained: Mapping[str, Trained]
     analysis: Analysis
     grid_s: float
-
-
-def folder_name(definition: Definition) -> str:
-    """What the folder of a study's results says that it is."""
-    return f"{PREFIX}{definition.name}"
 
 
 def send_people(request: Request) -> Ran:

@@ -25,24 +25,6 @@ from latentarm.user_studies.training import Trained
 LEAST_S: Final = 1.0
 """People begin no attempt for which less time than this is left, s."""
 
-MEASURED: Final = (
-    "success_rate",
-    "steps_done",
-    "time_s",
-    "idle_s",
-    "input_magnitude",
-    "turned_round",
-    "mode_switches",
-    "path_length",
-    "stops",
-    "preference_alignment",
-    "attempts",
-)
-"""Figures of every trial that has a value for them."""
-
-MEASURED_AT_PLATES: Final = ("goal_error_m_s", "goal_error_m")
-"""Figures of drives at tasks with plates."""
-
 SUMMED: Final = (
     "attempts",
     "time_s",

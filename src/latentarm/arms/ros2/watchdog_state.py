@@ -1,10 +1,12 @@
 """What the watchdog next to the arm tells its clients."""
 
-import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, Literal, cast, final, get_args
+
+from latentarm.errors import UserError
+from latentarm.untrusted.documents import parse_object
 
 VERSION: Final = 1
 """Of the messages between the watchdog and us, as in ``docs/your-arm/latentarm_watchdog.py``."""
@@ -63,12 +65,11 @@ def parse_state(text: object) -> WatchdogState:
     if not isinstance(text, str) or len(text) > _LONGEST:
         raise ValueError("not a text")
     try:
-        found: Any = json.loads(text)
-    except RecursionError as error:
-        raise ValueError("too deep") from error
-    if not isinstance(found, dict) or not _whole(found.get("latentarm_watchdog")):
+        entries = parse_object(text, "the watchdog's state")
+    except UserError as error:
+        raise ValueError(str(error)) from error
+    if not _whole(entries.get("latentarm_watchdog")):
         raise ValueError("not a state of the watchdog")
-    entries = cast(dict[str, Any], found)
     version: int = entries["latentarm_watchdog"]
     if version != VERSION:
         return WatchdogState(version)

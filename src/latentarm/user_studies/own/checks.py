@@ -11,9 +11,9 @@ from latentarm.context import feature_names
 from latentarm.errors import UserError
 from latentarm.models.catalogue import KINDS
 from latentarm.user_studies.definition import Definition, StudyTask
+from latentarm.user_studies.measured import MEASURED, MEASURED_AT_PLATES
 from latentarm.user_studies.report.looks import MOST_CONDITIONS
 from latentarm.user_studies.scenes import scene_of
-from latentarm.user_studies.session import MEASURED, MEASURED_AT_PLATES
 
 NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,39}")
 """Names that files are called by."""

@@ -1,7 +1,7 @@
 """The report of a study: figures, one HTML page, and a PDF of it."""
 
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from latentarm.files import write_text
 from latentarm.style import save_figure
@@ -9,13 +9,15 @@ from latentarm.types import Row
 from latentarm.user_studies.analysis.analysis import Analysis
 from latentarm.user_studies.answers.scales import Ratings
 from latentarm.user_studies.definition import Definition
-from latentarm.user_studies.recorded import Recorded
 from latentarm.user_studies.report.figures import draw, figure_names
 from latentarm.user_studies.report.page import Content, report_page
 from latentarm.user_studies.report.pdf import WITHOUT, find_browser, print_page
 from latentarm.user_studies.report.people import people_lines
 from latentarm.user_studies.report.whose import REAL, SIMULATED
-from latentarm.user_studies.run import Ran
+
+if TYPE_CHECKING:
+    from latentarm.user_studies.recorded import Recorded
+    from latentarm.user_studies.run import Ran
 
 PAGE: Final = "report.html"
 PDF: Final = "report.pdf"
@@ -28,7 +30,7 @@ def report_files(definition: Definition) -> tuple[str, ...]:
     return (PAGE, PDF, *(f"{name}.png" for name in figure_names(definition)))
 
 
-def write_report(out: Path, ran: Ran, rows: list[Row], command: str) -> str:
+def write_report(out: Path, ran: "Ran", rows: list[Row], command: str) -> str:
     """Draw and write the report of a run with simulated people.
 
     Args:
@@ -51,7 +53,12 @@ def write_report(out: Path, ran: Ran, rows: list[Row], command: str) -> str:
 
 
 def write_report_of(
-    out: Path, recorded: Recorded, analysis: Analysis, rows: list[Row], ratings: Ratings | None, command: str
+    out: Path,
+    recorded: "Recorded",
+    analysis: Analysis,
+    rows: list[Row],
+    ratings: Ratings | None,
+    command: str,
 ) -> str:
     """Draw and write the report of recorded trials.
 

@@ -21,6 +21,7 @@ from aiortc.exceptions import InvalidAccessError, InvalidStateError
 from av.video.frame import VideoFrame
 
 from latentarm.errors import UserError
+from latentarm.untrusted.documents import parse_object
 from latentarm.web.cameras.camera import Camera
 from latentarm.web.cameras.rtp_clock import TIME_BASE, RtpClock
 
@@ -188,10 +189,10 @@ def asked_ms(message: object) -> float | None:
     if not isinstance(message, str) or len(message) > _LONGEST_MESSAGE:
         return None
     try:
-        found = json.loads(message)
-    except (ValueError, RecursionError):
+        found = parse_object(message, "a message of the page")
+    except UserError:
         return None
-    sent = found.get("sent") if isinstance(found, dict) and found.get("type") == "time" else None  # pyright: ignore[reportUnknownVariableType]
+    sent = found.get("sent") if found.get("type") == "time" else None
     if isinstance(sent, bool) or not isinstance(sent, int | float) or not math.isfinite(sent):
         return None
     return float(sent)

@@ -2,11 +2,10 @@
 
 import asyncio
 from contextlib import suppress
-from typing import Final, Literal, final
+from typing import TYPE_CHECKING, Final, Literal, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.protocol.copilot_messages import AcceptCopilot, AskToCopilot, CopilotPace, EndCopilot
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.notice import Notice, NoticeCode
@@ -57,6 +56,9 @@ from latentarm.web.server.pose_book import PoseBook
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
 from latentarm.web.server.sessions import MOST, Page, Sessions
 from latentarm.web.server.states import PageMemory, States
+
+if TYPE_CHECKING:
+    from latentarm.web.arm_process.process import ControlProcess
 
 HELLO_WITHIN_S: Final = 5.0
 HANG_UP_WITHIN_S: Final = 1.0
@@ -109,7 +111,7 @@ class DriveSocket:
 
     def __init__(
         self,
-        control: ControlProcess,
+        control: "ControlProcess",
         states: States,
         sessions: Sessions,
         learning: Learning,

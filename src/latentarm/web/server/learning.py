@@ -2,12 +2,11 @@
 
 import asyncio
 from pathlib import Path
-from typing import Final, final
+from typing import TYPE_CHECKING, Final, final
 
 from latentarm.control.journal import list_journal
 from latentarm.errors import UserError
 from latentarm.runs.folder import read_run
-from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.training import TrainingJob, TrainingPlan
 from latentarm.web.protocol.learning_messages import LearningState, Recorded, Train, Training
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
@@ -16,6 +15,9 @@ from latentarm.web.server.loaded_run import RunList
 from latentarm.web.server.personalising import Driven, Personalising
 from latentarm.web.server.run_check import WITHIN_S, Trial
 from latentarm.web.server.states import States
+
+if TYPE_CHECKING:
+    from latentarm.web.arm_process.process import ControlProcess
 
 LOOK_S: Final = 0.2
 """How often jobs and recordings are checked, s."""
@@ -32,7 +34,7 @@ class Learning:
         out: folder that holds ``datasets`` and ``runs``.
     """
 
-    def __init__(self, control: ControlProcess, states: States, run_list: RunList, out: Path) -> None:
+    def __init__(self, control: "ControlProcess", states: States, run_list: RunList, out: Path) -> None:
         self._control = control
         self._states = states
         self._run_list = run_list

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, final
+from typing import TYPE_CHECKING, Final, final
 
 from latentarm.alignment.profile import (
     MOST_CHARACTERS,
@@ -18,7 +18,6 @@ from latentarm.alignment.profile import (
 )
 from latentarm.errors import UserError
 from latentarm.untrusted.names import clean_name
-from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.jobs.personalise import PersonaliseJob, PersonalisePlan
 from latentarm.web.protocol.notice import Notice, NoticeError, notice_of
 from latentarm.web.protocol.orders import ChooseProfile
@@ -35,6 +34,9 @@ from latentarm.web.protocol.personalise_messages import (
     TryAlignment,
 )
 from latentarm.web.protocol.report import Report
+
+if TYPE_CHECKING:
+    from latentarm.web.arm_process.process import ControlProcess
 
 STICK_AXES: Final = 2
 """A page's stick cannot answer for more."""
@@ -75,7 +77,7 @@ class Personalising:
         control: the control process.
     """
 
-    def __init__(self, driven: Callable[[], Driven], control: ControlProcess) -> None:
+    def __init__(self, driven: Callable[[], Driven], control: "ControlProcess") -> None:
         self._driven = driven
         self._control = control
         self._run: Path | None = None

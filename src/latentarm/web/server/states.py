@@ -7,14 +7,13 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Final, final
+from typing import TYPE_CHECKING, Final, final
 
 import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.types import FloatArray
 from latentarm.untrusted.terminal import one_line
-from latentarm.web.arm_process.process import ControlProcess
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Ghosts, GripperState, Report, Things
@@ -28,6 +27,9 @@ from latentarm.web.server.loaded_run import (
     load_reported_run,
 )
 from latentarm.web.server.sessions import Page, Sessions
+
+if TYPE_CHECKING:
+    from latentarm.web.arm_process.process import ControlProcess
 
 POLL_S: Final = 0.0025
 """How often the control process's slot is read, s."""
@@ -82,7 +84,7 @@ class States:
     """
 
     def __init__(
-        self, loaded: LoadedRun, control: ControlProcess, sessions: Sessions, run_list: RunList
+        self, loaded: LoadedRun, control: "ControlProcess", sessions: Sessions, run_list: RunList
     ) -> None:
         self._loaded = loaded
         self._control = control
