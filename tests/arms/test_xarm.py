@@ -39,7 +39,7 @@ def arm(server: XArmServer) -> Iterator[RealArm]:
     enable(made)
     yield made
     server.do("set", frozen=False, nan=False, silent=False, clock_s=0.0, answer_s=0.0)
-    server.do("mend")
+    server.do("reconnect")
     server.do("client", mode=4, state=4)
     made.close()
 
@@ -182,7 +182,7 @@ def test_what_was_held_up_on_the_way_never_moves_the_arm(arm: RealArm, server: X
     drive(arm, slow(ROBOT), 0.4)
     assert arm.status().phase == "fault"
     rested = server.do("state")["q"]
-    server.do("mend")
+    server.do("reconnect")
     time.sleep(0.3)
     assert server.do("state")["q"] == rested
 

@@ -35,7 +35,7 @@ class _Controller(StandIn):
         self.server.do("cut")
 
     def repair(self) -> None:
-        self.server.do("mend")
+        self.server.do("reconnect")
 
 
 @pytest.mark.slow  # 22 laws in real time

@@ -212,7 +212,7 @@ class _Server:
                 model.fail(order["error"])
             case "cut":
                 self.up.clear()
-            case "mend":
+            case "reconnect":
                 self.up.set()
             case "restart":
                 for writer in list(self.writers):

@@ -29,8 +29,8 @@ def check_arm_at(address: str, run: Path | None, robot: RobotOptions) -> Finding
         robot: what the arm is, where the run is not to say.
 
     Raises:
-        UserError: the address, the run or the robot cannot be used. What the arm itself is refused for is
-            among the findings, and so is that there is none.
+        UserError: the address, the run or the robot cannot be used. Why the arm is refused, or does
+            not answer, is among the findings instead.
     """
     if not is_address(address):
         raise UserError(f"{address} is not the address of a real arm: write SCHEME://HOST.")

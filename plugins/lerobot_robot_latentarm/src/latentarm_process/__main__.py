@@ -43,7 +43,7 @@ class Drive:
 
     def run(self) -> None:
         """Drive until the other end is gone."""
-        # Whoever connects a LeRobot robot wants it to move: that is the explicit action that enables it.
+        # A LeRobot robot is expected to move once it is connected: connecting is what enables it.
         self._loop.enable()
         self._loop.run()
 

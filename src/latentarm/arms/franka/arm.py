@@ -193,7 +193,7 @@ class FrankaArm(RealArm):
         """A link that may be driven.
 
         Raises:
-            UserError: there is none.
+            UserError: the arm does not answer, or is refused.
         """
         link = self._open()
         try:

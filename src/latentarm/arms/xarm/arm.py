@@ -188,7 +188,7 @@ class XArm(RealArm):
             clear: whether an error is cleared: somebody has asked for it.
 
         Raises:
-            UserError: there is none, or the arm is refused.
+            UserError: the arm does not answer, or is refused.
         """
         session: Session | None = None
         try:

@@ -89,7 +89,7 @@ class Controller:
         return self._ask(self._commands.get_state, 1)[1]
 
     def errors(self) -> tuple[int, int]:
-        """The error and the warning; 0 where there is none."""
+        """The error and the warning; 0 means no error or no warning."""
         answer = self._ask(self._commands.get_err_code, 2)
         return answer[1], answer[2]
 
@@ -155,7 +155,7 @@ class Controller:
             within_s: how long the answer may take, s.
 
         Raises:
-            LinkLostError: no answer in time, or it is none.
+            LinkLostError: no answer in time, or one that cannot be read.
             RefusedError: the controller says that the request is invalid.
         """
         self._commands.set_timeout(within_s)

@@ -188,7 +188,8 @@ class JointReports:
         LinkLostError: nobody answers there.
 
     Attributes:
-        newest: the newest report, or None before the first. One that repeats the controller's time is none.
+        newest: the newest report, or None before the first. A report that repeats the
+            controller's time does not count.
         came: notified when one comes.
         clock: what is known of the clocks.
     """

@@ -54,7 +54,7 @@ WORDS: Final[Mapping[Design, DesignWords]] = {
         tests="Welch's t-tests on people's means, two-sided; intervals are of 95 %; g is the difference over"
         " the pooled SD, without its bias in small samples, with its interval from the noncentral t"
         f" distribution. {_CLAIMS} The mixed model has condition, trial and task as fixed and the person as"
-        " random; there is none where each person has a single trial. The p of the randomisation test"
+        " random; it is left out where each person has a single trial. The p of the randomisation test"
         " permutes people between the two conditions, on their means.",
         effect_head=f"g [{CONFIDENCE:.0%}]",
         anova="Analysis of variance between people",

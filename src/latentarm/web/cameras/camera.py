@@ -121,7 +121,7 @@ def check_camera(source: CameraSource, open_pictures: OpenPictures) -> str | Non
         open_pictures: opens it.
 
     Returns:
-        Why there is none, in a sentence; None if there is one.
+        Why no picture came, in a sentence; None if one did.
     """
     closing = threading.Event()
     pictures = open_pictures(source, closing)
