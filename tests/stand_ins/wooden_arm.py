@@ -18,7 +18,10 @@ from latentarm.robots.robot import Robot
 from latentarm.types import Command, GripperReading, Reading
 
 PERIOD_S = 0.005
+OPENING_S = 10.0
+"""How long the arm may take to answer at first, s: nothing moves yet, and a busy machine is no fault."""
 TIMEOUT_S = 0.5
+"""How long it may take from then on, s."""
 LOST = "The connection to the arm is lost: check its cable, and connect again."
 
 
@@ -47,8 +50,8 @@ class WoodenArm(RealArm):
 
     def look(self) -> Findings:
         began_s = self._now_s()
-        with self._open() as lines:
-            state = _ask(lines, {"do": "hello"})
+        lines, state = self._open()
+        lines.close()
         refusals = self._refusals(state)
         facts = (
             Fact("firmware", state["firmware"]),
@@ -60,9 +63,8 @@ class WoodenArm(RealArm):
 
     def connect(self) -> None:
         self.close()
-        lines = self._open()
+        lines, state = self._open()
         try:
-            state = _ask(lines, {"do": "hello"})
             for sentence in self._refusals(state):
                 raise UserError(sentence)
             self._take(_ask(lines, {"do": "disable"}))
@@ -133,15 +135,21 @@ class WoodenArm(RealArm):
             self._todo.clear()
             self._todo.extend(kept)
 
-    def _open(self) -> Any:
+    def _open(self) -> tuple[Any, dict[str, Any]]:
         try:
-            connection = socket.create_connection(self._where, TIMEOUT_S)
+            connection = socket.create_connection(self._where, OPENING_S)
         except OSError as error:
             raise UserError(f"There is no wooden arm at {self._where[0]}:{self._where[1]}.") from error
-        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        lines = connection.makefile("rwb")
-        connection.close()  # the file keeps it open
-        return lines
+        with connection:  # the file keeps it open
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            lines = connection.makefile("rwb")
+            try:
+                state = _ask(lines, {"do": "hello"})
+            except BaseException:
+                lines.close()
+                raise
+            connection.settimeout(TIMEOUT_S)
+        return lines, state
 
     def _refusals(self, state: dict[str, Any]) -> tuple[str, ...]:
         found: list[str] = []
