@@ -33,6 +33,17 @@ WAYS: Final[dict[str, AssistanceName | None]] = {
     "policy blending": "policy_blending",
 }
 
+HEAD: Final = (
+    "β (1/m²)",
+    "help",
+    "reached",
+    "of each marshmallow",
+    "time (s)",
+    "input (s)",
+    "idle (s)",
+    "mode switches",
+)
+
 RATIONALITIES: Final = (50.0, 200.0, 1000.0)
 """beta of equation 24, 1/m²."""
 
@@ -45,8 +56,8 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--beta", type=float, nargs="*", default=[*RATIONALITIES])
     options = parser.parse_args()
-    print("| β (1/m²) | help | reached | time (s) | input (s) | idle (s) | mode switches |")
-    print("|---:|---|---:|---:|---:|---:|---:|")
+    print(f"| {' | '.join(HEAD)} |")
+    print(f"|---:|---|{'---:|' * (len(HEAD) - 2)}")
     for beta in options.beta:
         for name, help_by in WAYS.items():
             series = Series([setup(help_by, noisy(beta))], options.drives)
@@ -74,7 +85,9 @@ def setup(help_by: AssistanceName | None, person: Person) -> TaskSetup:
 
 def figures(traces: list[TaskTrace]) -> list[str]:
     """How many arrive; mean and SD of the other figures over all drives, failed ones until they ended."""
-    arrived = sum(trace.figures.success for trace in traces)
+    arrived: dict[int, int] = {}
+    for trace in traces:
+        arrived[trace.choice] = arrived.get(trace.choice, 0) + trace.figures.success
     columns = [
         [trace.figures.time_s for trace in traces],
         [trace.figures.input_magnitude for trace in traces],
@@ -82,7 +95,8 @@ def figures(traces: list[TaskTrace]) -> list[str]:
         [float(trace.figures.mode_switches) for trace in traces],
     ]
     spread = [f"{np.mean(values):.1f} ± {np.std(values, ddof=1):.1f}" for values in columns]
-    return [f"{arrived} of {len(traces)}", *spread]
+    each = ", ".join(str(arrived[choice]) for choice in sorted(arrived))
+    return [f"{sum(arrived.values())} of {len(traces)}", each, *spread]
 
 
 if __name__ == "__main__":
