@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import final
 
 import numpy as np
 
 from latentarm.metrics.drives import Drive, drive_rows, measure_drive
 from latentarm.metrics.summary import Subject, summarise
-from latentarm.types import FloatArray, Row, StepRecord
+from latentarm.types import FloatArray, IntArray, Row, StepRecord
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +48,42 @@ def preference_alignment(points: FloatArray, needed: FloatArray) -> float:
         The mean dot product, in [-1, 1]; NaN for no moments.
     """
     return float(np.vecdot(points, needed).mean()) if len(points) else np.nan
+
+
+@final
+@dataclass(frozen=True)
+class StepAlignment:
+    """*Preference Alignment* while one step of a task was under way.
+
+    Attributes:
+        step: what was to be done, in words.
+        alignment: mean dot product, as `preference_alignment`.
+        ticks: of the loop that it took.
+    """
+
+    step: str
+    alignment: float
+    ticks: int
+
+
+def alignment_by_step(
+    steps: Sequence[str], under_way: IntArray, points: FloatArray, needed: FloatArray
+) -> tuple[StepAlignment, ...]:
+    """*Preference Alignment* in each step that was begun, in order.
+
+    Args:
+        steps: all steps in words.
+        under_way: (T,), index of the step that was under way.
+        points: (T, 3), see `preference_alignment`.
+        needed: (T, 3), as there.
+    """
+    found: list[StepAlignment] = []
+    for index, step in enumerate(steps):
+        here = under_way == index
+        if here.any():
+            mean = preference_alignment(points[here], needed[here])
+            found.append(StepAlignment(step, mean, int(here.sum())))
+    return tuple(found)
 
 
 def measure_task_drive(

@@ -17,7 +17,13 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.kinematics.pose_rows import thing_rows
 from latentarm.metrics.drives import Drive
-from latentarm.metrics.task_drives import TaskDrive, measure_task_drive, preference_alignment
+from latentarm.metrics.task_drives import (
+    StepAlignment,
+    TaskDrive,
+    alignment_by_step,
+    measure_task_drive,
+    preference_alignment,
+)
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.operator import Operator
 from latentarm.operators.person import Person, SimulatedPerson
@@ -82,6 +88,7 @@ class TaskTrace:
         position: (T, 3), the tool, m.
         input: (T, d).
         mode: (T,), index of the controller's mode.
+        aligned: *Preference Alignment* in each step that was begun, in order.
         states: how things stood, ten times per second, for film.
     """
 
@@ -95,6 +102,7 @@ class TaskTrace:
     position: FloatArray
     input: FloatArray
     mode: FloatArray
+    aligned: tuple[StepAlignment, ...]
     states: tuple[SceneState, ...]
 
     @property
@@ -242,6 +250,7 @@ class _Watch:
         self._position: list[FloatArray] = []
         self._points: list[FloatArray] = []
         self._needed: list[FloatArray] = []
+        self._under_way: list[int] = []
         self._states: list[SceneState] = []
         self._newest: SceneState
         self._done_s: list[float] = []
@@ -267,6 +276,7 @@ class _Watch:
         else:
             self._points.append(state.tool.rotation[:, 2])
             self._needed.append(waypoint.pose(state).rotation[:, 2])
+            self._under_way.append(self.progress.done)
             if self._stuck(waypoint, state):
                 self.ended = f"no nearer for {STUCK_S:g} s"
 
@@ -274,10 +284,12 @@ class _Watch:
         """What is kept."""
         spilled = [fails for fails in self._begun.failures if isinstance(fails, Spilled)]
         position = np.stack(self._position[: len(self.records)])
+        points, needed = np.array(self._points), np.array(self._needed)
+        steps = [step.name for step in self._begun.steps]
         measured = measure_task_drive(
             self.records,
             position,
-            preference_alignment(np.array(self._points), np.array(self._needed)),
+            preference_alignment(points, needed),
             self._force_n,
             steps_done=self.progress.share,
             success=self.progress.succeeded,
@@ -296,6 +308,7 @@ class _Watch:
             position=position,
             input=np.stack([record.input for record in self.records]),
             mode=np.array([record.mode for record in self.records]),
+            aligned=alignment_by_step(steps, np.array(self._under_way), points, needed),
             states=tuple(self._states),
         )
 

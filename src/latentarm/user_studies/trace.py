@@ -5,6 +5,7 @@ from typing import Any, Final, final
 
 import numpy as np
 
+from latentarm.metrics.task_drives import StepAlignment
 from latentarm.simulation.task_drive import TaskTrace
 from latentarm.types import FloatArray
 from latentarm.user_studies.definition import StudyTask
@@ -35,6 +36,7 @@ class Trace:
         plate_m: (K,), its distance from the closest plate, m; empty where that is not measured.
         stick: (BINS, BINS), time that the first two axes were in each cell, s, first axis across; rest does
             not count.
+        aligned: *Preference Alignment* in each step that was begun, in order; empty where it was not kept.
     """
 
     person: int
@@ -47,6 +49,7 @@ class Trace:
     position: tuple[tuple[float, ...], ...]
     plate_m: tuple[float, ...]
     stick: tuple[tuple[float, ...], ...]
+    aligned: tuple[StepAlignment, ...] = ()
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping."""
@@ -80,6 +83,9 @@ def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: T
         position=tuple(tuple(row) for row in _rounded(position)),
         plate_m=tuple(_rounded(plate_m)),
         stick=tuple(tuple(row) for row in _rounded(_stick(driven))),
+        aligned=tuple(
+            StepAlignment(one.step, round(one.alignment, DECIMALS), one.ticks) for one in driven.aligned
+        ),
     )
 
 

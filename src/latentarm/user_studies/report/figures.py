@@ -9,6 +9,8 @@ from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.record import Trial
 from latentarm.user_studies.report.boxes import box_figure, idle_figure
 from latentarm.user_studies.report.likert import likert_figure
+from latentarm.user_studies.report.people_apart import MOST_PEOPLE, people_figure, people_measures
+from latentarm.user_studies.report.steps import step_figure
 from latentarm.user_studies.report.ways import plate_figure, stick_figure, way_figure
 from latentarm.user_studies.trace import Trace
 
@@ -40,6 +42,8 @@ def figure_names(definition: Definition) -> tuple[str, ...]:
         "ratings",
         "idle",
         "plates",
+        "steps",
+        "people",
         *(f"{kind}_{task}" for task in tasks for kind in ("ways", "stick")),
     )
 
@@ -79,6 +83,16 @@ def draw(
     if any(trace.plate_m for trace in traces):
         caption = f"Goal error: distance of the tool from the closest plate in the course of a trial, {who}."
         found.append(Drawn("plates", plate_figure(definition, traces, who), caption))
+    if "preference_alignment" in measured and any(trace.aligned for trace in traces):
+        caption = (
+            f"Preference alignment in each step, {who}: how the tool points, compared with how the step needs"
+            " it. Dots are people's means, lines the mean of those who came so far."
+        )
+        found.append(Drawn("steps", step_figure(definition, traces, who), caption))
+    each = people_measures(measured)
+    if each and len({trial.person for trial in trials}) <= MOST_PEOPLE:
+        caption = f"Each of the {who} separately; in the lighter shade the time without input."
+        found.append(Drawn("people", people_figure(definition, trials, each, who), caption))
     for task in definition.tasks:
         if any(trace.task == task.name for trace in traces):
             caption = f"Ways of the tool in {task.label}, {who}. The scene differs from person to person."
