@@ -3,17 +3,18 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 from matplotlib.figure import Figure
 
 from figure_faults import faults
 
 HERE = Path(__file__).parent
 
-# On a busy machine a single example may take long without anything being wrong. Fifty examples hit the laws
-# well; those of motion and geometry have thousands each night.
-settings.register_profile("latentarm", max_examples=50, deadline=None)
-settings.register_profile("thorough", max_examples=10_000, deadline=None)
+# On a busy machine a single example, or making one, may take long without anything being wrong. Fifty
+# examples hit the laws well; those of motion and geometry have thousands each night.
+SLOW = (HealthCheck.too_slow,)
+settings.register_profile("latentarm", max_examples=50, deadline=None, suppress_health_check=SLOW)
+settings.register_profile("thorough", max_examples=10_000, deadline=None, suppress_health_check=SLOW)
 settings.load_profile("latentarm")
 
 LONGEST_FIRST = ("plugins", "studies", "models", "parallel", "cli", "docs", "simulation", "control")
