@@ -3,19 +3,27 @@
 It speaks the servos' protocol 0 (ping, read, write, synchronous read and write) with their registers, so
 that LeRobot's own classes and the manufacturer's SDK talk to it as to hardware. A servo with torque follows
 its goal with a lag; without torque it stays where it is, and switching torque on sends it to its goal.
+
+Run as a process, it is told what to do over standard input, a JSON object a line, and answers the same way;
+see `FeetechBus`.
 """
 
+import json
+import math
 import os
 import select
-import threading
+import subprocess
+import sys
 import time
 import tty
+from collections import deque
 from contextlib import suppress
-from typing import Final
+from typing import Any, Final, Self
 
 MODEL: Final = 777
 PING, READ, WRITE, SYNC_READ, SYNC_WRITE = 1, 2, 3, 0x82, 0x83
-MIN_POSITION, MAX_POSITION, OFFSET, TORQUE, GOAL, PRESENT, VOLTS, CELSIUS = 9, 11, 31, 40, 42, 56, 62, 63
+MIN_POSITION, MAX_POSITION, OFFSET, TORQUE, ACCELERATION = 9, 11, 31, 40, 41
+GOAL, PRESENT, VOLTS, CELSIUS = 42, 56, 62, 63
 
 LAG_S: Final = 0.05
 FASTEST: Final = 3000.0
@@ -44,53 +52,66 @@ class Servo:
     def elapse(self, span_s: float) -> None:
         if self.registers[TORQUE]:
             most = FASTEST * span_s
-            way = (self.get(GOAL) - self.at) * min(span_s / LAG_S, 1.0)
+            way = (self.get(GOAL) - self.at) * -math.expm1(-span_s / LAG_S)
             self.at += min(max(way, -most), most)
         self.put(PRESENT, round(self.at))
 
 
-class FeetechBus:
-    """Servos 1 to 6 behind ``port``; as a context manager it is switched off at the end.
-
-    Attributes:
-        servos: by their numbers.
-        port: path of the serial port.
-        written: every write as time (monotonic), servo, address and data.
-        silent: whether the bus answers nothing any more.
-    """
+class _Bus:
+    """The servos, their wire and their time."""
 
     def __init__(self) -> None:
         self.servos = {number: Servo(number) for number in range(1, 7)}
-        self.written: list[tuple[float, int, int, bytes]] = []
+        self.written: deque[tuple[float, int, int, list[int]]] = deque(maxlen=10_000)
+        self.places: deque[tuple[float, list[int]]] = deque(maxlen=2000)
         self.silent = False
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
         self.port = os.ttyname(self._slave)
-        self._ended = threading.Event()
-        self._thread = threading.Thread(target=self._serve)
 
-    def __enter__(self) -> "FeetechBus":
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._ended.set()
-        self._thread.join()
-        os.close(self._master)
-        os.close(self._slave)
-
-    def _serve(self) -> None:
-        with suppress(OSError):  # where the system allows it: hardware is not late on a busy computer
-            os.sched_setscheduler(threading.get_native_id(), os.SCHED_RR, os.sched_param(11))
-        waiting, before_s = b"", time.monotonic()
-        while not self._ended.is_set():
-            if select.select([self._master], [], [], 0.002)[0]:
-                waiting += os.read(self._master, 4096)
+    def serve(self) -> None:
+        """Serve the wire, and the orders of the test, until there are no more."""
+        _tell(self.port)
+        waiting, orders, before_s = b"", b"", time.monotonic()
+        orders_from = sys.stdin.fileno()
+        while True:
+            ready = select.select([self._master, orders_from], [], [], 0.002)[0]
             now_s = time.monotonic()
             for servo in self.servos.values():
                 servo.elapse(now_s - before_s)
+            self.places.append((now_s, [servo.get(PRESENT) for servo in self.servos.values()]))
             before_s = now_s
-            waiting = self._answer(waiting)
+            if self._master in ready:
+                waiting = self._answer(waiting + os.read(self._master, 4096))
+            if orders_from in ready:
+                if not (more := os.read(orders_from, 1 << 16)):
+                    return
+                *lines, orders = (orders + more).split(b"\n")
+                for line in lines:
+                    _tell(self._do(json.loads(line)))
+
+    def _do(self, order: dict[str, Any]) -> Any:
+        match order["do"]:
+            case "state":
+                rows = self.servos.items()
+                return [(number, servo.at, servo.registers[TORQUE]) for number, servo in rows]
+            case "place":
+                for servo in self.servos.values():
+                    servo.at = order["at"]
+            case "put":
+                register = order["address"], order["address"] + len(order["data"])
+                self.servos[order["number"]].registers[slice(*register)] = bytes(order["data"])
+            case "remove":
+                del self.servos[order["number"]]
+            case "silent":
+                self.silent = order["silent"]
+            case "written":
+                return list(self.written)
+            case "places":
+                return list(self.places)
+            case _:
+                raise ValueError(order)
+        return None
 
     def _answer(self, waiting: bytes) -> bytes:
         while (start := waiting.find(b"\xff\xff")) >= 0 and len(waiting) >= start + 4:
@@ -122,8 +143,85 @@ class FeetechBus:
 
     def _write(self, number: int, address: int, data: bytes) -> None:
         self.servos[number].registers[address : address + len(data)] = data
-        self.written.append((time.monotonic(), number, address, data))
+        self.written.append((time.monotonic(), number, address, list(data)))
 
     def _status(self, number: int, data: bytes) -> None:
         body = bytes([number, len(data) + 2, 0]) + data
         os.write(self._master, b"\xff\xff" + body + bytes([~sum(body) & 0xFF]))
+
+
+def _tell(what: object) -> None:
+    sys.stdout.write(json.dumps(what) + "\n")
+    sys.stdout.flush()
+
+
+class FeetechBus:
+    """Servos 1 to 6 behind ``port``, in a process of their own, so that they keep time whatever a test does.
+
+    As a context manager it is switched off at the end.
+
+    Attributes:
+        port: path of the serial port.
+    """
+
+    def __init__(self) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, __file__], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+        self.port: str = json.loads(self._line())
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.communicate("")
+
+    def places(self) -> list[float]:
+        """Where each servo is, encoder steps."""
+        return [at for _, at, _ in self._do("state")]
+
+    def powered(self) -> list[bool]:
+        """Whether each servo's torque is on."""
+        return [bool(torque) for _, _, torque in self._do("state")]
+
+    def place(self, at: float) -> None:
+        """Turn all servos by hand to an encoder step."""
+        self._do("place", at=at)
+
+    def put(self, number: int, address: int, value: int, size: int = 1) -> None:
+        """Set a register of a servo."""
+        self._do("put", number=number, address=address, data=list(value.to_bytes(size, "little")))
+
+    def remove(self, number: int) -> None:
+        """Pull a servo off the bus."""
+        self._do("remove", number=number)
+
+    def silence(self, silent: bool) -> None:
+        """Let the bus answer nothing any more, or answer again."""
+        self._do("silent", silent=silent)
+
+    def written(self) -> list[tuple[float, int, int, bytes]]:
+        """The newest writes as time (monotonic, s), servo, address and data."""
+        return [(at_s, number, address, bytes(data)) for at_s, number, address, data in self._do("written")]
+
+    def trace(self) -> list[tuple[float, list[int]]]:
+        """The last seconds: time (monotonic, s), and what the servos' encoders said."""
+        return [(at_s, places) for at_s, places in self._do("places")]
+
+    def _do(self, what: str, **order: object) -> Any:
+        assert self._process.stdin is not None
+        self._process.stdin.write(json.dumps({"do": what, **order}) + "\n")
+        self._process.stdin.flush()
+        return json.loads(self._line())
+
+    def _line(self) -> str:
+        assert self._process.stdout is not None
+        if not (line := self._process.stdout.readline()):
+            raise RuntimeError("the bus has ended")
+        return line
+
+
+if __name__ == "__main__":
+    with suppress(OSError):  # where the system allows it: hardware is not late on a busy computer
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(11))
+    _Bus().serve()

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arms.feetech_bus import CELSIUS, GOAL, TORQUE, FeetechBus
+from arms.feetech_bus import ACCELERATION, CELSIUS, GOAL, MIN_POSITION, TORQUE, FeetechBus
 from latentarm.arms.address import parse_address
 from latentarm.arms.contract import check_arm
 from latentarm.arms.lerobot.arm import STOPS_AFTER_S, LerobotArm
@@ -66,7 +66,8 @@ def _xml() -> str:
         f'<geom type="capsule" size="0.02 0.04" mass="0.1"/>'
         for name, axis in zip(MOTORS[:5], ("0 0 1", "0 1 0", "0 1 0", "0 1 0", "0 0 1"), strict=True)
     )
-    return f'<mujoco model="so101"><worldbody>{bodies}<site name="tool"/>{"</body>" * 5}</worldbody></mujoco>'
+    world = f'<worldbody>{bodies}<site name="tool"/>{"</body>" * 5}</worldbody>'
+    return f'<mujoco model="so101"><compiler angle="radian"/>{world}</mujoco>'
 
 
 @pytest.fixture(scope="module")
@@ -141,7 +142,7 @@ def _drive(arm: LerobotArm, ticks: int, gripper: GripperCommand | None = None) -
 
 
 def _places(bus: FeetechBus) -> np.ndarray:
-    return np.array([bus.servos[number].at for number in range(1, 6)]) / STEPS_PER_RAD
+    return np.array(bus.places()[:5]) / STEPS_PER_RAD
 
 
 def _stands_still(bus: FeetechBus) -> None:
@@ -167,17 +168,16 @@ def test_looking_and_connecting_change_nothing(arm: LerobotArm, bus: FeetechBus)
     arm.connect()
     time.sleep(0.3)
     arm.close()
-    assert not bus.written
+    assert not bus.written()
 
 
 @needs_lerobot
 def test_enabling_does_not_move_it_though_the_old_goal_is_elsewhere(arm: LerobotArm, bus: FeetechBus) -> None:
-    for servo in bus.servos.values():
-        servo.at = 1500.0
+    bus.place(1500.0)
     _enabled(arm)
     time.sleep(0.3)
-    assert all(servo.registers[TORQUE] for servo in bus.servos.values())
-    assert all(abs(servo.at - 1500.0) < 1.5 for servo in bus.servos.values())
+    assert all(bus.powered())
+    assert all(abs(at - 1500.0) < 1.5 for at in bus.places())
 
 
 @needs_lerobot
@@ -214,7 +214,7 @@ def test_it_stays_under_power_and_moves_no_more(arm: LerobotArm, bus: FeetechBus
     time.sleep(0.2)
     arm.send(Command(VELOCITY, duration_s=1.0))
     _stands_still(bus)
-    assert all(servo.registers[TORQUE] for servo in bus.servos.values())
+    assert all(bus.powered())
     arm.connect()
     arm.send(Command(VELOCITY, duration_s=1.0))
     _stands_still(bus)
@@ -228,7 +228,7 @@ def test_the_gripper_closes(arm: LerobotArm, bus: FeetechBus) -> None:
     _drive(arm, 50, GripperCommand(0.0, speed_m_s=0.05, force_n=5.0))
     assert arm.read().gripper.width_m == pytest.approx(0.015, abs=0.005)
     time.sleep(1.0)
-    assert bus.servos[6].at == pytest.approx(1000.0, abs=20.0)
+    assert bus.places()[5] == pytest.approx(1000.0, abs=20.0)
 
 
 @needs_lerobot
@@ -243,7 +243,7 @@ def test_it_holds_its_position_when_the_process_next_to_it_is_killed(
     assert np.abs(_places(bus) - at).max() < LAG_RAD
     assert arm.status().phase == "fault"
     _stands_still(bus)
-    assert all(servo.registers[TORQUE] for servo in bus.servos.values())
+    assert all(bus.powered())
     arm.close()
     _enabled(arm)
 
@@ -271,28 +271,27 @@ def test_it_stops_when_the_process_that_drives_it_is_killed_or_stalls(
     bus: FeetechBus, robot: Robot, calibration: Path, how: signal.Signals
 ) -> None:
     model = str(robot.model_path)
-    driver = subprocess.Popen(
+    with subprocess.Popen(
         [sys.executable, "-c", DRIVEN, str(HERE.parents[1]), model, bus.port, str(calibration)],
         stdout=subprocess.PIPE,
         text=True,
-    )
-    try:
-        assert driver.stdout is not None
-        assert driver.stdout.readline() == "driving\n"
-        time.sleep(0.5)
-        assert bus.written[-1][2] == GOAL
-        os.kill(driver.pid, how)
-        ended_s = time.monotonic()
-        time.sleep(0.5)
-        goals = [(at_s, number, data) for at_s, number, address, data in bus.written if address == GOAL]
-        final = {number: data for _, number, data in goals}
-        last_change_s = max(at_s for at_s, number, data in goals if data != final[number])
-        assert last_change_s - ended_s < 0.05 + STOPS_AFTER_S
-        _stands_still(bus)
-        assert all(servo.registers[TORQUE] for servo in bus.servos.values())
-    finally:
-        driver.kill()
-        driver.wait()
+    ) as driver:
+        try:
+            assert driver.stdout is not None
+            assert driver.stdout.readline() == "driving\n"
+            time.sleep(0.5)
+            assert bus.written()[-1][2] == GOAL
+            os.kill(driver.pid, how)
+            ended_s = time.monotonic()
+            time.sleep(0.5)
+            goals = [(at_s, number, data) for at_s, number, address, data in bus.written() if address == GOAL]
+            final = {number: data for _, number, data in goals}
+            last_change_s = max(at_s for at_s, number, data in goals if data != final[number])
+            assert last_change_s - ended_s < 0.05 + STOPS_AFTER_S
+            _stands_still(bus)
+            assert all(bus.powered())
+        finally:
+            driver.kill()
 
 
 @needs_lerobot
@@ -301,13 +300,13 @@ def test_a_bus_that_falls_silent_is_a_fault_that_can_be_recovered_from(
 ) -> None:
     _enabled(arm)
     _drive(arm, 20)
-    bus.silent = True
+    bus.silence(True)
     _wait(lambda: arm.status().phase == "fault")
     assert "bus does not answer" in arm.status().reason
     before = arm.read().time_s
     time.sleep(0.3)
     assert arm.read().time_s == before
-    bus.silent = False
+    bus.silence(False)
     _wait(lambda: arm.read().time_s > before)
     arm.recover()
     _wait(lambda: arm.status().phase == "disabled")
@@ -317,31 +316,41 @@ def test_a_bus_that_falls_silent_is_a_fault_that_can_be_recovered_from(
 @needs_lerobot
 def test_a_motor_that_lets_go_is_a_fault_by_name(arm: LerobotArm, bus: FeetechBus) -> None:
     _enabled(arm)
-    bus.servos[2].registers[TORQUE] = 0
+    bus.put(2, TORQUE, 0)
     _wait(lambda: arm.status().phase == "fault")
     assert "shoulder_lift has switched its torque off" in arm.status().reason
 
 
 @needs_lerobot
-@pytest.mark.parametrize(("wrong", "says"), [("hot", "elbow_flex is at 66 °C"), ("range", "calibration")])
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        ("hot", "elbow_flex is at 66 °C"),
+        ("range", "calibration"),
+        ("slow", "elbow_flex is under power and set"),
+    ],
+)
 def test_what_looking_refuses_connecting_refuses(
     arm: LerobotArm, bus: FeetechBus, wrong: str, says: str
 ) -> None:
     if wrong == "hot":
-        bus.servos[3].registers[CELSIUS] = 66
+        bus.put(3, CELSIUS, 66)
+    elif wrong == "range":
+        bus.put(3, MIN_POSITION, 1200, size=2)
     else:
-        bus.servos[3].put(9, 1200)
+        bus.put(3, ACCELERATION, 10)
+        bus.put(3, TORQUE, 1)
     (refusal,) = arm.look().refusals
     assert says in refusal
     with pytest.raises(UserError) as refused:
         arm.connect()
     assert str(refused.value) == refusal
-    assert not bus.written
+    assert not bus.written()
 
 
 @needs_lerobot
 def test_a_missing_motor_or_port_is_one_sentence(arm: LerobotArm, bus: FeetechBus, ports: Path) -> None:
-    del bus.servos[4]
+    bus.remove(4)
     for ask in (arm.look, arm.connect):
         with pytest.raises(UserError, match="Missing motor IDs: - 4"):
             ask()
@@ -381,15 +390,15 @@ class SimulatedServos(StandIn):
 
     def break_down(self) -> None:
         """A motor lets go."""
-        self._bus.servos[2].registers[TORQUE] = 0
+        self._bus.put(2, TORQUE, 0)
 
     def cut(self) -> None:
         """See the base class."""
-        self._bus.silent = True
+        self._bus.silence(True)
 
     def repair(self) -> None:
         """See the base class."""
-        self._bus.silent = False
+        self._bus.silence(False)
 
 
 @needs_lerobot
@@ -407,8 +416,9 @@ class TestLerobotArm(RealArmContract):
     def only(cls, robot: Robot, calibration: Path, bus: FeetechBus) -> LerobotArm:
         return LerobotArm(robot, _address(Path(bus.port), calibration), now_s)
 
-    @pytest.fixture
-    def robot(self, robot: Robot) -> Robot:
+    @pytest.fixture(scope="class")
+    @classmethod
+    def robot(cls, robot: Robot) -> Robot:
         return robot
 
     @pytest.fixture
@@ -416,11 +426,15 @@ class TestLerobotArm(RealArmContract):
         return SimulatedServos(bus)
 
     @pytest.fixture
+    def address(self, bus: FeetechBus, calibration: Path) -> str:
+        return f"lerobot://so101_follower?port={bus.port}&calibration={calibration}"
+
+    @pytest.fixture
     def make(self, only: LerobotArm) -> Callable[[], LerobotArm]:
         return lambda: only
 
     @pytest.fixture
     def refused(self, only: LerobotArm, bus: FeetechBus) -> Iterator[Callable[[], LerobotArm]]:
-        bus.servos[3].registers[CELSIUS] = 66
+        bus.put(3, CELSIUS, 66)
         yield lambda: only
-        bus.servos[3].registers[CELSIUS] = 30
+        bus.put(3, CELSIUS, 30)

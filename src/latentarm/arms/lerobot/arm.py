@@ -1,5 +1,6 @@
 """A LeRobot arm as an arm of ours: ``lerobot://so101_follower?port=/dev/ttyACM0&calibration=FILE.json``."""
 
+import weakref
 from collections.abc import Callable, Mapping
 from importlib.util import find_spec
 from typing import Any, Final, cast, final
@@ -172,6 +173,8 @@ class LerobotArm(RealArm):
         """Start the process next to the bus, which says what the arm is."""
         process = HelperProcess("latentarm.arms.lerobot.keeper")
         self._process = process
+        # Closing keeps it, because LeRobot takes seconds to load; it ends with this object at the latest.
+        self._ending = weakref.finalize(self, process.end, _ENDING_S)
         limits, gripper = self._robot.limits, self._robot.gripper
         process.port.send(
             {
@@ -194,9 +197,8 @@ class LerobotArm(RealArm):
         return process
 
     def _end(self) -> None:
-        if self._process is not None:
-            self._process.end(_ENDING_S)
-            self._process = None
+        self._ending()
+        self._process = None
 
     def _misfits(self) -> tuple[str, ...]:
         """Why the arm is not the robot."""

@@ -1,12 +1,15 @@
 """A robot of LeRobot by its motors' bus. Nothing here imports LeRobot before a `MotorsBus` is made."""
 
+import math
+import select
 import statistics
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import fields
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Final, final
+from typing import Any, Final, TypeVar, final
 
 from latentarm.arms.lerobot.options import Options
 from latentarm.errors import UserError
@@ -22,8 +25,23 @@ GRIPPER: Final = "gripper"
 HOTTEST_C: Final = 60
 """A motor that is hotter is not driven, °C; its own protection is at 70."""
 
+_ANSWER_S: Final = 0.002
+"""The longest wait for a byte before the servos' SDK looks again whether its own time is over, s."""
+
+RAMP_RAD_S2: Final = 100 * 2 * math.pi / 4096
+"""Unit of the register Acceleration of Feetech's servos: 100 encoder steps/s², in rad/s²."""
+
+SLOWEST_RAMP_RAD_S2: Final = 10.0
+"""A motor that speeds up and slows down by less, by its own registers, does not stop when it is told to."""
+
+_TRIES: Final = 3
+"""A bus loses an answer now and then: what has time is asked so many times."""
+
 _FAILURES: Final = (OSError, RuntimeError, ValueError)
 """What LeRobot raises where a bus or a motor does not answer as it should."""
+
+
+_Answer = TypeVar("_Answer")
 
 
 @final
@@ -44,6 +62,7 @@ class MotorsBus:
         self._options = options
         self._robot = _robot(options)
         self._bus: Any = self._robot.bus
+        _sleep_until_answers_come(self._bus.port_handler)
         self.motors: tuple[str, ...] = tuple(self._bus.motors)
         self.joints = tuple(name for name in self.motors if name != GRIPPER)
         degrees = import_module("lerobot.motors").MotorNormMode.DEGREES
@@ -61,11 +80,17 @@ class MotorsBus:
             UserError: the port or a motor does not answer.
         """
         try:
-            self._bus.connect()
+            _again(self._open_once)
         except _FAILURES as error:
-            self.close()
             why = " ".join(str(error.__cause__ or error).split())
             raise UserError(f"{self._options.port} has no {self._options.kind}: {why[:300]}") from error
+
+    def _open_once(self) -> None:
+        try:
+            self._bus.connect()
+        except _FAILURES:
+            self.close()
+            raise
 
     def close(self) -> None:
         """Close the port; motors under power hold their positions."""
@@ -79,7 +104,7 @@ class MotorsBus:
             OSError: a motor does not answer.
         """
         found: list[str] = []
-        if not self._bus.is_calibrated:
+        if not _again(lambda: self._bus.is_calibrated):
             kind, port, name = self._options.kind, self._options.port, self._options.name
             found.append(
                 f"The motors do not have the calibration {self._robot.calibration_fpath}: run"
@@ -88,6 +113,15 @@ class MotorsBus:
         for motor, celsius in self._read("Present_Temperature").items():
             if celsius > HOTTEST_C:
                 found.append(f"The motor {motor} is at {celsius} °C: let it cool below {HOTTEST_C} °C.")
+        if self._has("Acceleration"):
+            powered = self._read("Torque_Enable")
+            for motor, units in self._read("Acceleration").items():
+                # LeRobot sets it to 254 where a motor is configured, which needs torque off.
+                if powered[motor] and 0.0 < (ramp := units * RAMP_RAD_S2) < SLOWEST_RAMP_RAD_S2:
+                    found.append(
+                        f"The motor {motor} is under power and set to slow down by {ramp:.1f} rad/s² at most:"
+                        " hold the arm and switch its supply off and on, so that enabling configures it."
+                    )
         return tuple(found)
 
     def facts(self) -> dict[str, str]:
@@ -113,6 +147,11 @@ class MotorsBus:
         if self._has("Firmware_Major_Version"):
             major, minor = self._read("Firmware_Major_Version"), self._read("Firmware_Minor_Version")
             told["firmware"] = ", ".join(sorted({f"{major[name]}.{minor[name]}" for name in self.motors}))
+        if self._has("Acceleration"):
+            ramp = min(self._read("Acceleration").values()) * RAMP_RAD_S2
+            told["acceleration"] = (
+                f"{ramp:.0f} rad/s² by its registers" if ramp else "no limit in its registers"
+            )
         if self._has("Present_Voltage"):
             told["supply"] = f"{min(self._read('Present_Voltage').values()) / 10:.1f} V at the weakest motor"
         if self._bus.calibration:
@@ -164,9 +203,9 @@ class MotorsBus:
         # A motor goes to its last goal as soon as torque is on.
         self._bus.sync_write("Goal_Position", dict(self._read("Present_Position")), normalize=False)
         if len(limp) == len(self.motors):
-            self._robot.configure()
+            _again(self._robot.configure)
         else:
-            self._bus.enable_torque(list(limp))
+            self._bus.enable_torque(list(limp), num_retry=_TRIES)
 
     def _has(self, register: str) -> bool:
         """Whether the motors have a register: those of other makers have others."""
@@ -175,6 +214,29 @@ class MotorsBus:
 
     def _read(self, register: str) -> dict[str, int]:
         return self._bus.sync_read(register, normalize=False, num_retry=1)
+
+
+def _again(ask: Callable[[], _Answer]) -> _Answer:
+    """Ask, and ask again where the bus does not answer."""
+    for _ in range(_TRIES - 1):
+        with suppress(*_FAILURES):
+            return ask()
+    return ask()
+
+
+def _sleep_until_answers_come(port: Any) -> None:
+    """Let the port of a servos' SDK sleep while there is nothing to read.
+
+    The SDK asks for bytes in a loop that never sleeps. At real-time priority that keeps the kernel's worker
+    that brings the bytes off the processor, so that answers came too late on a busy machine.
+    """
+    read_at_once = port.readPort
+
+    def read(length: int) -> Any:
+        select.select([port.ser], [], [], _ANSWER_S)
+        return read_at_once(length)
+
+    port.readPort = read
 
 
 def _robot(options: Options) -> Any:

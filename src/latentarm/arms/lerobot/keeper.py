@@ -32,7 +32,7 @@ _FAILURES: Final = 5
 """After so many rounds in which the bus did not answer the arm has a fault."""
 
 _SILENT_PERIOD_S: Final = 0.2
-"""Of the rounds after that: the servos' SDK waits for an answer without sleeping."""
+"""Of the rounds after that: each one waits for answers that do not come."""
 
 _TORQUE_ROUNDS: Final = 10
 """In every so many rounds it is seen whether all motors are still under power."""
