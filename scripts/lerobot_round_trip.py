@@ -10,10 +10,11 @@ needed: the demonstrations are scripted, the person is scripted, and the arm is 
    positions, a video.
 2. `latentarm import`, `train` and `drive --arm mujoco`.
 3. `lerobot-record` drives the trained run with a stick; `lerobot-replay` replays an episode;
-   `lerobot-dataset-viz` shows it.
+   `lerobot-dataset-viz` shows it; `lerobot-edit-dataset` describes the dataset and deletes an episode.
 4. `latentarm import`, `train` and `drive` on what was recorded there.
+5. `lerobot-record` once more, with our driver of the SO-101 and simulated servos behind a serial port.
 
-OUT/figures.json has all figures.
+Each stage says how long it took; OUT/figures.json has all figures.
 """
 
 import json
@@ -22,20 +23,25 @@ import struct
 import sys
 import threading
 import time
-from collections.abc import Callable
-from contextlib import redirect_stdout
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stdout
+from dataclasses import dataclass
 from io import StringIO
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 os.environ.setdefault("HF_HUB_OFFLINE", "1")
 os.environ.setdefault("HF_DATASETS_OFFLINE", "1")
 
 import numpy as np
+from latentarm_process.client import DrivingProcess, Seen
 from lerobot.datasets import LeRobotDataset
-from lerobot.scripts import lerobot_dataset_viz, lerobot_record, lerobot_replay
-from lerobot_robot_latentarm import Latentarm
+from lerobot.scripts import lerobot_dataset_viz, lerobot_edit_dataset, lerobot_record, lerobot_replay
 
 from latentarm.cli import main as latentarm
+from latentarm.demonstrations.dataset import read_dataset
 from latentarm.demonstrations.importing import import_demonstrations
 from latentarm.errors import UserError
 from latentarm.robots.catalogue import load_robot
@@ -43,6 +49,9 @@ from latentarm.robots.limits_file import read_limits
 from latentarm.robots.robot import Robot
 from latentarm.tasks.reach import Reach
 from latentarm.types import FloatArray
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+from arms.feetech_bus import FeetechBus
 
 CACHE = Path(os.environ.get("LATENTARM_ARMS") or Path.home() / ".cache" / "latentarm" / "arms")
 MODEL = Path(
@@ -120,15 +129,13 @@ class Person:
         os.close(self._pipe)
 
 
-def tool(run: Callable[[], object], *arguments: str) -> float:
-    """Run one of LeRobot's commands, here, so that LeRobot is imported once; how long it took, s."""
+def tool(run: Callable[[], object], *arguments: str) -> None:
+    """Run one of LeRobot's commands, here, so that LeRobot is imported once."""
     before, sys.argv = sys.argv, ["lerobot", *arguments]
-    begun_s = time.monotonic()
     try:
         run()
     finally:
         sys.argv = before
-    return time.monotonic() - begun_s
 
 
 def ours(*arguments: str) -> list[dict[str, object]]:
@@ -144,15 +151,52 @@ def ours(*arguments: str) -> list[dict[str, object]]:
     )
 
 
-def reached(run: Path, model: Path, drives: str) -> dict[str, float]:
-    """How `latentarm drive` in MuJoCo ends along held-out episodes, by measure."""
+def reached(run: Path, drives: str) -> dict[str, object]:
+    """How `latentarm drive` in MuJoCo ends along held-out episodes, steered by a simulated person."""
     rows = ours("drive", str(run), "--arm", "mujoco", "--drives", drives, "--out", f"{run}-drives")
-    return {str(row["measure"]): float(str(row["mean"])) for row in rows if row.get("mean") is not None}
+    kept = ("success_rate", "time_s", "final_distance")
+    return {
+        str(row["measure"]): {key: row[key] for key in ("mean", "sd", "n", "unit")}
+        for row in rows
+        if row["measure"] in kept
+    }
 
 
-def states(dataset: Path, episode: int, joints: int) -> FloatArray:
-    """(T, n), what an episode that was recorded through the plug-in says of the joints, rad."""
-    found = LeRobotDataset("local/recorded", root=dataset, episodes=[episode])
+def record(dataset: Path, driven: tuple[str, ...], episodes: int, seconds: int) -> None:
+    """Let a scripted person drive a run with `lerobot-record`."""
+    stick = dataset.with_name(f"{dataset.name}-stick")
+    person = Person(stick)
+    tool(
+        lerobot_record.main,
+        *driven,
+        "--teleop.type=latentarm_stick",
+        f"--teleop.device={stick}",
+        f"--dataset.repo_id=local/{dataset.name}",
+        f"--dataset.root={dataset}",
+        "--dataset.single_task=move about",
+        f"--dataset.num_episodes={episodes}",
+        f"--dataset.episode_time_s={seconds}",
+        "--dataset.reset_time_s=2",
+        "--dataset.push_to_hub=false",
+        "--play_sounds=false",
+    )
+    person.leave()
+
+
+def record_by_servos(dataset: Path, driven: tuple[str, ...], joints: tuple[str, ...]) -> None:
+    """The same with our driver of the SO-101, LeRobot's class of it, and simulated servos."""
+    calibration = dataset.with_name("servos.json")
+    ranges = {"drive_mode": 0, "homing_offset": 0, "range_min": 1000, "range_max": 3000}
+    motors = {name: {"id": index + 1, **ranges} for index, name in enumerate((*joints, "gripper"))}
+    calibration.write_text(json.dumps(motors))
+    with FeetechBus() as bus:
+        address = f"lerobot://so101_follower?port={bus.port}&calibration={calibration}"
+        record(dataset, (*driven, f"--robot.arm={address}"), episodes=2, seconds=8)
+
+
+def states(dataset: Path, joints: int) -> FloatArray:
+    """(T, n), what the first episode recorded through the plug-in says of the joints, rad."""
+    found = LeRobotDataset(f"local/{dataset.name}", root=dataset, episodes=[0])
     return np.array([found[index]["observation.state"][:joints].numpy() for index in range(found.num_frames)])
 
 
@@ -165,86 +209,147 @@ def refusal(dataset: Path, robot: Robot) -> str:
     return ""
 
 
+class Report:
+    """Figures, and how long each stage took.
+
+    Attributes:
+        figures: by what they are.
+    """
+
+    def __init__(self) -> None:
+        self.figures: dict[str, Any] = {"stages, min": {}}
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time a stage and say so."""
+        begun_s = time.monotonic()
+        yield
+        took_min = (time.monotonic() - begun_s) / 60.0
+        self.figures["stages, min"][name] = round(took_min, 2)
+        sys.stderr.write(f"== {name}: {took_min:.2f} min\n")
+
+
+@contextmanager
+def watched() -> Iterator[list[Seen]]:
+    """What the driving process sees, each time that LeRobot asks."""
+    seen: list[Seen] = []
+    look = DrivingProcess.look
+
+    def watch(process: DrivingProcess) -> Seen:
+        seen.append(look(process))
+        return seen[-1]
+
+    DrivingProcess.look = watch
+    try:
+        yield seen
+    finally:
+        DrivingProcess.look = look
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much is recorded and trained."""
+
+    demonstrated: int
+    recorded: int
+    seconds: int
+    epochs: tuple[str, ...]
+    drives: str
+
+
+QUICK = Size(demonstrated=6, recorded=4, seconds=5, epochs=("--epochs", "5"), drives="1")
+FULL_SIZE = Size(demonstrated=30, recorded=12, seconds=12, epochs=(), drives="5")
+
+
+def train(data: Path, run: Path, size: Size) -> None:
+    """Train one model on joints and gripper."""
+    options = ("--seeds", "1", "--context", "joints", "gripper", *size.epochs)
+    ours("train", "--demonstrations", str(data), *options, "--out", str(run))
+
+
+def loop_figures(seen: list[Seen]) -> dict[str, object]:
+    """How the 100 Hz loop went, and how often the arm stopped."""
+    stops = [after.stopped for before, after in pairwise(seen) if after.stopped and not before.stopped]
+    met = round(seen[-1].ticks * seen[-1].met_share)
+    return {"ticks": seen[-1].ticks, "deadlines met": met, "stops": dict(Counter(stops))}
+
+
 def main() -> None:
     """Do it all, in OUT."""
-    out, quick = Path(sys.argv[1]).resolve(), "--quick" in sys.argv
+    out, size = Path(sys.argv[1]).resolve(), QUICK if "--quick" in sys.argv else FULL_SIZE
     out.mkdir(parents=True)
     os.environ.setdefault("HF_HOME", str(out / "home"))
     robot = load_robot(str(MODEL), None, read_limits(LIMITS))
-    figures: dict[str, object] = {}
-
-    write_so101(out / "so101", robot, 6 if quick else 30)
-    figures["refused without a unit"] = refusal(out / "so101", robot)
+    report = Report()
+    figures, stage = report.figures, report.stage
     stated = ("--robot", str(MODEL), "--limits", str(LIMITS))
-    ours("import", str(out / "so101"), str(out / "so101-imported"), *stated, "--units", "deg")
-    epochs = ("--epochs", "5") if quick else ()
-    trained = ("--seeds", "1", "--context", "joints", "gripper", *epochs)
-    first = out / "so101-run"
-    ours("train", "--demonstrations", str(out / "so101-imported"), *trained, "--out", str(first))
-    figures["driven from the SO-101 dataset"] = reached(first, MODEL, "1" if quick else "3")
+    so101, recorded = out / "so101", out / "recorded"
+    first, second = out / "so101-run", out / "recorded-run"
 
-    person = Person(out / "stick")
-    recorded = out / "recorded"
-    episodes, seconds = (2, 6) if quick else (6, 12)
-    heard: list[list[float]] = []
-    look = Latentarm.get_observation
+    with stage("LeRobot writes an SO-101 dataset of scripted demonstrations"):
+        write_so101(so101, robot, size.demonstrated)
+    with stage("import it"):
+        figures["refused without a unit"] = refusal(so101, robot)
+        ours("import", str(so101), str(out / "so101-imported"), *stated, "--units", "deg")
+    with stage("train on it"):
+        train(out / "so101-imported", first, size)
+    with stage("drive that in MuJoCo"):
+        figures["driven from the SO-101 dataset"] = reached(first, size.drives)
 
-    def listening(arm: Latentarm) -> dict[str, object]:
-        seen = look(arm)
-        heard.append([float(str(seen[f"{joint}.pos"])) for joint in robot.joint_names])
-        return seen
-
-    robot_options = ("--robot.type=latentarm", f"--robot.run={first}", "--robot.arm=mujoco")
-    figures["lerobot-record, s"] = tool(
-        lerobot_record.main,
-        *robot_options,
-        "--teleop.type=latentarm_stick",
-        f"--teleop.device={out / 'stick'}",
-        "--dataset.repo_id=local/recorded",
-        f"--dataset.root={recorded}",
-        "--dataset.single_task=move about",
-        f"--dataset.num_episodes={episodes}",
-        f"--dataset.episode_time_s={seconds}",
-        "--dataset.reset_time_s=2",
-        "--dataset.push_to_hub=false",
-        "--play_sounds=false",
-    )
-    person.leave()
-    Latentarm.get_observation = listening
-    figures["lerobot-replay, s"] = tool(
-        lerobot_replay.main,
-        *robot_options,
-        "--dataset.repo_id=local/recorded",
-        f"--dataset.root={recorded}",
-        "--dataset.episode=0",
-        "--play_sounds=false",
-    )
-    Latentarm.get_observation = look
-    was, now = states(recorded, 0, robot.dof), np.array(heard)
-    apart = np.abs(was - now[: len(was)])
+    driven = ("--robot.type=latentarm", f"--robot.run={first}")
+    in_mujoco = (*driven, "--robot.arm=mujoco")
+    with stage("lerobot-record"), watched() as seen:
+        record(recorded, in_mujoco, size.recorded, size.seconds)
+    figures["recording"] = loop_figures(seen)
+    with stage("lerobot-replay"), watched() as seen:
+        dataset = ("--dataset.repo_id=local/recorded", f"--dataset.root={recorded}", "--dataset.episode=0")
+        tool(lerobot_replay.main, *in_mujoco, *dataset, "--play_sounds=false")
+    was = states(recorded, robot.dof)
+    apart = np.abs(was - np.array([one.q for one in seen[-len(was) :]]))
     figures["replay"] = {
+        **loop_figures(seen),
         "frames": len(was),
         "joints moved, rad": float(np.ptp(was, axis=0).max()),
         "apart, mean, rad": float(apart.mean()),
         "apart, most, rad": float(apart.max()),
         "apart at the end, most, rad": float(apart[-1].max()),
     }
-    figures["lerobot-dataset-viz, s"] = tool(
-        lerobot_dataset_viz.main,
-        "--repo-id=local/recorded",
-        f"--root={recorded}",
-        "--episode-index=0",
-        "--save=1",
-        f"--output-dir={out / 'shown'}",
-    )
+    kept = ("--repo_id=local/recorded", f"--root={recorded}")
+    with stage("lerobot-dataset-viz"):
+        tool(
+            lerobot_dataset_viz.main,
+            "--repo-id=local/recorded",
+            f"--root={recorded}",
+            "--episode-index=0",
+            "--save=1",
+            f"--output-dir={out / 'shown'}",
+        )
     figures["lerobot-dataset-viz, bytes"] = sum(
         file.stat().st_size for file in (out / "shown").rglob("*.rrd")
     )
+    with stage("lerobot-edit-dataset: info, and delete an episode"):
+        tool(lerobot_edit_dataset.main, *kept, "--operation.type=info")
+        tool(
+            lerobot_edit_dataset.main,
+            *kept,
+            "--new_repo_id=local/edited",
+            f"--new_root={out / 'edited'}",
+            "--operation.type=delete_episodes",
+            "--operation.episode_indices=[0]",
+        )
 
-    ours("import", str(recorded), str(out / "recorded-imported"), *stated)
-    second = out / "recorded-run"
-    ours("train", "--demonstrations", str(out / "recorded-imported"), *trained, "--out", str(second))
-    figures["driven from what was recorded"] = reached(second, MODEL, "1" if quick else "3")
+    with stage("import what was recorded, without the deleted episode"):
+        ours("import", str(out / "edited"), str(out / "edited-imported"), *stated)
+        figures["episodes imported"] = len(read_dataset(out / "edited-imported").episodes)
+    with stage("train on that"):
+        train(out / "edited-imported", second, size)
+    with stage("drive that in MuJoCo too"):
+        figures["driven from what was recorded"] = reached(second, size.drives)
+    by_servos = out / "by-servos"
+    with stage("lerobot-record with simulated SO-101 servos"), watched() as seen:
+        record_by_servos(by_servos, driven, robot.joint_names)
+    moved = np.ptp(states(by_servos, robot.dof), axis=0)
+    figures["recording by servos"] = {**loop_figures(seen), "joints moved, rad": moved.round(3).tolist()}
     text = json.dumps(figures, indent=2)
     (out / "figures.json").write_text(text)
     print(text)

@@ -63,7 +63,7 @@ class _Bus:
     def __init__(self) -> None:
         self.servos = {number: Servo(number) for number in range(1, 7)}
         self.written: deque[tuple[float, int, int, list[int]]] = deque(maxlen=10_000)
-        self.places: deque[tuple[float, list[int]]] = deque(maxlen=2000)
+        self.places: deque[tuple[float, list[int]]] = deque(maxlen=4000)
         self.silent = False
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
@@ -79,7 +79,8 @@ class _Bus:
             now_s = time.monotonic()
             for servo in self.servos.values():
                 servo.elapse(now_s - before_s)
-            self.places.append((now_s, [servo.get(PRESENT) for servo in self.servos.values()]))
+            if not self.places or now_s - self.places[-1][0] >= 0.001:
+                self.places.append((now_s, [servo.get(PRESENT) for servo in self.servos.values()]))
             before_s = now_s
             if self._master in ready:
                 waiting = self._answer(waiting + os.read(self._master, 4096))

@@ -127,6 +127,9 @@ def test_from_an_so101_dataset_to_driving_and_back_through_lerobots_tools(tmp_pa
     assert "--units deg" in figures["refused without a unit"]
     assert figures["replay"]["frames"] > 50
     assert figures["replay"]["joints moved, rad"] > 0.05
+    assert figures["replay"]["apart, most, rad"] < 0.1
     assert figures["lerobot-dataset-viz, bytes"] > 1000
+    assert figures["episodes imported"] == 3
+    assert max(figures["recording by servos"]["joints moved, rad"]) > 0.05
     for way in ("driven from the SO-101 dataset", "driven from what was recorded"):
         assert figures[way]

@@ -2,6 +2,7 @@
 
 import json as json_format
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 from rich.table import Table
@@ -75,7 +76,7 @@ def check(
     if found.refusals:
         note([f"Refused: {sentence}" for sentence in found.refusals])
         return 2
-    words = f"latentarm teleop {'' if run is None else f'{run} '}--arm {address}"
+    words = f"latentarm teleop {'' if run is None else f'{run} '}--arm {quote(address)}"
     say(f"It can be driven. Nothing was moved. To drive it: {words}", json)
     return 0
 

@@ -14,6 +14,7 @@ from lerobot.utils.errors import DeviceAlreadyConnectedError, DeviceNotConnected
 
 from latentarm.types import GripperAsk
 from lerobot_robot_latentarm.config_robot import LatentarmConfig
+from lerobot_robot_latentarm.nothing_to_calibrate import NothingToCalibrate
 
 _TOOL: Final = ("tool.x", "tool.y", "tool.z", "tool.qw", "tool.qx", "tool.qy", "tool.qz")
 
@@ -21,7 +22,7 @@ _logger = logging.getLogger(__name__)
 
 
 @final
-class Latentarm(Robot):
+class Latentarm(NothingToCalibrate, Robot):
     """An arm that is driven by a run's latent actions, behind latentarm's safety filters.
 
     Actions: ``z.0``, ``z.1``, ... as many as the run has, each in [-1, 1], and ``gripper`` where the arm has
@@ -75,17 +76,6 @@ class Latentarm(Robot):
     def is_connected(self) -> bool:
         """See the base class."""
         return self._process is not None and all(one.is_connected for one in self.cameras.values())
-
-    @property
-    def is_calibrated(self) -> bool:
-        """Always: the arm's own driver knows its zero positions."""
-        return True
-
-    def calibrate(self) -> None:
-        """Nothing."""
-
-    def configure(self) -> None:
-        """Nothing."""
 
     def connect(self, calibrate: bool = True) -> None:
         """See the base class.

@@ -8,6 +8,7 @@ from lerobot.teleoperators import Teleoperator
 from lerobot.utils.errors import DeviceAlreadyConnectedError, DeviceNotConnectedError
 
 from lerobot_robot_latentarm.config_stick import LatentarmStickConfig
+from lerobot_robot_latentarm.nothing_to_calibrate import NothingToCalibrate
 
 _EVENT: Final = struct.Struct("<IhBB")
 """Time, ms, value, type and number: ``js_event`` of ``linux/joystick.h``."""
@@ -20,7 +21,7 @@ _FULL: Final = 32767
 
 
 @final
-class LatentarmStick(Teleoperator):
+class LatentarmStick(NothingToCalibrate, Teleoperator):
     """A joystick or gamepad by the kernel's joystick interface, such as ``/dev/input/js0``.
 
     Its axes are ``z.0``, ``z.1``, ...; a press of a button turns ``gripper`` over, which begins open. A stick
@@ -56,17 +57,6 @@ class LatentarmStick(Teleoperator):
     def is_connected(self) -> bool:
         """See the base class."""
         return self._file is not None
-
-    @property
-    def is_calibrated(self) -> bool:
-        """Always: the kernel knows the range of each axis."""
-        return True
-
-    def calibrate(self) -> None:
-        """Nothing."""
-
-    def configure(self) -> None:
-        """Nothing."""
 
     def connect(self, calibrate: bool = True) -> None:
         """See the base class.
