@@ -2,7 +2,7 @@
 
 import json as json_format
 from pathlib import Path
-from shlex import quote
+from shlex import join
 from typing import Annotated
 
 from rich.table import Table
@@ -76,7 +76,9 @@ def check(
     if found.refusals:
         note([f"Refused: {sentence}" for sentence in found.refusals])
         return 2
-    words = f"latentarm teleop {'' if run is None else f'{run} '}--arm {quote(address)}"
+    options = {"--arm": address, "--robot": robot, "--end-effector": end_effector, "--limits": limits}
+    given = [word for name, value in options.items() if value is not None for word in (name, str(value))]
+    words = join(["latentarm", "teleop", *([] if run is None else [str(run)]), *given])
     say(f"It can be driven. Nothing was moved. To drive it: {words}", json)
     return 0
 
