@@ -12,10 +12,11 @@ import numpy as np
 
 from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import ArmSpec, ArmStatus
-from latentarm.arms.real import Fact, Findings, FoundLimits, RealArm
+from latentarm.arms.guiding import GuidableArm
+from latentarm.arms.real import Fact, Findings, FoundLimits
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperReading, Reading
+from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 PERIOD_S = 0.005
 OPENING_S = 10.0
@@ -25,7 +26,7 @@ TIMEOUT_S = 0.5
 LOST = "The connection to the arm is lost: check its cable, and connect again."
 
 
-class WoodenArm(RealArm):
+class WoodenArm(GuidableArm):
     def __init__(self, robot: Robot, address: ArmAddress, now_s: Callable[[], float]) -> None:
         options = address.only("rate", "stops_after")
         self._where = (address.host, address.port or 7000)
@@ -97,8 +98,15 @@ class WoodenArm(RealArm):
     def disable(self) -> None:
         self._drop_commands()
         self._ask_for("disable")
-        if self._status.takes_commands:
+        if self._status.takes_commands or self._status.phase == "guided":
             self._status = ArmStatus("disabled", "The arm is not enabled yet.")
+
+    def guide(self) -> None:
+        self._ask_for("guide")
+
+    def move_gripper(self, command: GripperCommand) -> None:
+        if self._status.phase == "guided":
+            self._ask_for("grip", gripper=_figures(command))
 
     def recover(self) -> None:
         self._ask_for("recover")
@@ -120,7 +128,7 @@ class WoodenArm(RealArm):
             "send",
             velocity=velocity.tolist(),
             duration_s=command.duration_s,
-            gripper=None if gripper is None else [gripper.width_m, gripper.speed_m_s, gripper.force_n],
+            gripper=None if gripper is None else _figures(gripper),
             until_s=self._now_s() + command.duration_s,
         )
 
@@ -171,7 +179,7 @@ class WoodenArm(RealArm):
                             self._take(_ask(lines, one))
                 _ask(lines, {"do": "disable"})
         except (OSError, ValueError, UserError):
-            self._status = ArmStatus("off", LOST)
+            self._status = ArmStatus("off", LOST, lost=True)
 
     def _take(self, state: dict[str, Any]) -> None:
         gripper = state["gripper"]
@@ -183,6 +191,10 @@ class WoodenArm(RealArm):
             None if gripper is None else GripperReading(*gripper),
         )
         self._status = ArmStatus(state["phase"], state["reason"], state["recoverable"])
+
+
+def _figures(command: GripperCommand) -> list[float]:
+    return [command.width_m, command.speed_m_s, command.force_n]
 
 
 def _ask(lines: Any, request: dict[str, Any]) -> dict[str, Any]:

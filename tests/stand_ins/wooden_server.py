@@ -53,6 +53,7 @@ class WoodenServer(StandIn):
 
     def press_emergency_stop(self) -> None:
         with self._lock:
+            self.guiding = False
             self._arm.press_emergency_stop()
 
     def release_emergency_stop(self) -> None:
@@ -61,6 +62,7 @@ class WoodenServer(StandIn):
 
     def break_down(self) -> None:
         with self._lock:
+            self.guiding = False
             self._arm.break_down("The arm has hit something.", recoverable=True)
 
     def cut(self) -> None:
@@ -109,17 +111,19 @@ class WoodenServer(StandIn):
     def _obey(self, request: dict[str, Any]) -> None:
         arm = self._arm
         match request["do"]:
-            case "enable":
-                self.guiding = False
+            case "enable" if not self.guiding:
                 arm.enable()
             case "disable":
+                self.guiding = False
                 arm.disable()
             case "recover":
                 arm.recover()
             case "stop":
                 arm.stop()
             case "guide":
-                self.guiding = bool(request["on"]) and not arm.status().takes_commands
+                self.guiding = arm.status().phase == "disabled"
+            case "grip" if self.guiding:
+                arm.arm._gripper.send(GripperCommand(*request["gripper"]))
             case "send":
                 gripper = request["gripper"]
                 arm.send(
@@ -144,10 +148,9 @@ class WoodenServer(StandIn):
             "q": reading.q.tolist(),
             "dq": reading.dq.tolist(),
             "gripper": None if gripper is None else [gripper.width_m, gripper.holding],
-            "phase": status.phase,
+            "phase": "guided" if self.guiding else status.phase,
             "reason": status.reason,
             "recoverable": status.recoverable,
-            "guiding": self.guiding,
         }
 
 

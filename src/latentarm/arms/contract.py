@@ -13,7 +13,7 @@ from latentarm.robots.robot import Robot
 from latentarm.scene.scene import SceneState
 from latentarm.types import Command, Reading
 
-ArmPhase = Literal["off", "disabled", "ready", "moving", "fault", "emergency_stop"]
+ArmPhase = Literal["off", "disabled", "guided", "ready", "moving", "fault", "emergency_stop"]
 """What state an arm is in."""
 
 STOPS_AFTER_S: Final = 0.1
@@ -47,16 +47,20 @@ class ArmStatus:
     """Whether an arm can move, and if not, why.
 
     Attributes:
-        phase: *off*: not connected. *disabled*: connected, takes no commands. *ready*: enabled, at rest.
-            *moving*: enabled, in motion. *fault*: it has stopped by itself and takes no commands.
-            *emergency_stop*: somebody has pressed the button on the arm.
+        phase: *off*: not connected. *disabled*: connected, takes no commands. *guided*: disabled, and
+            moved by a person's hand (`latentarm.arms.guiding`). *ready*: enabled, at rest. *moving*: enabled,
+            in motion. *fault*: it has stopped by itself and takes no commands. *emergency_stop*: somebody has
+            pressed the button on the arm.
         reason: one short sentence for the person; "" where there is nothing to say.
         recoverable: whether `Arm.recover` can end the fault.
+        lost: whether the connection to the arm is lost. A recoverable fault then ends with a new connection;
+            else it takes `Arm.close` and `Arm.connect`.
     """
 
     phase: ArmPhase
     reason: str = ""
     recoverable: bool = False
+    lost: bool = False
 
     @property
     def takes_commands(self) -> bool:

@@ -12,6 +12,7 @@ from latentarm.control.journal import JournalEpisode, read_journal
 from latentarm.control.recorded_states import first_implausible
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_HOLDING, GRIPPER_WIDTH, going_to
+from latentarm.demonstrations.provenance import BY_HAND
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.errors import UserError
 from latentarm.kinematics.pose_rows import stored_rows
@@ -46,15 +47,15 @@ def demonstrations_of(
 ) -> Demonstrations:
     """Recorded episodes as a dataset, with everything that a step decided as further features.
 
-    The command is the action. Further features: ``input.u``, ``latent.z``, ``action.human``,
-    ``action.assist``, ``assist.alpha``, ``mode``, where there are goals ``belief`` and ``assist.bound``
-    (rad; -1 where nothing helps or no bound is known), and ``assist.added`` where help was ever added to the
-    person's action (see `StepRecord.added`). ``observation.environment_state`` has the poses of the things
-    that matter or, where no things were seen, of the goals; these are the dataset's objects. An arm with a
-    gripper adds
-    ``observation.gripper_width`` (m; a reading below zero counts as zero),
-    ``observation.gripper_holding`` (0 or 1) and ``action.gripper`` (m): the width that was commanded last,
-    or until something is commanded the one that it has (0 where it holds something).
+    The command is the action; where the arm was guided by hand, the velocity of the joints is. Further
+    features: ``input.u``, ``latent.z``, ``action.human``, ``action.assist``, ``assist.alpha``, ``mode``,
+    where there are goals ``belief`` and ``assist.bound`` (rad; -1 where nothing helps or no bound is known),
+    and ``assist.added`` where help was ever added to the person's action (see `StepRecord.added`).
+    ``observation.environment_state`` has the poses of the things that matter or, where no things were seen,
+    of the goals; these are the dataset's objects. An arm with a gripper adds ``observation.gripper_width``
+    (m; a reading below zero counts as zero), ``observation.gripper_holding`` (0 or 1) and ``action.gripper``
+    (m): the width that was commanded last, or until something is commanded the one that it has (0 where it
+    holds something).
     Time starts at each episode's first sample. Incomplete episodes are skipped unless asked for. An episode
     is cut before its first impossible sample (see `first_implausible`).
 
@@ -201,6 +202,15 @@ def _poses(recorded: JournalEpisode, objects: Sequence[str]) -> FloatArray:
     return np.stack([record.things[chosen].ravel() for record in records])
 
 
+def _action(recorded: JournalEpisode) -> FloatArray:
+    """What moved the arm, (T, n), rad/s: its commands, or a person's hand."""
+    records = recorded.records
+    if recorded.header.provenance.controller != BY_HAND:
+        return np.stack([record.command.velocity for record in records])
+    time_s = np.array([record.time_s for record in records])
+    return np.gradient(np.stack([record.state for record in records]), time_s, axis=0)
+
+
 def _episode(recorded: JournalEpisode) -> Episode:
     records, goals = recorded.records, recorded.header.goals
     time_s = np.array([record.time_s for record in records])
@@ -222,7 +232,7 @@ def _episode(recorded: JournalEpisode) -> Episode:
     return Episode(
         state=np.stack([record.state for record in records]),
         timestamp=time_s - time_s[0],
-        action=np.stack([record.command.velocity for record in records]),
+        action=_action(recorded),
         task=recorded.header.task,
         extras=extras,
         provenance=replace(recorded.header.provenance, complete=recorded.complete),

@@ -110,7 +110,8 @@ class ControlLoop:
 
     An arm that takes no commands any more (a fault, an emergency stop, a lost connection) disengages `Step`,
     and moves again only after the person has enabled it. `enable` then also recovers the arm and enables it,
-    which may take it some seconds. When the loop ends, it disables the arm.
+    which may take it some seconds; an arm that is guided by hand holds still first. When the loop ends, it
+    disables the arm.
 
     The command is sent before observers see the record, so that a slow recorder costs slack, not lag.
 
@@ -229,6 +230,9 @@ class ControlLoop:
         if status.phase == "fault" and status.recoverable:
             self._arm.recover()
             status = self._arm.status()
+        if status.phase == "guided":
+            self._arm.disable()
+            status = self._arm.status()
         if status.phase == "disabled":
             self._arm.enable()
             status = self._arm.status()
@@ -237,7 +241,7 @@ class ControlLoop:
             return True
         if self._enabling_since_s is None:
             self._enabling_since_s = now_s
-        waiting = status.phase == "disabled" or (status.phase == "fault" and status.recoverable)
+        waiting = status.phase in ("disabled", "guided") or (status.phase == "fault" and status.recoverable)
         if waiting and now_s - self._enabling_since_s <= ENABLING_S:
             return False
         self._step.refuse(stop_of(status))

@@ -169,6 +169,11 @@ class Step:
         return self._stack.bounds.speed
 
     @property
+    def safety(self) -> SafetyConfig:
+        """The limits."""
+        return self._config
+
+    @property
     def mode(self) -> int:
         """Index of the controller's mode."""
         return self._mode

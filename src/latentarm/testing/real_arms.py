@@ -1,8 +1,7 @@
 """Contract tests of real arms, over wall-clock time, against a stand-in for the arm."""
 
 import time
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from statistics import median
 
 import numpy as np
@@ -13,52 +12,18 @@ from latentarm.arms.real import RealArm
 from latentarm.control.clock import MonotonicClock
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.testing.arm_laws import ArmLaws
+from latentarm.testing.guiding_laws import GuidingLaws
 from latentarm.testing.killed import Driving
+from latentarm.testing.real_arm_rig import HOLD_S, StandIn
 from latentarm.types import Command, FloatArray, GripperCommand
 
-HOLD_S = 0.05
-"""How long a command of these tests lasts, as on the page, s."""
-
-RATE_HZ = 100.0
-"""How often they send one, if the arm takes so many."""
+__all__ = ["RealArmContract", "StandIn"]
 
 QUICK_S = 0.005
 """A call that does not wait for the arm takes no longer than this, s."""
 
 
-class StandIn(ABC):
-    """What answers in place of an arm, as it is from the arm's side of the network.
-
-    Tests of what a stand-in cannot do are skipped: it overrides what it can.
-    """
-
-    @abstractmethod
-    def positions(self) -> FloatArray:
-        """(n,), where the joints are, as the arm itself knows it, rad."""
-
-    def press_emergency_stop(self) -> None:
-        """Somebody presses the button on the arm."""
-        pytest.skip("this stand-in has no emergency stop")
-
-    def release_emergency_stop(self) -> None:
-        """The button is released."""
-        pytest.skip("this stand-in has no emergency stop")
-
-    def break_down(self) -> None:
-        """The arm stops by itself with a fault that can be recovered from, as after a collision."""
-        pytest.skip("this stand-in has no faults")
-
-    def cut(self) -> None:
-        """Nothing passes between the driver and the arm any more, as when a cable is pulled out."""
-        pytest.skip("the way to this stand-in cannot be cut")
-
-    def repair(self) -> None:
-        """The cable is plugged in again."""
-        pytest.skip("the way to this stand-in cannot be cut")
-
-
-class RealArmContract(ArmLaws):
+class RealArmContract(GuidingLaws):
     """Tests of the driver of a real arm; they take real time, so they are marked ``clock``.
 
     Override the fixtures ``stand_in`` and ``make``, and ``robot`` if the arm is not a Panda; ``refused`` and
@@ -82,55 +47,8 @@ class RealArmContract(ArmLaws):
         waits_s: the longest that anything may take which the person waits for, such as enabling, s.
         arrives: least and most share of a commanded motion that is made; a slow simulation makes less of it.
         gripper_s: the gripper opens or closes by half within this time, s.
+        push_rad: how far the joints of an arm that is guided are pushed, rad.
     """
-
-    pytestmark = pytest.mark.clock
-
-    tolerance_rad = 2e-3
-    settling_s = 0.5
-    waits_s = 5.0
-    arrives = (0.3, 1.3)
-    gripper_s = 5.0
-
-    @pytest.fixture
-    def stand_in(self) -> StandIn:
-        """What answers in place of the arm; it may serve all tests of the class."""
-        raise NotImplementedError("override the fixture `stand_in`")
-
-    @pytest.fixture
-    def make(self, stand_in: StandIn, robot: Robot) -> Callable[[], RealArm]:
-        """Makes a driver for the stand-in that is not connected, with the clock of `MonotonicClock`."""
-        raise NotImplementedError("override the fixture `make`")
-
-    @pytest.fixture
-    def refused(self) -> Callable[[], RealArm]:
-        """Makes a driver for something that must be refused, such as an arm with old firmware."""
-        pytest.skip("nothing is refused here")
-
-    @pytest.fixture
-    def address(self) -> str:
-        """The address of the stand-in, to be driven from another process; its scheme is registered."""
-        pytest.skip("the stand-in cannot be driven from another process")
-
-    @pytest.fixture
-    def new_arm(self, make: Callable[[], RealArm]) -> Iterator[RealArm]:
-        """A driver that has just been made."""
-        arm = make()
-        yield arm
-        arm.close()
-
-    @pytest.fixture
-    def arm(self, new_arm: RealArm) -> RealArm:
-        """The same driver, connected and enabled."""
-        new_arm.connect()
-        self._enable(new_arm)
-        return new_arm
-
-    @pytest.fixture
-    def velocity(self, robot: Robot, stand_in: StandIn) -> FloatArray:
-        """(n,), away from the nearest limits at different slow speeds, rad/s."""
-        middle = (robot.limits.lower + robot.limits.upper) / 2
-        return np.linspace(0.05, 0.1, robot.dof) * np.where(stand_in.positions() < middle, 1.0, -1.0)
 
     def test_it_says_what_it_is(self, new_arm: RealArm, robot: Robot) -> None:
         check_arm(new_arm.spec, robot)
@@ -300,12 +218,15 @@ class RealArmContract(ArmLaws):
             rested = self._at_rest(arm, stand_in)
             # The loop stops for either: readings that are old, or an arm that takes no commands.
             assert not arm.status().takes_commands or arm.read().time_s < newest + 0.2
+            if not arm.status().takes_commands:
+                assert arm.status().lost
         finally:
             stand_in.repair()
         self._still(stand_in, rested)
         arm.close()
         arm.connect()
         assert arm.status().phase == "disabled"
+        assert not arm.status().lost
         self._still(stand_in, rested)
 
     def test_it_rests_when_the_process_that_drives_it_is_killed(
@@ -325,12 +246,7 @@ class RealArmContract(ArmLaws):
         half_m = robot.gripper.width_m / 2.0
         told = GripperCommand(half_m, 0.05, 5.0)
         arm.send(Command(np.zeros(robot.dof), HOLD_S, gripper=told))
-
-        def there() -> bool:
-            found = arm.read().gripper
-            return found is not None and abs(found.width_m - half_m) < 0.1 * half_m
-
-        self._wait_for(there, self.gripper_s)
+        self._wait_for(lambda: self._opens_by(arm, half_m), self.gripper_s)
 
     def _waits_to_be_enabled(
         self, arm: RealArm, stand_in: StandIn, velocity: FloatArray, rested: FloatArray
@@ -346,37 +262,3 @@ class RealArmContract(ArmLaws):
         self._still(stand_in, rested)
         self._drive(arm, velocity, 0.3)
         assert (np.abs(stand_in.positions() - rested) > self.tolerance_rad).any()
-
-    def _command(self, velocity: FloatArray, robot: Robot) -> Command:
-        """A long command, with one for the gripper where there is one."""
-        gripper = None if robot.gripper is None else GripperCommand(0.0, 0.05, 5.0)
-        return Command(velocity, duration_s=1.0, gripper=gripper)
-
-    def _enable(self, arm: RealArm) -> None:
-        arm.enable()
-        self._wait_for(lambda: arm.status().takes_commands)
-
-    def _drive(self, arm: RealArm, velocity: FloatArray, for_s: float) -> None:
-        period_s = 1.0 / min(arm.spec.rate_hz, RATE_HZ)
-        until_s = time.monotonic() + for_s
-        while time.monotonic() < until_s:
-            arm.send(Command(velocity, duration_s=max(HOLD_S, 2.5 * period_s)))
-            arm.read()
-            time.sleep(period_s)
-
-    def _at_rest(self, arm: RealArm, stand_in: StandIn) -> FloatArray:
-        """Where the arm has come to rest, as soon after the last command as it must, (n,), rad."""
-        time.sleep(HOLD_S + (arm.spec.stops_after_s or 0.0) + self.settling_s)
-        return self._still(stand_in, stand_in.positions())
-
-    def _still(self, stand_in: StandIn, where: FloatArray) -> FloatArray:
-        time.sleep(0.15)
-        found = stand_in.positions()
-        np.testing.assert_allclose(found, where, atol=self.tolerance_rad)
-        return found
-
-    def _wait_for(self, what: Callable[[], bool], within_s: float | None = None) -> None:
-        end_s = time.monotonic() + (within_s or self.waits_s)
-        while not what():
-            assert time.monotonic() < end_s, "it never came to that"
-            time.sleep(0.005)

@@ -12,12 +12,14 @@ from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
+from latentarm.web.arm_process.episodes import Episodes
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.arm_process.late_stops import LateStops
 from latentarm.web.arm_process.neutral_first import NeutralFirst
 from latentarm.web.arm_process.observed import Observed
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process.standing import Standing
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
 from latentarm.web.arm_process.way_back import AT_START_RAD, WayBack, ending
@@ -31,10 +33,13 @@ from latentarm.web.protocol.orders import (
     ChooseProfile,
     ChooseRun,
     Enable,
+    Guide,
     HelpLevel,
+    KeepGuiding,
     ModeName,
     Order,
     PoseToGoTo,
+    Reconnect,
     Record,
     Reset,
     Return,
@@ -47,7 +52,7 @@ ENABLE_WAITS_S: Final = 0.3
 NOTE_S: Final = 6.0
 """How long a refusal is shown instead of the arm's state, s."""
 
-Change = ChooseProfile | ChooseRun | Reset | BeginTask
+Change = ChooseProfile | ChooseRun | Reset | BeginTask | Reconnect
 """Orders that end the loop so that it can start again with another setup."""
 
 _HELD_BACK: Final[dict[str, HeldBack]] = {
@@ -124,6 +129,8 @@ class Drive:
         self._ghosts = GhostPaths(setup.task, setup.controller, setup.help)
         self._late_share = self._late_p99_ms = 0.0
         self._whereabouts = Whereabouts(setup.scene, arm)
+        self._episodes = Episodes(setup, writer, steering, self._inputs, self._whereabouts)
+        self._standing = Standing(self._step, arm, self._episodes, self._say)
         self._run = steering.run or TaskRun(setup.todo, arm, setup.task.robot.chain)
         steering.run = self._run
         self._note = note
@@ -146,15 +153,16 @@ class Drive:
 
     def _observe(self, record: StepRecord) -> None:
         """Called by the loop after every command."""
+        record = self._standing.seen(record)
         self._steering.tick += 1
         self._observed.see(record)
         self._run.see(record.time_s, self._observed.q, enabled=self._step.stopped is None)
         # Only a recording is worth the look: some 0.1 ms.
-        self._writer.add(replace(record, things=self._whereabouts.rows()) if self._writer.on else record)
-        if self._steering.ending_episode and self._step.at_rest:
-            self._end_episode()
+        kept = replace(record, things=self._whereabouts.rows()) if self._writer.on else record
+        self._episodes.follow(kept, at_rest=self._step.at_rest)
         self._obey(record)
         self._late.look(self._step.stopped, self._inputs.driver)
+        self._standing.follow(record.time_s)
         self._follow_way_back(record)
         self._enable_if_asked(record.time_s)
         self._channel.report.write(self._report(record).model_dump_json().encode())
@@ -177,6 +185,9 @@ class Drive:
 
     def _stop(self, reason: Notice) -> None:
         self._enable_until_s = self._note_until_s = -math.inf
+        if self._standing.end_guiding():
+            self._step.refuse(Stop(reason.text))
+            self._reasons[reason.text] = reason
         if self._step.stopped is None:
             self._reasons[reason.text] = reason
         self._loop.stop(reason.text)
@@ -205,11 +216,22 @@ class Drive:
                 self._end_way_back()
             case ChooseHelp(level=level):
                 self._choose_help(level)
-            case Record(on=True, task=task, person=person):
-                self._begin_episode(task, person)
+            case Record(on=True):
+                if self._standing.records(order):
+                    self._episodes.begin(order)
             case Record():
-                # An episode ends with the arm at rest: its last motion belongs to it.
-                self._steering.ending_episode = True
+                self._episodes.end_at_rest()
+            case Guide(on=True, stops=stops):
+                if stops == self._stop_version:
+                    self._note_until_s = -math.inf
+                    self._standing.begin_guiding(record.time_s)
+            case Guide():
+                self._standing.end_guiding()
+            case KeepGuiding(gripper=ask):
+                self._standing.keep_guiding(record.time_s, ask)
+            case Reconnect():
+                if self._standing.connect_again() == "anew":
+                    self._change_to(order)
             case ChooseProfile(name=name) if name == self._setup.spec.profile:
                 pass
             case BeginTask(choice=int(choice)) if not 0 <= choice < len(self._setup.todo.choices):
@@ -219,12 +241,12 @@ class Drive:
 
     def _change_to(self, change: Change) -> None:
         """End the loop for this order, if the arm is disengaged."""
-        if self._step.stopped is None or not self._step.at_rest:
+        if self._step.stopped is None or not self._step.at_rest or self._standing.guided:
             self._say(Notice(code="stop_first"))
             return
         if not isinstance(change, ChooseProfile):
             # An episode is one motion of one arm: it ends before the arm is put somewhere else.
-            self._end_episode()
+            self._episodes.end()
         self.change = change
         self._loop.finish()
 
@@ -257,7 +279,7 @@ class Drive:
             self._say(Notice(code="return_not_now"))
             return
         # An episode is one motion of a person's.
-        self._end_episode()
+        self._episodes.end()
         self._note_until_s = -math.inf
         self._setup.help.level = "off"
         self._to_pose.lead_to(goal)
@@ -281,17 +303,6 @@ class Drive:
             self._ended = ending(outcome, self._way_back.pose)
             self._say(self._ended)
 
-    def _begin_episode(self, task: str, person: str) -> None:
-        self._steering.ending_episode = False
-        if not self._writer.on:
-            self._inputs.devices.clear()
-        things, mode = self._whereabouts.names, self._steering.mode
-        self._writer.begin(self._setup.episode(things, mode, task, person))
-
-    def _end_episode(self) -> None:
-        self._writer.end(", ".join(sorted(self._inputs.devices)))
-        self._steering.ending_episode = False
-
     def _enable_if_asked(self, now_s: float) -> None:
         """Enable once there is a fresh neutral input; the loop itself decides."""
         if now_s > self._enable_until_s:
@@ -303,6 +314,7 @@ class Drive:
                 self._enable_until_s = -math.inf
                 self._say(Notice(code="let_go_first"))
             else:
+                self._standing.end_guiding()
                 self._note_until_s = -math.inf
                 self._reasons.clear()
                 self._loop.enable()
@@ -349,11 +361,13 @@ class Drive:
             driver=self._inputs.driver,
             phase=phase,
             note=self._note if record.time_s < self._note_until_s else None,
-            reason=self._reason(self._step.stopped),
+            reason=self._standing.lost or self._reason(self._step.stopped),
             held_back=held_back[0] if held_back and phase == "moving" else None,
             returning=self._way_back.on,
             bound_for=self._way_back.pose if self._way_back.on else None,
             at_start=self._way_back.away(q) <= AT_START_RAD,
+            guiding=self._standing.guiding,
+            lost=self._standing.lost is not None,
             let_go_first=self._neutral.waiting,
             late_stops=self._late.count,
             mode=self._steering.mode,

@@ -168,12 +168,12 @@ class DriveSetup:
         """
         return (1 if self.latent_dim else 0) + axes if mode == "end_effector" else 0
 
-    def episode(self, things: tuple[str, ...], mode: ModeName, task: str, person: str) -> EpisodeHeader:
+    def episode(self, things: tuple[str, ...], controller: str, task: str, person: str) -> EpisodeHeader:
         """The header of an episode that begins now.
 
         Args:
             things: names of those whose poses are recorded.
-            mode: how the arm is steered.
+            controller: how the arm is steered, or `BY_HAND`.
             task: what is done, in words.
             person: who drives; "" where that is unknown.
         """
@@ -191,7 +191,7 @@ class DriveSetup:
                 run="" if spec.run is None else spec.run.name,
                 run_fingerprint=self.run_fingerprint,
                 profile=spec.profile or "",
-                controller=mode,
+                controller=controller,
             ),
             end_effector=robot.end_effector,
             limits=robot.stated_limits,

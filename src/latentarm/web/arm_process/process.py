@@ -28,11 +28,20 @@ from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
 from latentarm.web.arm_process.driven_arm import first_arm, next_arm
 from latentarm.web.arm_process.help import USUAL_HELP
+from latentarm.web.arm_process.lost_arm import reconnect
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.channel import ORDER_LIMIT, Channel, new_channel
 from latentarm.web.protocol.notice import Notice, notice_of
-from latentarm.web.protocol.orders import BeginTask, ChooseProfile, ChooseRun, Given, Order, Reset
+from latentarm.web.protocol.orders import (
+    BeginTask,
+    ChooseProfile,
+    ChooseRun,
+    Given,
+    Order,
+    Reconnect,
+    Reset,
+)
 from latentarm.web.protocol.report import Report, parse_report
 
 T = TypeVar("T")
@@ -85,6 +94,8 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                 match drive.run():
                     case None:
                         break
+                    case Reconnect():
+                        _, note = _loaded(partial(reconnect, arm), None)
                     case Reset():
                         setup, arm, note = _begun_again(setup, arm, BeginTask(choice=None, anew=False), clock)
                         steering.run = None

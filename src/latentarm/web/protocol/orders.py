@@ -147,12 +147,53 @@ class Return(Message):
 
 @final
 class Record(Message):
-    """Begin an episode of what is driven, or end it once the arm is at rest."""
+    """Begin an episode of what is driven, or end it once the arm is at rest.
+
+    Attributes:
+        on: whether to begin.
+        task: what is done, in words.
+        person: who does it; "" where that is unknown.
+        by_hand: whether the arm is guided by hand, rather than driven; ignored where it cannot be.
+    """
 
     order: Literal["record"] = "record"
     on: bool
     task: str
     person: str = ""
+    by_hand: bool = False
+
+
+@final
+class Guide(Message):
+    """Let the arm be guided by hand, or end that; only while it stands disengaged.
+
+    Attributes:
+        on: whether to begin.
+        stops: version of the stop slot as the driver knew it: a later Stop wins.
+    """
+
+    order: Literal["guide"] = "guide"
+    on: bool
+    stops: int
+
+
+@final
+class KeepGuiding(Message):
+    """The page from which the arm is guided is still there.
+
+    Attributes:
+        gripper: what is asked of the gripper; None for nothing.
+    """
+
+    order: Literal["keep_guiding"] = "keep_guiding"
+    gripper: GripperAsk | None = None
+
+
+@final
+class Reconnect(Message):
+    """Make a lost connection to the arm again; it stays disabled."""
+
+    order: Literal["reconnect"] = "reconnect"
 
 
 @final
@@ -176,7 +217,20 @@ class BeginTask(Message):
     anew: bool
 
 
-Order = Enable | ChooseMode | ChooseHelp | ChooseProfile | ChooseRun | Return | Record | Reset | BeginTask
+Order = (
+    Enable
+    | ChooseMode
+    | ChooseHelp
+    | ChooseProfile
+    | ChooseRun
+    | Return
+    | Record
+    | Guide
+    | KeepGuiding
+    | Reconnect
+    | Reset
+    | BeginTask
+)
 _ORDERS: Final[TypeAdapter[Order]] = TypeAdapter(Annotated[Order, Field(discriminator="order")])
 
 

@@ -138,11 +138,45 @@ class TrailClear(Message):
 
 @final
 class RecordEpisode(Message):
-    """Begin an episode, or end it once the arm is at rest; a change of the driver ends it too."""
+    """Begin an episode, or end it once the arm is at rest; a change of the driver ends it too.
+
+    Attributes:
+        on: whether to begin.
+        task: what is done, in words.
+        by_hand: whether the arm is guided by hand, rather than driven.
+    """
 
     type: Literal["record"]
     on: bool
     task: Annotated[str, Field(max_length=80)] = ""
+    by_hand: bool = False
+
+
+@final
+class GuideArm(Message):
+    """Let the arm be guided by hand, or end that; while it is not enabled."""
+
+    type: Literal["guide"]
+    on: bool
+
+
+@final
+class GuidedArm(Message):
+    """Said five times a second by the page from which the arm is guided; without it guiding ends.
+
+    Attributes:
+        gripper: what is asked of the gripper; only in the one message that asks.
+    """
+
+    type: Literal["guided"]
+    gripper: GripperAsk | None = None
+
+
+@final
+class ReconnectArm(Message):
+    """Make a lost connection to the arm again; the arm does not move, and is not enabled."""
+
+    type: Literal["reconnect"]
 
 
 @final
@@ -214,6 +248,9 @@ ClientMessage = (
     | Release
     | TrailClear
     | RecordEpisode
+    | GuideArm
+    | GuidedArm
+    | ReconnectArm
     | ReturnArm
     | GoToPose
     | SavePose

@@ -10,6 +10,9 @@ from latentarm.web.protocol.orders import HelpLevel, ModeName
 
 HeldBack = Literal["clearance", "freshness", "workspace", "joint_position"]
 Phase = Literal["disengaged", "neutral_needed", "ready", "moving", "stopping"]
+Guiding = Literal["offered", "on", "own"]
+"""*own*: guiding by hand is a mode of the arm's own, which is switched on at the arm."""
+
 Point = tuple[float, float, float]
 PoseRow = tuple[float, float, float, float, float, float, float]
 """x, y, z (m) and a quaternion w, x, y, z."""
@@ -169,6 +172,8 @@ class ArmState(Message):
         returning: whether it is on its way back to its start, or to a saved pose.
         bound_for: what that pose is called; None on the way to the start, and on no way.
         at_start: whether it is there.
+        guiding: how the arm is guided by hand; None where it cannot be.
+        lost: whether the connection to the arm is lost, and must be made again.
         let_go_first: whether the stick does something else by now: it must be let go before it moves the arm.
         late_stops: how often the arm has stopped because no input came in time, since this driver began to
             drive this.
@@ -194,6 +199,8 @@ class ArmState(Message):
     returning: bool
     bound_for: str | None
     at_start: bool
+    guiding: Guiding | None
+    lost: bool
     let_go_first: bool
     late_stops: int
     mode: ModeName

@@ -17,18 +17,22 @@ from latentarm.web.protocol.orders import (
     ChooseProfile,
     Enable,
     Given,
+    Guide,
+    KeepGuiding,
+    Reconnect,
     Record,
     Reset,
     Return,
 )
 from latentarm.web.protocol.page_messages import (
-    FRAME_LIMIT,
     AskToDrive,
     BeginRun,
     ClientMessage,
     DeletePose,
     DriverInput,
     GoToPose,
+    GuideArm,
+    GuidedArm,
     HandOver,
     Hello,
     HelpFromRobot,
@@ -36,23 +40,23 @@ from latentarm.web.protocol.page_messages import (
     PressEnable,
     PressStop,
     Profile,
+    ReconnectArm,
     RecordEpisode,
     Release,
     ResetArm,
     ReturnArm,
     SavePose,
     TrailClear,
-    parse_message,
 )
 from latentarm.web.protocol.personalise_messages import AnswerQuestion, KeepAlignment, PersonaliseMessage
 from latentarm.web.protocol.server_messages import Refused
 from latentarm.web.records.drive_record import Ending
 from latentarm.web.records.people import People
-from latentarm.web.server.frames import TOO_MANY
 from latentarm.web.server.history import History
 from latentarm.web.server.learning import Learning
 from latentarm.web.server.pins import Pins
 from latentarm.web.server.pose_book import PoseBook
+from latentarm.web.server.receiving import ExpiredError, ViolationError, receive
 from latentarm.web.server.security import EXPIRED, EXPIRED_WHY
 from latentarm.web.server.sessions import MOST, Page, Sessions
 from latentarm.web.server.states import PageMemory, States
@@ -73,17 +77,6 @@ _FULL: Final = 1013
 
 _BEING_REFUSED: Final = 8
 """So many pages more are told at once that there is no room; any others are not even accepted."""
-
-_PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)
-"""Codes with which the server below us hangs up: no frame, no text, too many frames, or one far too long."""
-
-
-class _ViolationError(Exception):
-    """A page has sent something that it must not."""
-
-
-class _ExpiredError(Exception):
-    """A page's cookie has expired."""
 
 
 async def _hang_up(socket: WebSocket, code: int, why: Notice) -> None:
@@ -155,19 +148,19 @@ class DriveSocket:
         sender: asyncio.Task[None] | None = None
         try:
             async with asyncio.timeout(HELLO_WITHIN_S):
-                hello = await _receive(socket)
+                hello = await receive(socket)
             if not isinstance(hello, Hello) or (page := self._join(hello, socket)) is None:
-                raise _ViolationError
+                raise ViolationError
             sender = asyncio.create_task(self._send_states(socket, page))
             while True:
-                self._take(page, await _receive(socket))
-        except _ViolationError:
+                self._take(page, await receive(socket))
+        except ViolationError:
             self._control.stop(Notice(code="message_invalid"))
             await _hang_up(socket, 1008, Notice(code="page_refused"))
         except TimeoutError:
             # Nobody is driving from here yet, so a slow or silent connection does not stop the arm.
             await _hang_up(socket, 1008, Notice(code="no_hello"))
-        except _ExpiredError:
+        except ExpiredError:
             if page is not None and self._sessions.drives(page):
                 self._control.stop(Notice(code="driver_expired"))
             await _hang_up(socket, EXPIRED, Notice(code=EXPIRED_WHY))
@@ -226,7 +219,7 @@ class DriveSocket:
     def _take(self, page: Page, message: ClientMessage) -> None:
         """Carry out a page's message; orders reserved for the driver are ignored from others."""
         if isinstance(message, Hello) or not self._suits(message):
-            raise _ViolationError
+            raise ViolationError
         if isinstance(message, PressStop):
             self.stop(page, message.why)
         elif isinstance(message, AskToDrive):
@@ -279,8 +272,16 @@ class DriveSocket:
                     self._copilot_changed("copilot_ended", copilot)
             case Profile(name=name):
                 self._control.order(ChooseProfile(name=name))
-            case RecordEpisode(on=on, task=task):
-                self._control.order(Record(on=on, task=task, person=_recorded_as(page)))
+            case RecordEpisode(on=on, task=task, by_hand=by_hand):
+                self._control.order(Record(on=on, task=task, person=_recorded_as(page), by_hand=by_hand))
+            case GuideArm(on=True) if self._states.loading or self._learning.personalising.standstill:
+                pass
+            case GuideArm(on=on):
+                self._control.order(Guide(on=on, stops=self._control.stops))
+            case GuidedArm(gripper=ask):
+                self._control.order(KeepGuiding(gripper=ask))
+            case ReconnectArm():
+                self._control.order(Reconnect())
             case ReturnArm(on=on):
                 self._control.order(Return(on=on))
             case GoToPose(name=name):
@@ -371,27 +372,3 @@ def _of(page: Page, code: NoticeCode) -> Notice:
 def _recorded_as(page: Page) -> str:
     """What an episode says of who drove it: their id, else their name; "" for a guest without one."""
     return page.person or (page.name if isinstance(page.name, str) else "")
-
-
-async def _receive(socket: WebSocket) -> ClientMessage:
-    """The next message.
-
-    Raises:
-        _ViolationError: it is invalid, or there are too many.
-        _ExpiredError: the page may not be here any longer.
-        WebSocketDisconnect: the page has gone.
-    """
-    event = await socket.receive()
-    if event["type"] == "websocket.disconnect":
-        if event.get("code") in _PROTOCOL_BROKEN:
-            raise _ViolationError
-        if event.get("code") == EXPIRED:
-            raise _ExpiredError
-        raise WebSocketDisconnect
-    text = event.get("text")
-    if text is None or len(text) > FRAME_LIMIT or len(text.encode()) > FRAME_LIMIT:
-        raise _ViolationError
-    try:
-        return parse_message(text)
-    except ValueError as error:
-        raise _ViolationError from error

@@ -245,6 +245,8 @@ class States:
             returning=report.returning and not away,
             bound_for=None if away else report.bound_for,
             at_start=report.at_start,
+            guiding=report.guiding,
+            lost=report.lost,
             let_go_first=report.let_go_first,
             late_stops=report.late_stops,
             mode=report.mode,
@@ -298,7 +300,10 @@ class States:
             return Notice(code="arm_process_ended")
         if not self._loading:
             return Notice(code="arm_process_silent")
-        return Notice(code="loading_run") if self._failed is None else self._failed[1]
+        if self._failed is not None:
+            return self._failed[1]
+        connecting = self._report is not None and self._report.lost
+        return Notice(code="reconnecting" if connecting else "loading_run")
 
     def _bodies(self, report: Report) -> tuple[tuple[float, ...], ...]:
         links = self._loaded.chain.link_transforms(np.array(report.q))

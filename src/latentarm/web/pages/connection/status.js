@@ -56,7 +56,8 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
  * @param {boolean} canEnable
  * @param {Reader} reader
  */
-function driverWords({ phase, note, reason, held_back, returning, bound_for, let_go_first, copilot }, canEnable, reader) {
+function driverWords({ phase, note, reason, held_back, returning, bound_for, let_go_first, copilot, guiding }, canEnable, reader) {
+  if (guiding === "on") return say("status.guided");
   if (concerns(note, true)) return sayTo(note, reader);
   const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
   const cause = held_back && say(`held_back.${held_back}`);
@@ -82,9 +83,10 @@ function driverWords({ phase, note, reason, held_back, returning, bound_for, let
  * @param {boolean} asked whether this page has asked to drive
  * @param {Reader} reader
  */
-function watcherWords({ phase, note, reason, held_back, returning, bound_for, driver, driver_name }, canEnable, asked, reader) {
+function watcherWords({ phase, note, reason, held_back, returning, bound_for, driver, driver_name, guiding }, canEnable, asked, reader) {
   if (concerns(note, false)) return sayTo(note, reader);
   const name = driver_name === null ? say("driver.somebody_else") : sayName(driver_name);
+  if (guiding === "on") return say("status.guided_watching", { name });
   const parameters = { name, reason: reason === null ? "" : sayTo(reason, reader) };
   if (returning) return bound_for === null ? say("status.returning_watching") : say("status.to_pose_watching", { pose: bound_for });
   switch (phase) {

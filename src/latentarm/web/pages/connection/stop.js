@@ -28,8 +28,9 @@ export function attachStop(connection, alsoHere = () => {}, spaceStops = () => t
     if (event.code !== "Space" && event.code !== "Escape") return;
     if (event.code === "Space" && !spaceStops()) return;
     const writing = event.code === "Space" && isWritingIn(event.target);
-    // While the arm stands disengaged, Space may press buttons and tick boxes as it always does.
-    const pressing = event.code === "Space" && !connection.engaged && isControl(event.target);
+    // While the arm stands disengaged and nobody guides it, Space may press buttons and tick boxes as it always does.
+    const still = !connection.engaged && connection.state?.guiding !== "on";
+    const pressing = event.code === "Space" && still && isControl(event.target);
     if (writing || pressing) return;
     if (event.code === "Space") event.preventDefault();
     stop();

@@ -1,6 +1,7 @@
 /** The Drive page: puts its parts together. */
 
 import { attachEnableButton, enableButtonOf } from "../connection/enable_button.js";
+import { attachLostArm } from "../connection/lost_arm.js";
 import { attachDialogs, dialogIsOpen } from "../inputs/dialogs.js";
 import { attachCard } from "../card/card.js";
 import { attachCopilot } from "../connection/copilot.js";
@@ -86,6 +87,7 @@ const enable = () => {
 };
 attachEnableButton(byId("enable"), connection, enable);
 attachLateStops(byId("late-stops"), connection);
+const lostArm = attachLostArm(connection, lease);
 const wayBack = attachWayBack({ button: byId("way-back"), why: byId("way-back-why") }, connection);
 
 const poses = attachPoses({
@@ -135,6 +137,7 @@ const scanner = attachScanning({
   // On the way back any press ends it.
   if (connection.state?.returning || !(connection.driving || does)) return [stopIt];
   const more = moreChoices(help.choices(), [...wayBack.choices(), ...poses.choices(), ...practice.choices()], stopIt);
+  if (connection.state?.lost) return [...lostArm.choices(), stopIt, more];
   const unconfirmed = checklist.choices();
   if (unconfirmed.length) return [...unconfirmed, stopIt, more];
   return input.live ? [...directionChoices(), ...gripper.choices(), mode, stopIt, more]

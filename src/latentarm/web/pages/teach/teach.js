@@ -1,9 +1,11 @@
 /** The Teach page: recorded episodes are chosen, a run is trained on them, and driven. */
 
+import { attachLostArm } from "../connection/lost_arm.js";
 import { attachWholePage } from "../inputs/whole_page.js";
 import { byId, create, fillBar, setText } from "../layout/dom.js";
 import { attachPage } from "../layout/page.js";
 import { say, sayNotice, sayNumber } from "../layout/words.js";
+import { attachGuiding } from "./guiding.js";
 import { lessonFigures, lessonWords, shortOnes } from "./lesson.js";
 import { freeName, isBusy, leftWords, progressShare, progressWords } from "./training.js";
 
@@ -17,8 +19,15 @@ const FEWEST = 3;
 /** The run that this page goes to drive once it is loaded, and until when. */
 let going = { run: "", until: -Infinity };
 
-const { connection, settings, lease, stop } = attachPage({ runChanged: () => {} });
+const { connection, settings, lease, stop } = attachPage({ runChanged: () => {}, drop: () => guiding.stopped() });
 attachWholePage(settings, stop);
+attachLostArm(connection, lease);
+const guiding = attachGuiding({
+  panel: byId("guiding"), check: byId("guiding-check"), confirmed: byId("guiding-loaded", HTMLInputElement),
+  button: byId("guiding-begin"), why: byId("guiding-why"), doing: byId("guiding-doing"),
+  task: byId("guiding-task", HTMLInputElement), record: byId("guiding-record"), recorded: byId("guiding-recorded"),
+  gripper: byId("guiding-gripper"), open: byId("guiding-open"), close: byId("guiding-close"),
+}, connection, lease);
 
 /** Whether somebody else drives, who alone may train and choose. */
 let watching = false;

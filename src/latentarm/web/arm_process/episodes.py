@@ -1,0 +1,74 @@
+"""When an episode of a drive begins and ends, and what it is called."""
+
+from typing import final
+
+from latentarm.demonstrations.provenance import BY_HAND
+from latentarm.types import StepRecord
+from latentarm.web.arm_process.drive_setup import DriveSetup
+from latentarm.web.arm_process.page_inputs import PageInputs
+from latentarm.web.arm_process.recording import EpisodeWriter
+from latentarm.web.arm_process.steering import Steering
+from latentarm.web.arm_process.whereabouts import Whereabouts
+from latentarm.web.protocol.orders import Record
+
+
+@final
+class Episodes:
+    """An episode is one motion of one person's: driven, or guided by hand.
+
+    Args:
+        setup: what is driven.
+        writer: records.
+        steering: knows the mode, and whether the episode under way is to end.
+        inputs: know which devices were used.
+        whereabouts: of the things.
+    """
+
+    def __init__(
+        self,
+        setup: DriveSetup,
+        writer: EpisodeWriter,
+        steering: Steering,
+        inputs: PageInputs,
+        whereabouts: Whereabouts,
+    ) -> None:
+        self._setup = setup
+        self._writer = writer
+        self._steering = steering
+        self._inputs = inputs
+        self._whereabouts = whereabouts
+        self._by_hand = False
+
+    @property
+    def by_hand(self) -> bool:
+        """Whether an episode is under way in which the arm is guided by hand."""
+        return self._writer.on and self._by_hand
+
+    def begin(self, order: Record) -> None:
+        """Begin one, unless one is under way."""
+        self._steering.ending_episode = False
+        if not self._writer.on:
+            self._inputs.devices.clear()
+            self._by_hand = order.by_hand
+        how = BY_HAND if order.by_hand else self._steering.mode
+        self._writer.begin(self._setup.episode(self._whereabouts.names, how, order.task, order.person))
+
+    def end_at_rest(self) -> None:
+        """End it once the arm is at rest: its last motion belongs to it."""
+        self._steering.ending_episode = True
+
+    def end(self) -> None:
+        """End it now."""
+        self._writer.end(", ".join(sorted(self._inputs.devices)))
+        self._steering.ending_episode = False
+
+    def follow(self, record: StepRecord, *, at_rest: bool) -> None:
+        """Add a step.
+
+        Args:
+            record: the step.
+            at_rest: whether the arm is told to stand still.
+        """
+        self._writer.add(record)
+        if self._steering.ending_episode and at_rest:
+            self.end()

@@ -1,0 +1,150 @@
+"""Guiding an arm by hand, as long as the page of the person who asked for it is there."""
+
+import math
+from dataclasses import replace
+from typing import Final, Literal, final
+
+from latentarm.arms.contract import Arm
+from latentarm.arms.guiding import GuidableArm
+from latentarm.control.loop import ENABLING_S, stop_of
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.safety.gripper import GripperFilter
+from latentarm.errors import UserError
+from latentarm.robots.gripper import Gripper
+from latentarm.types import GripperAsk, StepRecord
+from latentarm.web.protocol.notice import Notice, notice_of, notice_of_stop
+from latentarm.web.protocol.report import Guiding
+
+PAGE_S: Final = 1.0
+"""A page that has said nothing for so long is gone, and guiding ends: it speaks five times as often, s."""
+
+
+@final
+class HandGuiding:
+    """Begins and ends guiding, and moves the gripper meanwhile. The arm's loop goes on, disengaged.
+
+    Args:
+        arm: what is driven; guiding is offered where it is a `GuidableArm`.
+        gripper: of the robot, or None.
+        safety: limits of the gripper.
+    """
+
+    def __init__(self, arm: Arm, gripper: Gripper | None, safety: SafetyConfig) -> None:
+        self._arm = arm if isinstance(arm, GuidableArm) else None
+        self._filter = GripperFilter(gripper, safety)
+        self._doing: Literal["nothing", "asking", "guiding"] = "nothing"
+        self._own_mode = False
+        self._ask: GripperAsk | None = None
+        self._since_s = self._heard_s = -math.inf
+
+    @property
+    def state(self) -> Guiding | None:
+        """What a page is told; None where the arm cannot be guided."""
+        if self._arm is None:
+            return None
+        if self._doing == "guiding":
+            return "on"
+        return "own" if self._own_mode else "offered"
+
+    @property
+    def under_way(self) -> bool:
+        """Whether the arm is guided, or is about to be."""
+        return self._doing != "nothing"
+
+    @property
+    def recordable(self) -> bool:
+        """Whether a motion by hand can be recorded: the arm is guided, or may be in a mode of its own."""
+        return self.state in ("on", "own")
+
+    def begin(self, time_s: float) -> None:
+        """Ask for it; nothing where the arm cannot be guided, or it is under way.
+
+        Args:
+            time_s: the loop's clock, s.
+        """
+        if self._arm is not None and self._doing == "nothing":
+            self._doing, self._since_s, self._heard_s = "asking", time_s, time_s
+
+    def keep(self, time_s: float, ask: GripperAsk | None) -> None:
+        """The page is still there.
+
+        Args:
+            time_s: the loop's clock, s.
+            ask: what is asked of the gripper, or None.
+        """
+        self._heard_s = time_s
+        if ask is not None and self._doing == "guiding":
+            self._ask = ask
+
+    def end(self) -> bool:
+        """Let the arm hold its position.
+
+        Returns:
+            Whether it was under way.
+        """
+        if self._arm is None or self._doing == "nothing":
+            return False
+        self._doing, self._ask = "nothing", None
+        self._filter.reset()
+        self._arm.disable()
+        return True
+
+    def follow(self, time_s: float) -> Notice | None:
+        """Go on, or end it where the arm or the page does.
+
+        Args:
+            time_s: the loop's clock, s.
+
+        Returns:
+            What people are told of it, or None.
+        """
+        if self._arm is None or self._doing == "nothing":
+            return None
+        if time_s - self._heard_s > PAGE_S:
+            self.end()
+            return Notice(code="guiding_page_gone")
+        status = self._arm.status()
+        if status.phase == "guided":
+            self._doing = "guiding"
+            return None
+        if self._doing == "asking" and time_s - self._since_s <= ENABLING_S:
+            return self._ask_for_it(self._arm)
+        self.end()
+        return Notice(code="guiding_ended") if status.phase == "disabled" else notice_of_stop(stop_of(status))
+
+    def seen(self, record: StepRecord) -> StepRecord:
+        """A step with what the gripper is told while the arm is guided, which is sent here.
+
+        Args:
+            record: as the loop made it.
+        """
+        if self._arm is None or self._doing != "guiding":
+            return record
+        self._filter.tick()
+        self._filter.saw(record.gripper)
+        self._filter.ask(None, engaged=True)
+        self._filter.ask(self._ask, engaged=True)
+        self._ask = None
+        command = self._filter.command(engaged=True, falters=False)
+        if command is None:
+            return record
+        self._arm.move_gripper(command)
+        return replace(record, command=replace(record.command, gripper=command))
+
+    def _ask_for_it(self, arm: GuidableArm) -> Notice | None:
+        """Take the arm where it can be asked, and ask."""
+        status = arm.status()
+        if status.takes_commands:
+            arm.disable()
+        elif status.phase == "fault" and status.recoverable:
+            arm.recover()
+        elif status.phase == "disabled":
+            try:
+                arm.guide()
+            except UserError as error:
+                self._doing, self._own_mode = "nothing", True
+                return notice_of(error)
+        else:
+            self._doing = "nothing"
+            return notice_of_stop(stop_of(status))
+        return None

@@ -1,0 +1,36 @@
+/** Where the connection to a real arm is lost: a button that makes it again. The arm does not move for it. */
+
+import { byId, setHidden, setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "./connection.js" */
+/** @import {DriverLease} from "./driver_lease.js" */
+/** @import {Choice} from "../inputs/scanner.js" */
+
+/**
+ * @param {Connection} connection
+ * @param {DriverLease} lease
+ */
+export function attachLostArm(connection, lease) {
+  const button = byId("lost-again");
+  const free = () => connection.driving || connection.state?.driver === null;
+  const again = () => {
+    if (connection.state?.lost && free()) lease.ask(() => connection.send({ type: "reconnect" }));
+  };
+  const show = () => {
+    setHidden(byId("lost"), !connection.state?.lost);
+    setText(byId("lost-why"), say(free() ? "connection.help" : "connection.driver_only"));
+    if (button.getAttribute("aria-disabled") !== String(!free())) button.setAttribute("aria-disabled", String(!free()));
+  };
+  button.addEventListener("click", again);
+  connection.addEventListener("state", show);
+  connection.addEventListener("open", show);
+  show();
+
+  return {
+    /** Its place among the choices of a switch. @returns {Choice[]} */
+    choices() {
+      return connection.state?.lost && free() ? [{ id: "lost-again", label: say("connection.again"), act: again }] : [];
+    },
+  };
+}

@@ -1,0 +1,144 @@
+/** Guiding a real arm by hand: begun and ended here, recorded meanwhile, and the gripper moved by two buttons. */
+
+import { recordingWords } from "../drive/recording.js";
+import { setHidden, setText } from "../layout/dom.js";
+import { say } from "../layout/words.js";
+
+/** @import {Connection} from "../connection/connection.js" */
+/** @import {State} from "../connection/messages.js" */
+/** @import {DriverLease} from "../connection/driver_lease.js" */
+/** @import {WordKey} from "../layout/words.js" */
+
+/** The server ends guiding where it does not hear from this page for five times as long, ms. */
+const PERIOD_MS = 200;
+/** The arm takes no longer to begin, ms. */
+const BEGINS_MS = 6000;
+
+/**
+ * What the button does now, what is said next to it, and whether a motion by hand can be recorded.
+ *
+ * @param {State | null} state
+ * @param {{waiting: boolean, confirmed: boolean}} page whether it waits for the arm, and whether its person has confirmed
+ * @returns {{does: "begin" | "end" | null, why: WordKey, records: boolean}}
+ */
+export function guidingOf(state, { waiting, confirmed }) {
+  if (state === null || (state.driver !== null && !state.you)) return { does: null, why: "guiding.driver_only", records: false };
+  if (state.guiding === "on") return { does: "end", why: "guiding.on", records: true };
+  if (waiting) return { does: "end", why: "guiding.wait", records: false };
+  if (state.phase === "moving" || state.phase === "ready" || state.phase === "stopping") return { does: null, why: "guiding.stop_first", records: false };
+  const own = state.guiding === "own";
+  return { does: confirmed ? "begin" : null, why: own ? "guiding.own" : "guiding.off", records: own };
+}
+
+/**
+ * @typedef {object} Parts
+ * @property {HTMLElement} panel
+ * @property {HTMLElement} check
+ * @property {HTMLInputElement} confirmed
+ * @property {HTMLElement} button
+ * @property {HTMLElement} why
+ * @property {HTMLElement} doing
+ * @property {HTMLInputElement} task
+ * @property {HTMLElement} record
+ * @property {HTMLElement} recorded
+ * @property {HTMLElement} gripper
+ * @property {HTMLElement} open
+ * @property {HTMLElement} close
+ */
+
+/**
+ * @param {Parts} parts
+ * @param {Connection} connection
+ * @param {DriverLease} lease
+ */
+export function attachGuiding(parts, connection, lease) {
+  /** Whether this page has asked for it. */
+  let asked = false;
+  /** Whether it has begun since. */
+  let begun = false;
+  let askedAt = -Infinity;
+  const now = () => guidingOf(connection.state, { waiting: asked && !begun, confirmed: parts.confirmed.checked });
+
+  const end = () => {
+    const tell = asked || connection.state?.guiding === "on";
+    asked = begun = false;
+    if (tell && connection.driving) connection.send({ type: "guide", on: false });
+    show();
+  };
+  const begin = () => {
+    asked = true;
+    begun = false;
+    askedAt = performance.now();
+    connection.send({ type: "guide", on: true });
+    show();
+  };
+  const press = () => {
+    const { does } = now();
+    if (does === "end") end();
+    else if (does === "begin") lease.ask(begin);
+  };
+  const record = () => {
+    const { state } = connection;
+    const on = !state?.recording?.on;
+    if (!connection.driving || (on && !now().records)) return;
+    connection.send({ type: "record", on, task: parts.task.value.trim(), by_hand: true });
+  };
+  const grip = (/** @type {"open" | "close"} */ gripper) => {
+    if (connection.driving && connection.state?.guiding === "on") connection.send({ type: "guided", gripper });
+  };
+  const show = () => {
+    const { state, welcome } = connection;
+    if (state === null || welcome === null) return;
+    const { does, why, records } = now();
+    const recording = Boolean(state.recording?.on);
+    setHidden(parts.panel, state.guiding === null);
+    setText(parts.button, say(does === "end" ? "guiding.end" : "guiding.begin"));
+    disable(parts.button, does === null);
+    setText(parts.why, say(why));
+    setHidden(parts.check, does === "end");
+    setHidden(parts.doing, !(records || recording));
+    setText(parts.record, say(recording ? "recording.stop" : "recording.start"));
+    parts.record.setAttribute("aria-pressed", String(recording));
+    disable(parts.record, !state.you);
+    setText(parts.recorded, recordingWords(state));
+    setHidden(parts.gripper, welcome.gripper_width_m === null || state.guiding !== "on");
+  };
+  const look = () => {
+    const on = connection.state?.guiding === "on";
+    // What the arm, Stop or the server has ended is asked for again by a press alone.
+    if (asked && ((begun && !on) || (!begun && performance.now() - askedAt > BEGINS_MS) || connection.state?.guiding === "own")) asked = begun = false;
+    else if (asked && on) begun = true;
+    show();
+  };
+
+  parts.button.addEventListener("click", press);
+  parts.record.addEventListener("click", record);
+  parts.open.addEventListener("click", () => grip("open"));
+  parts.close.addEventListener("click", () => grip("close"));
+  parts.confirmed.addEventListener("change", show);
+  connection.addEventListener("state", look);
+  connection.addEventListener("open", () => {
+    asked = begun = false;
+    show();
+  });
+  window.addEventListener("pagehide", end);
+  document.addEventListener("visibilitychange", () => {
+    if (document.hidden) end();
+  });
+  setInterval(() => {
+    if (asked && connection.driving && !document.hidden) connection.send({ type: "guided" });
+  }, PERIOD_MS);
+  show();
+
+  return {
+    /** At a Stop the page asks for nothing any more; the server ends guiding. */
+    stopped() {
+      asked = begun = false;
+    },
+  };
+}
+
+/** @param {HTMLElement} button @param {boolean} off */
+function disable(button, off) {
+  if (button.getAttribute("aria-disabled") !== String(off)) button.setAttribute("aria-disabled", String(off));
+}

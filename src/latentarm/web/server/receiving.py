@@ -1,0 +1,44 @@
+"""What a page sends over its socket, or why it is not listened to any more."""
+
+from typing import Final
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from latentarm.web.protocol.page_messages import FRAME_LIMIT, ClientMessage, parse_message
+from latentarm.web.server.frames import TOO_MANY
+from latentarm.web.server.security import EXPIRED
+
+_PROTOCOL_BROKEN: Final = (1002, 1003, 1007, TOO_MANY, 1009)
+"""Codes with which the server below us hangs up: no frame, no text, too many frames, or one far too long."""
+
+
+class ViolationError(Exception):
+    """A page has sent something that it must not."""
+
+
+class ExpiredError(Exception):
+    """A page's cookie has expired."""
+
+
+async def receive(socket: WebSocket) -> ClientMessage:
+    """The next message.
+
+    Raises:
+        ViolationError: it is invalid, or there are too many.
+        ExpiredError: the page may not be here any longer.
+        WebSocketDisconnect: the page has gone.
+    """
+    event = await socket.receive()
+    if event["type"] == "websocket.disconnect":
+        if event.get("code") in _PROTOCOL_BROKEN:
+            raise ViolationError
+        if event.get("code") == EXPIRED:
+            raise ExpiredError
+        raise WebSocketDisconnect
+    text = event.get("text")
+    if text is None or len(text) > FRAME_LIMIT or len(text.encode()) > FRAME_LIMIT:
+        raise ViolationError
+    try:
+        return parse_message(text)
+    except ValueError as error:
+        raise ViolationError from error
