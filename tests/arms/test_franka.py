@@ -165,6 +165,9 @@ class Served(StandIn):
     def break_down(self) -> None:
         self._server.break_down()
 
+    def push(self, by: FloatArray) -> None:
+        self._server.push(by)
+
     def cut(self) -> None:
         self._server.cut()
 

@@ -29,6 +29,9 @@ _STIFFNESS = (4500.0, 4500.0, 3500.0, 3500.0, 2000.0, 2000.0, 1000.0)
 _DAMPING = (450.0, 450.0, 350.0, 350.0, 200.0, 200.0, 100.0)
 """Those of franky-sim, but for the last joint, which trembles by 0.1 rad/s with its own."""
 
+_PULL, _HELD_BACK, _STRENGTH = 60.0, 10.0, 5.0
+"""Of a person's hand: N m/rad, N m s/rad, N m."""
+
 _JOINT_REFLEX = 6
 _COMMUNICATION = 25
 
@@ -111,6 +114,13 @@ class FrankaStandIn:
 
     def break_down(self) -> None:
         self.ask("break")
+
+    def push(self, by: np.ndarray) -> None:
+        goal = self.positions() + by
+        self.ask("push " + " ".join(map(str, goal)))
+        self.wait(1.5)
+        self.ask("push")
+        self.wait(0.5)  # an arm that holds its position springs back
 
     def cut(self) -> None:
         self.ask("cut")
@@ -233,7 +243,24 @@ class _Log:
             self.rows.append(np.array([cycle * 1e-3, *robot.inner_state.q, *robot.inner_state.dq, *tool]))
 
 
-def _obey(order, server, robot, log, cycle) -> dict:
+class _Hand:
+    """A person's, that pushes the joints towards where it wants them, as hard as a hand can."""
+
+    def __init__(self, robot) -> None:
+        self.goal: np.ndarray | None = None
+        self._robot, self._drive = robot, robot._torque_control
+        robot._torque_control = self._torque_control
+
+    def _torque_control(self, torques) -> None:
+        self._drive(torques)
+        if self.goal is not None and self._robot._data is not None:
+            state = self._robot.inner_state
+            pull = _PULL * (self.goal - np.array(state.q)) - _HELD_BACK * np.array(state.dq)
+            pull = np.clip(pull, -_STRENGTH, _STRENGTH)
+            self._robot._data.qfrc_applied[self._robot._dof_addrs] += pull
+
+
+def _obey(order, server, robot, log, hand, cycle) -> dict:
     arm = server.robot_servers[0]
     name, *rest = order.split()
     answer = {"t": cycle * 1e-3}
@@ -249,6 +276,8 @@ def _obey(order, server, robot, log, cycle) -> dict:
         arm.pressed = False
     elif name == "break":
         arm.collide()
+    elif name == "push":
+        hand.goal = np.array(rest, dtype=float) if rest else None
     elif name == "cut":
         arm.is_cut = True
     elif name == "repair":
@@ -280,6 +309,7 @@ def _serve(host: str, lost_cycles: int, clock_file: str | None) -> None:
     log, cycle = _Log(), 0
     with MujocoSimulator() as simulator:
         robot = simulator.add_robot(initial_q=START, kp=_STIFFNESS, kv=_DAMPING)
+        hand = _Hand(robot)
         with simulation_server(simulator, hostname_candidates=[host]) as server:
             print(json.dumps({"ready": True}), flush=True)  # noqa: T201
             due_s = time.monotonic()
@@ -288,7 +318,7 @@ def _serve(host: str, lost_cycles: int, clock_file: str | None) -> None:
                     order = orders.get()
                     if order == "end":
                         return
-                    print(json.dumps(_obey(order, server, robot, log, cycle)), flush=True)  # noqa: T201
+                    print(json.dumps(_obey(order, server, robot, log, hand, cycle)), flush=True)  # noqa: T201
                 # As franky-sim's run_once, which gives its processor away in each cycle.
                 for arm in server.robot_servers:
                     arm.process_commands()

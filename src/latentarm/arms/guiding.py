@@ -11,8 +11,8 @@ class GuidableArm(RealArm, ABC):
 
     `guide` asks a disabled arm for that. While `status` says *guided*, the arm goes only where it is pushed,
     though it may sag under a load that it does not know of. `disable` and `close` end it, and so do an
-    emergency stop, a fault and a lost connection: the arm then holds its position. It ignores what it is sent
-    by `send`.
+    emergency stop, a fault and a lost connection: the arm then holds its position, and `status` says *guided*
+    until it does. It ignores what it is sent by `send`.
     """
 
     @abstractmethod

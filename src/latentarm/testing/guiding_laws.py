@@ -27,14 +27,16 @@ class GuidingLaws(RealArmRig):
         before = stand_in.positions()
         self._drive(arm, velocity, 0.3)
         self._still(stand_in, before)
-        pushed = before + self.push_rad * np.sign(velocity)
-        stand_in.push(pushed - before)
-        self._wait_for(lambda: bool(np.abs(arm.read().q - pushed).max() <= self.tolerance_rad))
+        push = self.push_rad * np.sign(velocity)
+        stand_in.push(push)
+        moved = stand_in.positions() - before
+        assert (moved * np.sign(push) > 0.5 * self.push_rad).all(), moved
+        self._wait_for(lambda: bool(np.abs(arm.read().q - before - moved).max() <= self.tolerance_rad))
         assert arm.status().phase == "guided"
         arm.disable()
         self._wait_for(lambda: arm.status().phase == "disabled")
         held = self._still(stand_in, stand_in.positions())
-        stand_in.push(before - pushed)
+        stand_in.push(-push)
         self._still(stand_in, held)
         self._enable(arm)
         self._still(stand_in, held)

@@ -12,10 +12,11 @@ from latentarm.arms.franka.hand import Hand
 from latentarm.arms.franka.link import Link, findings, library, open_link, refusals, set_up
 from latentarm.arms.franka.options import read_options
 from latentarm.arms.franka.worker import Order, Trouble, Worker
-from latentarm.arms.real import Findings, RealArm
+from latentarm.arms.guiding import GuidableArm
+from latentarm.arms.real import Findings
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperReading, Reading
+from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 RATE_HZ: Final = 100.0
 
@@ -29,7 +30,7 @@ _SILENT_S: Final = 0.5
 
 
 @final
-class FrankaArm(RealArm):
+class FrankaArm(GuidableArm):
     """A Franka Research 3 or Panda, by joint velocities at up to 100 Hz; its 1 kHz is franky's, in C++.
 
     Args:
@@ -128,20 +129,34 @@ class FrankaArm(RealArm):
         trouble = worker.trouble
         if trouble is not None:
             self._enabled = False
-            return ArmStatus(trouble.phase, trouble.reason, trouble.recoverable)
-        if not self._enabled:
+            return ArmStatus(trouble.phase, trouble.reason, trouble.recoverable, trouble.lost)
+        if worker.guided:
+            return ArmStatus("guided", "The arm is guided by hand.")
+        if not self._enabled or worker.in_torque_control:
             return ArmStatus("disabled", "The arm is connected and not enabled.")
         return ArmStatus("moving" if worker.running else "ready")
 
     def enable(self) -> None:
         """See the base class."""
         if self._worker is not None and self.status().phase == "disabled":
+            if not self._enabled:
+                self._halt()
             self._enabled = True
 
     def disable(self) -> None:
         """See the base class."""
         self._enabled = False
         self._halt()
+
+    def guide(self) -> None:
+        """See the base class. It ends within a second where this process does."""
+        if self._worker is not None and not self._enabled and self.status().phase == "disabled":
+            self._worker.guide()
+
+    def move_gripper(self, command: GripperCommand) -> None:
+        """See the base class."""
+        if self._worker is not None and self._hand is not None and self._worker.guided:
+            self._hand.ask(command)
 
     def recover(self) -> None:
         """See the base class. A lost connection is made again; the hand's too."""
@@ -181,7 +196,7 @@ class FrankaArm(RealArm):
         silent_s = self._now_s() - worker.measured.time_s
         if silent_s > _SILENT_S:
             reason = f"Nothing has come from the arm for {silent_s:.1f} s: check its power and cable."
-            worker.fail(Trouble("fault", reason, recoverable=True))
+            worker.fail(Trouble("fault", reason, recoverable=True, lost=True))
         elif self._hand is not None and self._hand.lost:
             reason = f"The connection to the hand was lost ({self._hand.lost}): check its cable."
             worker.fail(Trouble("fault", reason, recoverable=True, lost=True))

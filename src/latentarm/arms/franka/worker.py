@@ -1,6 +1,7 @@
 """The thread that talks to a Franka, so that nobody else waits for it."""
 
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, final
@@ -8,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, final
 import numpy as np
 
 from latentarm.arms.contract import ArmPhase
+from latentarm.arms.franka.guiding import Guiding
 from latentarm.arms.franka.limits import FrankaLimits
 from latentarm.arms.franka.link import Link, library
 from latentarm.arms.franka.words import fault, plain
@@ -24,6 +26,9 @@ _BACK_S: Final = 0.5
 """The arm's clock may seem to go back by so much: states may overtake each other, s."""
 
 _CLOSE_S: Final = 3.0
+
+_RECOVERS_S: Final = 0.2
+"""An error is gone so soon after the arm was told to recover from it, s."""
 
 _BUTTON: Final = "The stop button of the arm is pressed, or its enabling device is let go: release it."
 
@@ -118,6 +123,8 @@ class Worker:
         self._closing = threading.Event()
         self._running = False
         self._driven: Order | None = None
+        self._guide = False
+        self._guiding = Guiding(self._franky, link.limits)
         self._measured = self._state()
         self._thread = threading.Thread(target=self._run, name="franka-arm", daemon=True)
         self._thread.start()
@@ -134,6 +141,16 @@ class Worker:
         return self._running or (order is not None and order.velocity is not None)
 
     @property
+    def guided(self) -> bool:
+        """Whether a person can move the arm by hand: until it has come to rest after that, too."""
+        return self._guiding.phase != "no"
+
+    @property
+    def in_torque_control(self) -> bool:
+        """Whether the arm is guided, or is about to be: it takes no velocities."""
+        return self._guide or self.guided
+
+    @property
     def trouble(self) -> Trouble | None:
         """Why the arm takes no commands, or None."""
         return self._trouble
@@ -148,6 +165,13 @@ class Worker:
         with self._lock:
             if self._trouble is None:
                 self._order = order
+                self._guide = False
+        self._wake.set()
+
+    def guide(self) -> None:
+        """Let an arm at rest be guided by hand, until the next order."""
+        with self._lock:
+            self._guide = self._trouble is None and not self.running
         self._wake.set()
 
     def recover(self) -> None:
@@ -161,6 +185,7 @@ class Worker:
         """Take no orders for this reason, unless there is one already."""
         with self._lock:
             self._order = Order(None, self._now_s())
+            self._guide = False
             if self._trouble is None:
                 self._trouble = trouble
         self._wake.set()
@@ -191,6 +216,7 @@ class Worker:
                 return
             if order is not None:
                 self._carry_out(order)
+            self._guiding.follow(self._link, self._measured.q, self._now_s(), wanted=self._guide)
             self._observe()
             self._guard()
         # franky raises libfranka's exceptions, and those of the network as RuntimeError.
@@ -202,6 +228,8 @@ class Worker:
             self._lose(f"The connection to the arm was lost ({plain(error)}): check its power and cable.")
 
     def _carry_out(self, order: Order) -> None:
+        if self._guiding.phase != "no":
+            return
         left_ms = round(1000.0 * (order.until_s - self._now_s()))
         if order.velocity is None or left_ms < 1:
             self._halt()
@@ -236,6 +264,8 @@ class Worker:
         # Raises what ended the motion, if that was an error.
         if self._running and self._link.arm.join_motion(timeout=0.0):
             self._running, self._driven = False, None
+        if self._guiding.ended(self._link):
+            self._guide = False
         before = self._measured
         state = self._state()
         if state.arm_s < before.arm_s - _BACK_S:
@@ -275,7 +305,7 @@ class Worker:
 
     def _stopped_by_itself(self, error: Exception) -> None:
         """The arm ended a motion: a reflex, a button, a refusal."""
-        self._running, self._driven = False, None
+        self._running, self._driven, self._guiding.phase = False, None, "no"
         try:
             state = self._link.arm.state
         except Exception as lost:  # noqa: BLE001 - the network, again
@@ -290,12 +320,12 @@ class Worker:
             self._set(Trouble("fault", reason, recoverable=True))
 
     def _lose(self, reason: str) -> None:
-        self._running, self._driven = False, None
+        self._running, self._driven, self._guiding.phase = False, None, "no"
         self._set(Trouble("fault", reason, recoverable=True, lost=True))
 
     def _set(self, trouble: Trouble) -> None:
         with self._lock:
-            self._order = None
+            self._order, self._guide = None, False
             self._trouble = trouble
 
     def _end_trouble(self, trouble: Trouble) -> None:
@@ -310,7 +340,7 @@ class Worker:
                 return
             # The clock of a controller that has restarted begins again.
             self._measured = self._state()
-        elif not self._link.arm.recover_from_errors():
+        elif not (self._link.arm.recover_from_errors() or self._recovered()):
             reason = "The arm did not recover from its error: recover it in Desk."
             self._set(Trouble("fault", reason, recoverable=True))
             return
@@ -319,11 +349,20 @@ class Worker:
             if self._trouble is trouble:
                 self._trouble = None
 
+    def _recovered(self) -> bool:
+        """Whether the error is gone after all: franky's answer may come from a state that is older."""
+        until_s = self._now_s() + _RECOVERS_S
+        while (mode := self._link.arm.state.robot_mode.name) == "Reflex" and self._now_s() < until_s:
+            time.sleep(POLL_S)
+        return mode != "Reflex"
+
     def _end(self) -> None:
         """Come to rest, and let go of the arm."""
         try:
             if self._running:
                 self._move(self._franky.JointVelocityStopMotion())
+            self._guiding.follow(self._link, self._measured.q, self._now_s(), wanted=False)
+            if self._running or self._guiding.phase != "no":
                 self._link.arm.join_motion(timeout=_CLOSE_S / 2.0)
         except Exception:  # noqa: BLE001 - it is given up anyway, and then the arm stops by itself
             self._running = False

@@ -33,6 +33,7 @@ class HandGuiding:
         self._arm = arm if isinstance(arm, GuidableArm) else None
         self._filter = GripperFilter(gripper, safety)
         self._doing: Literal["nothing", "asking", "guiding"] = "nothing"
+        self._told = False
         self._own_mode = False
         self._ask: GripperAsk | None = None
         self._since_s = self._heard_s = -math.inf
@@ -63,7 +64,8 @@ class HandGuiding:
             time_s: the loop's clock, s.
         """
         if self._arm is not None and self._doing == "nothing":
-            self._doing, self._since_s, self._heard_s = "asking", time_s, time_s
+            self._doing, self._told = "asking", False
+            self._since_s = self._heard_s = time_s
 
     def keep(self, time_s: float, ask: GripperAsk | None) -> None:
         """The page is still there.
@@ -104,7 +106,7 @@ class HandGuiding:
             self.end()
             return Notice(code="guiding_page_gone")
         status = self._arm.status()
-        if status.phase == "guided":
+        if status.phase == "guided" and self._told:
             self._doing = "guiding"
             return None
         if self._doing == "asking" and time_s - self._since_s <= ENABLING_S:
@@ -139,12 +141,13 @@ class HandGuiding:
         elif status.phase == "fault" and status.recoverable:
             arm.recover()
         elif status.phase == "disabled":
+            self._told = True
             try:
                 arm.guide()
             except UserError as error:
                 self._doing, self._own_mode = "nothing", True
                 return notice_of(error)
-        else:
+        elif status.phase != "guided":  # from before: it comes to rest first
             self._doing = "nothing"
             return notice_of_stop(stop_of(status))
         return None

@@ -1,0 +1,76 @@
+"""Guiding a Franka by hand: torque control without stiffness, as the arm carries its own weight."""
+
+from typing import Any, Final, Literal, final
+
+import numpy as np
+
+from latentarm.arms.franka.limits import FrankaLimits
+from latentarm.arms.franka.link import Link
+from latentarm.types import FloatArray
+
+LASTS_S: Final = 1.0
+"""The arm comes to rest where guiding is not asked for again within this time, s."""
+
+_RENEWED_S: Final = 0.4
+
+_DAMPING: Final = (1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5)
+"""What resists the hand, N m s/rad: enough that an arm that is let go comes to rest."""
+
+
+@final
+class Guiding:
+    """What the arm's worker does for guiding; called in its thread.
+
+    Each motion is bounded in franky's control thread, at 1 kHz: where the worker does not renew it, a
+    `TorqueStopMotion` brings the arm to rest, and it then holds its position.
+
+    Args:
+        franky: the module.
+        limits: what the arm can do; near the ends of its joints it pushes back.
+    """
+
+    def __init__(self, franky: Any, limits: FrankaLimits) -> None:
+        self._franky = franky
+        self._limits = limits
+        self._began_s = 0.0
+        self.phase: Literal["no", "on", "ending"] = "no"
+
+    def follow(self, link: Link, q: FloatArray, now_s: float, *, wanted: bool) -> None:
+        """Begin, renew or end it.
+
+        Args:
+            link: open.
+            q: (7,), where the joints are, rad.
+            now_s: our clock, s.
+            wanted: whether the arm is to be guided.
+        """
+        if wanted and (self.phase == "no" or (self.phase == "on" and now_s - self._began_s > _RENEWED_S)):
+            link.arm.move(self._motion(q), asynchronous=True)
+            self.phase, self._began_s = "on", now_s
+        elif not wanted and self.phase == "on":
+            link.arm.move(self._franky.TorqueStopMotion(), asynchronous=True)
+            self.phase = "ending"
+
+    def ended(self, link: Link) -> bool:
+        """Whether the arm has ended it by itself, and rests.
+
+        Raises:
+            Exception: of franky, where an error has ended it.
+        """
+        if self.phase == "no" or not link.arm.join_motion(timeout=0.0):
+            return False
+        by_itself, self.phase = self.phase == "on", "no"
+        return by_itself
+
+    def _motion(self, q: FloatArray) -> Any:
+        franky = self._franky
+        motion = franky.JointImpedanceMotion(
+            q,
+            stiffness=np.zeros(7),
+            damping=np.array(_DAMPING),
+            lower_joint_limits=self._limits.lower,
+            upper_joint_limits=self._limits.upper,
+        )
+        runs_out = franky.Measure.REL_TIME >= LASTS_S
+        motion.add_reaction(franky.TorqueReaction(runs_out, franky.TorqueStopMotion()))
+        return motion
