@@ -99,6 +99,9 @@ class _Bus:
             case "place":
                 for servo in self.servos.values():
                     servo.at = order["at"]
+            case "push":
+                for servo, by in zip(self.servos.values(), order["by"], strict=True):
+                    servo.at += 0.0 if servo.registers[TORQUE] else by
             case "put":
                 register = order["address"], order["address"] + len(order["data"])
                 self.servos[order["number"]].registers[slice(*register)] = bytes(order["data"])
@@ -188,6 +191,10 @@ class FeetechBus:
     def place(self, at: float) -> None:
         """Turn all servos by hand to an encoder step."""
         self._do("place", at=at)
+
+    def push(self, by: list[float]) -> None:
+        """Turn the servos without torque by hand, by so many encoder steps each."""
+        self._do("push", by=by)
 
     def put(self, number: int, address: int, value: int, size: int = 1) -> None:
         """Set a register of a servo."""

@@ -390,7 +390,14 @@ class SimulatedServos(StandIn):
 
     def break_down(self) -> None:
         """A motor lets go."""
+        if not self._bus.powered()[1]:
+            pytest.skip("the motors of an arm that is guided have let go already")
         self._bus.put(2, TORQUE, 0)
+
+    def push(self, by: np.ndarray) -> None:
+        """See the base class."""
+        self._bus.push([*(by * STEPS_PER_RAD).tolist(), 0.0])
+        time.sleep(0.1)  # until it has been read
 
     def cut(self) -> None:
         """See the base class."""

@@ -76,6 +76,12 @@ class TestRos2Arm(RealArmContract):
             yield lambda: made(server.address, robot)
 
 
+def test_guiding_by_hand_is_refused_with_what_to_do_at_the_arm(the_panda: Robot) -> None:
+    arm = made(WHOLE, the_panda)
+    with pytest.raises(UserError, match=r"^This arm is not released over ROS 2: .* record here .*\.$"):
+        arm.guide()
+
+
 # Marked by hand: the contract above marks its own tests.
 clock = pytest.mark.clock
 

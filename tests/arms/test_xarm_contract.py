@@ -31,6 +31,9 @@ class _Controller(StandIn):
     def break_down(self) -> None:
         self.server.do("fail", error=31)
 
+    def push(self, by: FloatArray) -> None:
+        self.server.do("push", by=by.tolist())
+
     def cut(self) -> None:
         self.server.do("cut")
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 CYCLE_S = 0.004
 READY, MOVING, STOPPED = 2, 1, 4
-JOINT_VELOCITY = 4
+MANUAL, JOINT_VELOCITY = 2, 4
 OLD = (1, 8, 0)
 
 
@@ -95,6 +95,11 @@ class XArmModel:
 
     def clear(self) -> None:
         self.error = 1 if self.pressed else 0
+
+    def push(self, by: list[float]) -> None:
+        """Somebody moves the joints by hand, which the arm lets them in manual mode."""
+        if self.mode == MANUAL and self.state < 3 and self.motors and not self.error:
+            self.q = [joint + moved for joint, moved in zip(self.q, by, strict=True)]
 
     def press(self) -> None:
         self.pressed = True

@@ -210,6 +210,8 @@ class _Server:
                 model.pressed = False
             case "fail":
                 model.fail(order["error"])
+            case "push":
+                model.push(order["by"])
             case "cut":
                 self.up.clear()
             case "reconnect":

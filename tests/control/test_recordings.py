@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from latentarm.control.export import demonstrations_of
 from latentarm.control.journal import list_journal, read_journal
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.control.recordings import list_recordings, read_recordings
 from latentarm.demonstrations.dataset import append_episode, read_dataset, write_dataset
-from latentarm.demonstrations.provenance import provenance_now
+from latentarm.demonstrations.provenance import BY_HAND, provenance_now
 from latentarm.errors import UserError
 from latentarm.types import Command, Provenance, StepRecord
 
@@ -34,10 +35,12 @@ def step(tick: int) -> StepRecord:
     )
 
 
-def journal(path: Path, *, people: tuple[str, ...] = ("Ada",), end_last: bool = True) -> Path:
+def journal(
+    path: Path, *, people: tuple[str, ...] = ("Ada",), end_last: bool = True, controller: str = "latent"
+) -> Path:
     recorder = Recorder(path)
     for index, person in enumerate(people):
-        by = provenance_now(person=person, run="eat-cvae", run_fingerprint="ab" * 32, controller="latent")
+        by = provenance_now(person=person, run="eat-cvae", run_fingerprint="ab" * 32, controller=controller)
         recorder.begin_episode(EpisodeHeader("arm", NAMES, 100.0, f"stab {index}", provenance=by))
         for tick in range(11):
             recorder.record(step(tick))
@@ -67,6 +70,16 @@ def test_who_recorded_an_episode_goes_into_the_dataset(tmp_path: Path) -> None:
     assert by.started_utc.endswith("+00:00")
     append_episode(tmp_path / "data", episode)
     assert [one.provenance for one in read_dataset(tmp_path / "data").episodes] == [by, by]
+
+
+@pytest.mark.parametrize("controller", ["latent", BY_HAND])
+def test_the_action_is_the_command_or_else_the_motion_by_hand(tmp_path: Path, controller: str) -> None:
+    episodes = read_journal(journal(tmp_path / "a.sqlite", controller=controller))
+    (episode,) = demonstrations_of(episodes, source="a").episodes
+    assert episode.action is not None
+    by_hand = np.full((11, 2), 1.0)  # 0.01 rad in each 10 ms
+    commanded = np.stack([record.command.velocity for record in episodes[0].records])
+    np.testing.assert_allclose(episode.action, by_hand if controller == BY_HAND else commanded, atol=1e-9)
 
 
 def test_a_journal_from_before_this_was_recorded_reads_as_unknown(tmp_path: Path) -> None:

@@ -171,3 +171,11 @@ def test_a_robot_given_by_a_relative_path_is_found_from_another_folder(written, 
     name = load_model_file(Path(path.name)).name
     monkeypatch.chdir(tmp_path.parent)
     assert load_robot(name).name == str(path)
+
+
+@pytest.mark.parametrize(("at", "known"), [(0.01, True), (9.0, False)])
+def test_a_key_frame_tuck_is_a_pose_of_the_robots_where_its_limits_allow(written, at, known):
+    end = f'<keyframe><key name="home" qpos="0"/><key name="tuck" qpos="{at}"/></keyframe>'
+    tuck = load_model_file(written(arm('range="-1 1" limited="true"', end=end))).tuck
+    assert (tuck == pytest.approx([at])) if known else (tuck is None)
+    assert load_model_file(written(arm())).tuck is None

@@ -5,7 +5,7 @@ import asyncio
 import numpy as np
 import pytest
 
-from latentarm.web.arm_process.way_back import ARRIVED_RAD
+from latentarm.web.arm_process.way_back import ARRIVED_RAD, STUCK_S
 from latentarm.web.protocol.orders import Enable, PoseToGoTo, Return
 from latentarm.web.records.calendar import SYSTEM_CALENDAR
 from latentarm.web.records.people import People
@@ -71,6 +71,30 @@ def test_a_pose_that_is_not_this_arms_is_refused_in_words_and_nothing_moves(desk
     desk.run(1.0)
     assert not desk.speeds().any()
     assert {note.code for note in said(desk)} == {"pose_unreachable"}
+
+
+def test_a_way_with_something_in_it_is_not_begun_and_what_it_is_is_said(desk):
+    low = desk.setup.start.copy()
+    low[1] += 1.5
+    go(desk, PoseToGoTo(name="Floor", q=tuple(low.tolist())))
+    desk.run(2.0)
+    assert not desk.speeds().any()
+    (note,) = {(note.code, note.parameters["second"]) for note in said(desk)}
+    assert note == ("path_blocked", "table")
+    assert not desk.reports[-2].returning
+    assert desk.reports[-2].phase == "ready"
+
+
+def test_an_arm_that_is_held_back_says_so_after_a_stated_time(desk):
+    goal = desk.setup.start.copy()
+    goal[6] = desk.setup.task.robot.limits.upper[6] - 0.02  # nearer to its end than the filters let it go
+    go(desk, PoseToGoTo(name="Turned", q=tuple(goal.tolist())))
+    desk.run(ASKED_S + np.abs(goal - desk.setup.start).max() / 0.35 + STUCK_S + 1.5)
+    assert "joint_position" in {report.held_back for report in desk.reports if report.returning}
+    (note,) = {(note.code, note.parameters["pose"], note.parameters["seconds"]) for note in said(desk)}
+    assert note == ("pose_stuck", "Turned", 3)
+    assert not desk.reports[-2].returning
+    assert desk.reports[-2].phase == "ready"
 
 
 def test_poses_are_kept_by_person_and_robot_and_outlive_the_server(tmp_path):

@@ -23,6 +23,7 @@ from latentarm.web.records.drive_log import LATE, MOST_VALUES, About, DriveLog
 from latentarm.web.records.drive_record import checked_trace, packed
 from latentarm.web.records.drives import Drives, Wanted
 from latentarm.web.records.people import People
+from latentarm.web.records.poses import read_poses, with_pose, write_poses
 from latentarm.web.records.records import FOLDER, Records
 
 HOURLY = [HealthCheck.function_scoped_fixture]
@@ -220,6 +221,18 @@ def test_a_damaged_record_is_named_and_the_rest_is_there(records, about, tmp_pat
     assert [person.name for person in again.people.all()] == ["Ada"]
     assert again.drives.find(record.id) == record
     assert str(path) in again.people.problems[0].text
+
+
+def test_saved_poses_go_into_the_export_and_come_back(records):
+    ada = records.people.add("Ada")
+    poses = with_pose((), "panda", "Drink", (0.1, 0.2))
+    write_poses(records.people.folder_of(ada.id), poses)
+    path = records.export(ada.id)
+    brought = records.bring(path.read_bytes())
+    path.unlink()
+    assert read_poses(records.people.folder_of(brought.person)) == poses
+    records.erase(brought.person)
+    assert not records.people.folder_of(brought.person).exists()
 
 
 @given(at=st.integers(0, 10**6), byte=st.integers(0, 255))

@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Capsules
-from latentarm.kinematics.reader import read
+from latentarm.kinematics.reader import ModelChain, read
 from latentarm.robots.attachment import ATTACHED_BODIES, Attachment
 from latentarm.robots.end_effector import arm_joints, finger_joints
 from latentarm.robots.gripper import Gripper
@@ -75,6 +75,7 @@ def assemble(
         model_path=model_path,
         gripper=gripper,
         attachment=attachment,
+        tuck=_tuck(model, reading, limits),
     )
 
 
@@ -137,6 +138,15 @@ def _stated_gripper(robot: Robot, stated: StatedGripper) -> Gripper:
     if travel and len(travel) < len(stated.joints):
         raise UserError(f"The gripper of {robot.name} has joints that slide and joints that turn.")
     return Gripper(stated.joints, stated.width, stated.speed, stated.force, tuple(travel))
+
+
+def _tuck(model: mujoco.MjModel, reading: ModelChain, limits: JointLimits) -> FloatArray | None:
+    """The key frame "tuck", (n,), rad, where the model has one within the limits."""
+    key = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "tuck")
+    if key < 0:
+        return None
+    found = np.array(model.key_qpos[key][model.jnt_qposadr[reading.joints]])
+    return None if limits.violation(found).any() else found
 
 
 def _names(model: mujoco.MjModel, joints: frozenset[int]) -> tuple[str, ...]:

@@ -34,6 +34,7 @@ class Robot:
         stated_limits: what a limits file says of it, or None.
         gripper: its gripper, or None where it has none that can be driven.
         attachment: what it carries in its hand, or None.
+        tuck: (n,), a configuration in which it is out of the way, rad; None where its model states none.
     """
 
     name: str
@@ -51,6 +52,7 @@ class Robot:
     stated_limits: StatedLimits | None = None
     gripper: Gripper | None = None
     attachment: Attachment | None = None
+    tuck: FloatArray | None = None
 
     @property
     def dof(self) -> int:

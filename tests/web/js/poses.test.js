@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { attachChecklist } from "#pages/drive/checklist.js";
-import { goingOf, savesOf } from "#pages/drive/poses.js";
+import { attachPoses, goingOf, savesOf } from "#pages/drive/poses.js";
 import { FakeElement, newBrowser, stateOf, welcomeOf } from "./browser.js";
 
 beforeEach(newBrowser);
@@ -40,4 +40,23 @@ test("a real arm is enabled once everything was confirmed, a simulated one at on
   for (const box of boxes) box.checked = true;
   assert.ok(checklist.done());
   assert.deepEqual(checklist.choices(), []);
+});
+
+test("the robot's own poses come before saved ones, and cannot be deleted", () => {
+  const sent = [];
+  const parts = { list: new FakeElement(), why: new FakeElement(), name: new FakeElement(), save: new FakeElement() };
+  parts.list.querySelectorAll = () => [];
+  const connection = Object.assign(new EventTarget(), {
+    ...DRIVING, state: stateOf({ phase: "ready", you: true }), welcome: welcomeOf({ poses: ["home", "tuck"] }),
+    poses: { names: ["Drink"], problem: null }, send: (message) => sent.push(message),
+  });
+  const poses = attachPoses(parts, connection);
+  assert.deepEqual(parts.list.children.map((row) => row.children.length), [1, 1, 2]);
+  for (const row of parts.list.children) row.children[0].dispatchEvent(new Event("click"));
+  assert.deepEqual(sent, [
+    { type: "to_pose", name: "Home", built_in: "home" },
+    { type: "to_pose", name: "Tuck", built_in: "tuck" },
+    { type: "to_pose", name: "Drink", built_in: null },
+  ]);
+  assert.equal(poses.choices().length, 3);
 });

@@ -9,13 +9,14 @@ import numpy as np
 
 from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import ArmPhase, ArmSpec, ArmStatus
+from latentarm.arms.guiding import GuidableArm
 from latentarm.arms.helper_process import HelperProcess
 from latentarm.arms.lerobot import keeper
 from latentarm.arms.lerobot.options import Options
-from latentarm.arms.real import Fact, Findings, RealArm
+from latentarm.arms.real import Fact, Findings
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperReading, Reading
+from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 RATE_HZ: Final = 100.0
 """How often its process tells the servos where to be."""
@@ -37,7 +38,7 @@ _SILENT_S: Final = 1.0
 
 
 @final
-class LerobotArm(RealArm):
+class LerobotArm(GuidableArm):
     """An arm of LeRobot whose servos take positions, driven next to its bus by a process of its own.
 
     The servos have no watchdog. The process makes up for that (`latentarm.arms.lerobot.keeper`): velocities
@@ -126,6 +127,7 @@ class LerobotArm(RealArm):
             return ArmStatus(
                 "fault",
                 "The process next to the arm does not answer; the arm holds its position. Connect it again.",
+                lost=True,
             )
         return self._status
 
@@ -138,6 +140,14 @@ class LerobotArm(RealArm):
         self._tell("disable")
         if self._status.takes_commands:
             self._status = _DISABLED
+
+    def guide(self) -> None:
+        """See the base class. The joints' torque is off meanwhile: the arm sinks unless somebody holds it."""
+        self._tell("guide")
+
+    def move_gripper(self, command: GripperCommand) -> None:
+        """See the base class."""
+        self._tell("grip", gripper=[command.width_m, command.speed_m_s])
 
     def recover(self) -> None:
         """See the base class."""
@@ -252,7 +262,8 @@ class LerobotArm(RealArm):
         self._heard_s = keeper.now_s()
         phase: ArmPhase = state["phase"]
         reason = state["reason"] or _REASONS.get(phase, "")
-        self._status = ArmStatus(phase, reason, recoverable=phase == "fault")
+        lost = bool(state.get("lost"))
+        self._status = ArmStatus(phase, reason, recoverable=phase == "fault", lost=lost)
         if "q" not in state:
             return
         # Its age counts, so that readings are timed by the loop's clock whatever that is.

@@ -4,7 +4,7 @@ import math
 import select
 import statistics
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields
 from importlib import import_module
@@ -49,7 +49,7 @@ class MotorsBus:
     """The bus of one robot, with LeRobot's own classes; not open at first.
 
     Positions of the arm's motors are in degrees from the middle of their calibrated range, as LeRobot reads
-    them with ``use_degrees``. Nothing here switches torque off.
+    them with ``use_degrees``. Nothing but `release` switches torque off.
 
     Args:
         options: the robot.
@@ -206,6 +206,14 @@ class MotorsBus:
             _again(self._robot.configure)
         else:
             self._bus.enable_torque(list(limp), num_retry=_TRIES)
+
+    def release(self, motors: Sequence[str]) -> None:
+        """Switch torque off at some motors.
+
+        Raises:
+            OSError: a motor does not answer.
+        """
+        self._bus.disable_torque(list(motors), num_retry=_TRIES)
 
     def _has(self, register: str) -> bool:
         """Whether the motors have a register: those of other makers have others."""

@@ -67,6 +67,7 @@ class Keeper:
         self._phase: ArmPhase = "off"
         self._reason = ""
         self._failures = self._rounds = 0
+        self._released = False
         self._targets: Targets | None = None
         self._q = np.zeros(len(self._joints))
         self._seen: deque[tuple[float, FloatArray]] = deque(maxlen=_VELOCITY_ROUNDS + 1)
@@ -88,6 +89,7 @@ class Keeper:
             pass
         finally:
             with suppress(OSError):
+                self._hold()
                 self._bus.close()
 
     def _heed(self, message: Mapping[str, Any]) -> None:
@@ -99,6 +101,7 @@ class Keeper:
             case "connect":
                 self._port.send({"asked": message["asked"], **self._connected()})
             case "close":
+                self._hold()
                 self._halt()
                 self._bus.close()
                 self._phase = "off"
@@ -106,9 +109,14 @@ class Keeper:
             case "enable":
                 self._enable()
             case "disable":
+                self._hold()
                 self._halt()
                 if self._phase == "ready":
                     self._phase, self._reason = "disabled", ""
+            case "guide":
+                self._let_go()
+            case "grip" if self._phase == "guided" and self._jaw is not None:
+                self._jaw.command(*message["gripper"])
             case "stop":
                 self._halt()
             case "recover" if self._phase == "fault" and not self._failures:
@@ -183,6 +191,33 @@ class Keeper:
         self._targets.begin(self._q)
         self._phase, self._reason = "ready", ""
 
+    def _let_go(self) -> None:
+        """Switch the joints' torque off, so that a person can move them; the gripper's stays on."""
+        if self._phase != "disabled":
+            return
+        try:
+            self._bus.energise()
+            self._read()
+            self._released = True
+            self._bus.release(self._joints)
+        except OSError as error:
+            self._fail(f"The motors do not let go: {_sentence(error)}")
+            return
+        self._phase, self._reason = "guided", ""
+
+    def _hold(self) -> None:
+        """Where the arm is guided, or was: hold it where it is, under power."""
+        if self._phase == "guided":
+            self._phase, self._reason = "disabled", ""
+        if not self._released:
+            return
+        try:
+            self._bus.energise()
+        except OSError as error:
+            self._fail(f"The motors do not take power, so hold the arm: {_sentence(error)}")
+            return
+        self._released = False
+
     def _round(self) -> None:
         """Read the arm, tell it where to be, and say how it is."""
         before_s = self._read_s
@@ -194,14 +229,19 @@ class Keeper:
                 if self._jaw is not None:
                     goals[GRIPPER] = self._jaw.advance(min(self._read_s - before_s, 2 * PERIOD_S), opening)
                 self._bus.go(goals)
+            elif self._phase == "guided" and self._jaw is not None:
+                width = self._jaw.advance(min(self._read_s - before_s, 2 * PERIOD_S), opening)
+                self._bus.go({GRIPPER: width})
             self._check_torque()
         except OSError:
             self._failures += 1
             if self._failures >= _FAILURES:
                 self._fail("The arm's bus does not answer: check its cable and its supply.")
-            self._port.send({**self._status(), "phase": self._phase})
+            self._port.send({**self._status(), "lost": self._failures >= _FAILURES})
             return
         self._failures = 0
+        if self._phase != "guided":
+            self._hold()
         self._port.send(self._state())
 
     def _check_torque(self) -> None:
@@ -219,7 +259,7 @@ class Keeper:
         self._q = np.deg2rad([positions[joint] for joint in self._joints])
         self._seen.append((self._read_s, self._q))
         opening = float(positions.get(GRIPPER, 0.0))
-        if self._jaw is not None and self._phase != "ready":
+        if self._jaw is not None and self._phase not in ("ready", "guided"):
             self._jaw.begin(opening)
         return opening
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import ArmSpec, ArmStatus
-from latentarm.arms.real import Findings, RealArm
+from latentarm.arms.guiding import GuidableArm
+from latentarm.arms.real import Findings
 from latentarm.arms.ros2.feed import JointFeed
 from latentarm.arms.ros2.gripper import Ros2Gripper
 from latentarm.arms.ros2.inspection import inspect
@@ -21,7 +22,7 @@ from latentarm.arms.ros2.session import Session
 from latentarm.errors import UserError
 from latentarm.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperReading, Reading
+from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 RATE_HZ: Final = 100.0
 """The watchdog commands the controller so often."""
@@ -56,7 +57,7 @@ class _Open:
 
 
 @final
-class Ros2Arm(RealArm):
+class Ros2Arm(GuidableArm):
     """The driver of an arm behind ros2_control, over rosbridge.
 
     Commands go to the watchdog next to the arm, which passes them on to the controller and stops the arm
@@ -149,7 +150,7 @@ class Ros2Arm(RealArm):
         lost = self._lost or self._out_of_reach()
         state = opened.session.state
         if lost or state is None:
-            return ArmStatus("fault", lost, recoverable=True)
+            return ArmStatus("fault", lost, recoverable=True, lost=True)
         if state.stop_pressed:
             return ArmStatus("emergency_stop", "The emergency stop on the arm is pressed.")
         if self._fault or opened.feed.jumped:
@@ -178,6 +179,20 @@ class Ros2Arm(RealArm):
         if self._open is not None:
             self._open.session.tell("disable")
             self._halt_gripper(self._open)
+
+    def guide(self) -> None:
+        """Always refused: ros2_control has no common way to let go of an arm.
+
+        Raises:
+            UserError: it says so.
+        """
+        raise UserError(
+            "This arm is not released over ROS 2: switch on its own mode for guiding by hand at the arm, such"
+            " as freedrive, and record here while you move it."
+        )
+
+    def move_gripper(self, command: GripperCommand) -> None:
+        """Nothing: the arm is never guided from here."""
 
     def recover(self) -> None:
         """See the base class."""

@@ -8,7 +8,8 @@ import numpy as np
 
 from latentarm.arms.address import ArmAddress
 from latentarm.arms.contract import ArmSpec, ArmStatus
-from latentarm.arms.real import Findings, RealArm
+from latentarm.arms.guiding import GuidableArm
+from latentarm.arms.real import Findings
 from latentarm.arms.xarm.controller import ANSWER_S, LinkLostError
 from latentarm.arms.xarm.driver import Driver
 from latentarm.arms.xarm.findings import basic_facts, find_out, too_different
@@ -19,7 +20,7 @@ from latentarm.arms.xarm.state import TAKES_COMMANDS, Ordered, Shared
 from latentarm.errors import UserError
 from latentarm.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperReading, Reading
+from latentarm.types import Command, GripperCommand, GripperReading, Reading
 
 RATE_HZ: Final = 100.0
 
@@ -30,7 +31,7 @@ _JOIN_S: Final = 8.0
 
 
 @final
-class XArm(RealArm):
+class XArm(GuidableArm):
     """xArm 5, 6 and 7, 850 and Lite 6.
 
     Each command leaves with the time that is left of its duration, counted from `send`; the controller ends
@@ -118,12 +119,14 @@ class XArm(RealArm):
                 return ArmStatus("off", "The arm is not connected.")
             case "disabled":
                 return ArmStatus("disabled", "The arm is not enabled.")
-            case "enabling":
+            case "enabling" | "releasing":
                 return ArmStatus("disabled", "The arm is being enabled.")
+            case "guided":
+                return ArmStatus("guided", "The arm is guided by hand.")
             case "enabled" | "stopping":
                 return ArmStatus("moving" if self._moves() else "ready")
             case "fault" | "lost":
-                return ArmStatus("fault", reason, recoverable)
+                return ArmStatus("fault", reason, recoverable, lost=condition == "lost")
             case "emergency_stop":
                 return ArmStatus("emergency_stop", reason, recoverable)
 
@@ -137,9 +140,22 @@ class XArm(RealArm):
     def disable(self) -> None:
         """See the base class."""
         with self._shared.changed:
-            if self._shared.condition in (*TAKES_COMMANDS, "enabling"):
+            if self._shared.condition in (*TAKES_COMMANDS, "enabling", "releasing", "guided"):
                 self._shared.become("disabled")
                 self._shared.requests.add("halt")
+
+    def guide(self) -> None:
+        """See the base class. Where this process is killed, the arm stays in its manual mode."""
+        with self._shared.changed:
+            if self._shared.condition == "disabled":
+                self._shared.become("releasing")
+                self._shared.requests.add("guide")
+
+    def move_gripper(self, command: GripperCommand) -> None:
+        """See the base class."""
+        driver = self._driver
+        if driver is not None and driver.session.gripper is not None and self._shared.condition == "guided":
+            driver.session.gripper.send(command)
 
     def recover(self) -> None:
         """See the base class."""

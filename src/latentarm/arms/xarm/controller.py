@@ -24,6 +24,9 @@ ALL_JOINTS: Final = 8
 JOINT_VELOCITY: Final = 4
 """The mode that takes joint velocities."""
 
+MANUAL: Final = 2
+"""The mode in which a person moves the arm by hand."""
+
 STATES_THAT_MOVE: Final = (0, 1, 2)
 """States of an arm that takes commands: ready or moving."""
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from latentarm.arms.xarm.controller import (
     JOINT_VELOCITY,
+    MANUAL,
     STATES_THAT_MOVE,
     LinkLostError,
     RefusedError,
@@ -16,14 +17,14 @@ from latentarm.arms.xarm.controller import (
 from latentarm.arms.xarm.findings import unfit
 from latentarm.arms.xarm.sdk import Sdk
 from latentarm.arms.xarm.session import Session
-from latentarm.arms.xarm.state import Ordered, Request, Shared
+from latentarm.arms.xarm.state import Condition, Ordered, Request, Shared
 from latentarm.arms.xarm.watch import Watch
 from latentarm.arms.xarm.words import EMERGENCY_STOPS, controller_error, emergency_stop
 from latentarm.errors import UserError
 from latentarm.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
 
-_ORDER: Final[tuple[Request, ...]] = ("halt", "stop", "recover", "enable")
+_ORDER: Final[tuple[Request, ...]] = ("halt", "stop", "recover", "guide", "enable")
 _LOOK_S: Final = 0.01
 _ERRORS_S: Final = 0.1
 """How often the controller is asked for its error at most, s."""
@@ -127,10 +128,17 @@ class Driver(threading.Thread):
             case "stop":
                 self.session.controller.stop()
                 self._stopped_s, self._resumed_s = time.monotonic(), None
-            case "enable":
-                self._enable()
+            case "enable" if self._shared.condition == "enabling":
+                if self._become_ready(JOINT_VELOCITY, "enabling"):
+                    self._watch.reset(time.monotonic())
+                    self._is_now("enabled", after="enabling")
+            case "guide" if self._shared.condition == "releasing":
+                if self._become_ready(MANUAL, "releasing"):
+                    self._is_now("guided", after="releasing")
             case "recover":
                 self._recover()
+            case _:  # taken back meanwhile
+                pass
 
     def _move(self, command: Ordered) -> None:
         left_s = command.ends_s - time.monotonic()
@@ -139,44 +147,50 @@ class Driver(threading.Thread):
         self._watch.commanded(command.velocity, command.ends_s)
         self.session.controller.move(command.velocity, left_s)
 
-    def _enable(self) -> None:
+    def _become_ready(self, mode: int, while_: Condition) -> bool:
+        """Switch the arm to a mode and wait until it is ready in it.
+
+        Args:
+            mode: of the controller.
+            while_: nobody has changed their mind as long as this is the condition.
+
+        Returns:
+            Whether it is.
+        """
         shared, controller = self._shared, self.session.controller
-        if shared.condition != "enabling":
-            return
         if reason := unfit(self._sdk, self.session, self._robot):
             self._fault(reason)
-            return
+            return False
         controller.switch_on_motors()
-        controller.set_mode(JOINT_VELOCITY)
+        controller.set_mode(mode)
         self._drives = True
         controller.take_commands()
-        if not self._ready_within(_READY_S):
-            if shared.condition == "enabling":
+        if not self._ready_within(_READY_S, mode, while_):
+            if shared.condition == while_:
                 self._fault(
                     "The arm does not become ready: check in UFACTORY Studio that it can be enabled there,"
                     " then try again."
                 )
-            return
+            return False
         if self.session.gripper is not None:
             self.session.gripper.enable()
-        self._watch.reset(time.monotonic())
-        with shared.changed:
-            if shared.condition == "enabling":
-                shared.become("enabled")
+        return True
 
-    def _ready_within(self, span_s: float) -> bool:
+    def _is_now(self, condition: Condition, *, after: Condition) -> None:
+        with self._shared.changed:
+            if self._shared.condition == after:
+                self._shared.become(condition)
+
+    def _ready_within(self, span_s: float, mode: int, while_: Condition) -> bool:
         joints, shared = self.session.joints, self._shared
         with joints.came:
-            return (
-                joints.came.wait_for(
-                    lambda: self._accepts() or shared.condition != "enabling" or shared.ending, span_s
-                )
-                and self._accepts()
-            )
+            return joints.came.wait_for(
+                lambda: self._accepts(mode) or shared.condition != while_ or shared.ending, span_s
+            ) and self._accepts(mode)
 
-    def _accepts(self) -> bool:
+    def _accepts(self, mode: int) -> bool:
         report = self.session.report
-        return report.mode == JOINT_VELOCITY and report.state in STATES_THAT_MOVE
+        return report.mode == mode and report.state in STATES_THAT_MOVE
 
     def _recover(self) -> None:
         shared = self._shared
@@ -220,6 +234,12 @@ class Driver(threading.Thread):
             self._await_release(now_s)
         elif condition == "fault" or self._has_error(now_s):
             return
+        elif condition == "guided" and not self._accepts(MANUAL):
+            if not self._error(session.controller.errors()[0]):
+                self._fault(
+                    "The arm has left its manual mode: close UFACTORY Studio's control page, then guide it"
+                    " again."
+                )
         elif condition == "enabled" and (reason := self._watch.fault(report)):
             if not self._error(session.controller.errors()[0]):
                 self._fault(reason)
@@ -269,7 +289,7 @@ class Driver(threading.Thread):
                 controller.set_mode(JOINT_VELOCITY)
                 controller.take_commands()
                 self._drives, self._resumed_s = True, now_s
-        elif self._accepts():
+        elif self._accepts(JOINT_VELOCITY):
             self._watch.reset(now_s)
             with self._shared.changed:
                 if self._shared.condition == "stopping" and "stop" not in self._shared.requests:

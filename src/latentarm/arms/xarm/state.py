@@ -6,11 +6,22 @@ from typing import Literal, final
 
 from latentarm.types import FloatArray
 
-Condition = Literal["off", "disabled", "enabling", "enabled", "stopping", "fault", "lost", "emergency_stop"]
-"""Of the driver. *enabling*: was asked for and is under way. *stopping*: enabled, and on its way to rest.
-*lost*: a fault of the connection."""
+Condition = Literal[
+    "off",
+    "disabled",
+    "releasing",
+    "guided",
+    "enabling",
+    "enabled",
+    "stopping",
+    "fault",
+    "lost",
+    "emergency_stop",
+]
+"""Of the driver. *releasing*: guiding by hand was asked for, and is under way. *enabling*: so were commands.
+*stopping*: enabled, and on its way to rest. *lost*: a fault of the connection."""
 
-Request = Literal["halt", "enable", "stop", "recover"]
+Request = Literal["halt", "guide", "enable", "stop", "recover"]
 
 TAKES_COMMANDS: tuple[Condition, ...] = ("enabled", "stopping")
 

@@ -10,6 +10,7 @@ import numpy as np
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
+from latentarm.control.safety.straight_way import StraightWay
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.episodes import Episodes
@@ -22,7 +23,7 @@ from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.standing import Standing
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.task_run import TaskRun
-from latentarm.web.arm_process.way_back import AT_START_RAD, WayBack, ending
+from latentarm.web.arm_process.way_back import AT_START_RAD, WayBack
 from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import Channel, parse_stop
 from latentarm.web.protocol.notice import Notice, notice_of_stop
@@ -117,7 +118,8 @@ class Drive:
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
         self._neutral = NeutralFirst(self._inputs)
-        self._way_back = WayBack(self._neutral, self._inputs, setup.start)
+        straight = StraightWay(setup.task.robot, self._step.safety)
+        self._way_back = WayBack(self._neutral, self._inputs, setup.start, straight)
         self._ended: Notice | None = None
         self._late = LateStops()
         self._loop = ControlLoop(self._step, arm, self._way_back, clock, [self._observe, *observers])
@@ -284,7 +286,7 @@ class Drive:
         self._setup.help.level = "off"
         self._to_pose.lead_to(goal)
         self._step.choose_mode(self._setup.way_back)
-        self._way_back.begin(record.time_s, goal, None if pose is None else pose.name)
+        self._way_back.begin(record.time_s, self._observed.q, goal, None if pose is None else pose.name)
 
     def _end_way_back(self) -> None:
         self._choose(self._steering.mode, self._steering.axes, self._steering.help)
@@ -300,7 +302,7 @@ class Drive:
             self._end_way_back()
         elif (outcome := self._way_back.outcome(self._observed.q, record.time_s)) is not None:
             self._end_way_back()
-            self._ended = ending(outcome, self._way_back.pose)
+            self._ended = self._way_back.ending(outcome)
             self._say(self._ended)
 
     def _enable_if_asked(self, now_s: float) -> None:

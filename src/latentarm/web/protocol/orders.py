@@ -12,6 +12,9 @@ ModeName = Literal["latent", "assisted", "end_effector"]
 
 HelpLevel = Literal["off", "low", "medium", "high"]
 
+BuiltInPose = Literal["home", "tuck"]
+"""Poses that a robot's model states."""
+
 
 @final
 class AskedGripper(Message):
@@ -120,7 +123,7 @@ class ChooseRun(Message):
 
 @final
 class PoseToGoTo(Message):
-    """A saved pose.
+    """A saved or built-in pose.
 
     Attributes:
         name: what it is called.

@@ -12,7 +12,7 @@ from latentarm.types import GripperAsk
 from latentarm.web.protocol.copilot_messages import CopilotMessage
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
 from latentarm.web.protocol.notice import Message
-from latentarm.web.protocol.orders import HelpLevel, ModeName
+from latentarm.web.protocol.orders import BuiltInPose, HelpLevel, ModeName
 from latentarm.web.protocol.personalise_messages import PersonaliseMessage
 
 FRAME_LIMIT: Final = 4096
@@ -192,10 +192,16 @@ class ReturnArm(Message):
 
 @final
 class GoToPose(Message):
-    """Move the arm slowly to a saved pose, as `ReturnArm` does to its start."""
+    """Move the arm slowly to a pose, as `ReturnArm` does to its start.
+
+    Attributes:
+        name: of a saved pose; of a built-in one, what the page calls it.
+        built_in: which one of the robot's own; null for a saved one.
+    """
 
     type: Literal["to_pose"]
     name: PoseName
+    built_in: BuiltInPose | None = None
 
 
 @final

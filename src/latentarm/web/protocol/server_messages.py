@@ -9,7 +9,7 @@ from typing import Literal, final
 from latentarm.tasks.steps import StepKind
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.notice import Message, Notice, PersonName
-from latentarm.web.protocol.orders import ModeName
+from latentarm.web.protocol.orders import BuiltInPose, ModeName
 from latentarm.web.protocol.report import ArmState, Point
 
 
@@ -106,6 +106,7 @@ class Welcome(Message):
         gripper_width_m: how wide its gripper opens, m, or null where it has none that can be driven.
         task: see `TaskToDo`.
         real: what is known of the arm where it is a real one; null where it is simulated.
+        poses: that the robot has without anybody's saving them.
     """
 
     type: Literal["welcome"] = "welcome"
@@ -124,6 +125,7 @@ class Welcome(Message):
     gripper_width_m: float | None
     task: TaskToDo
     real: RealArm | None
+    poses: tuple[BuiltInPose, ...]
 
 
 @final

@@ -15,6 +15,7 @@ from latentarm.web.records.documents import DOCUMENT_LIMIT, ID, new_id, parse_re
 from latentarm.web.records.drive_record import PACKED_LIMIT, DriveRecord, checked_trace
 from latentarm.web.records.drives import DRIVES, TRACE
 from latentarm.web.records.people import PERSON_NAME, PersonRecord
+from latentarm.web.records.poses import POSES_NAME, PosesRecord, SavedPose
 
 IMPORT_LIMIT: Final = 1 << 26
 """The largest file that is taken, bytes."""
@@ -79,6 +80,21 @@ def person_of(files: Mapping[str, bytes]) -> PersonRecord:
         raise NoticeError("import_invalid") from error
 
 
+def poses_of(files: Mapping[str, bytes]) -> tuple[SavedPose, ...]:
+    """The saved poses of a zip; none where it has none, as older ones.
+
+    Raises:
+        NoticeError: they are damaged.
+    """
+    content = files.get(POSES_NAME)
+    if content is None:
+        return ()
+    try:
+        return parse_record(PosesRecord, content, POSES_NAME).poses
+    except UserError as error:
+        raise NoticeError("import_invalid") from error
+
+
 def drives_of(files: Mapping[str, bytes]) -> list[tuple[DriveRecord, bytes | None]]:
     """The drives of a zip, checked, each with its trace as it is kept.
 
@@ -129,7 +145,7 @@ def profile_of(files: Mapping[str, bytes], index: int) -> dict[str, bytes]:
 
 def _limit(name: str) -> int:
     """How many bytes a file may have; 0 for one that we do not know, which is left out."""
-    if name == PERSON_NAME or _DRIVE.fullmatch(name):
+    if name in (PERSON_NAME, POSES_NAME) or _DRIVE.fullmatch(name):
         return DOCUMENT_LIMIT
     trace = name.endswith(TRACE) and _DRIVE.fullmatch(name.removesuffix(TRACE) + ".json")
     return PACKED_LIMIT if trace or _SCENE.fullmatch(name) or _PROFILE.fullmatch(name) else 0

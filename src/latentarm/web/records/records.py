@@ -22,6 +22,7 @@ from latentarm.web.records.exchange import (
     SCENES,
     drives_of,
     person_of,
+    poses_of,
     profile_of,
     read_zip,
     scenes_of,
@@ -29,6 +30,7 @@ from latentarm.web.records.exchange import (
     write_zip,
 )
 from latentarm.web.records.people import PERSON_NAME, KeptProfile, People, PersonRecord
+from latentarm.web.records.poses import POSES_NAME, PosesRecord, read_poses, write_poses
 from latentarm.web.records.recordings import Recordings
 from latentarm.web.records.scenes import Scenes
 
@@ -107,7 +109,7 @@ class Records:
         )
 
     def export(self, person: str) -> Path:
-        """Everything of a person as a zip: settings, drives with traces, profiles, a list of recordings.
+        """Everything of a person as a zip: settings, poses, drives with traces, profiles, list of recordings.
 
         Returns:
             A temporary file, for the caller to delete.
@@ -131,14 +133,20 @@ class Records:
             UserError: it is damaged, or cannot be written.
         """
         files = read_zip(content)
-        brought, drives = person_of(files), drives_of(files)
+        brought, drives, poses = person_of(files), drives_of(files), poses_of(files)
+
+        def write(folder: Path, person: str) -> None:
+            write_drives(drives, folder, person)
+            if poses:
+                write_poses(folder, poses)
+
         profiles = brought.profiles
         with self._scenes_lock:
             for place, scene in scenes_of(files).items():
                 self.scenes.take(place, scene)
             person = self.people.adopt(
                 brought.model_copy(update={"profiles": ()}),
-                lambda folder, person: write_drives(drives, folder, person),
+                write,
             )
             self.drives.adopt(person.id)
         taken = [
@@ -202,6 +210,9 @@ class Records:
         profiles = self._profiles(person)
         kept = person.model_copy(update={"profiles": tuple(profiles), "pin": None})
         yield PERSON_NAME, kept.model_dump_json(indent=1).encode()
+        poses = read_poses(self.people.folder_of(person.id))
+        if poses:
+            yield POSES_NAME, PosesRecord(poses=poses).model_dump_json(indent=1).encode()
         scenes: set[str] = set()
         for drive in self.drives.wanted(Wanted(person=person.id)):
             place = f"drives/{drive.id}.json"

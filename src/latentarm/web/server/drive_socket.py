@@ -284,8 +284,12 @@ class DriveSocket:
                 self._control.order(Reconnect())
             case ReturnArm(on=on):
                 self._control.order(Return(on=on))
-            case GoToPose(name=name):
-                pose = self._poses.find(page.person, self._states.loaded.robot_name, name)
+            case GoToPose(name=name, built_in=built_in):
+                loaded = self._states.loaded
+                if built_in is None:
+                    pose = self._poses.find(page.person, loaded.robot_name, name)
+                else:
+                    pose = loaded.built_in(built_in, name)
                 if pose is not None:
                     self._control.order(Return(on=True, pose=pose))
             case SavePose(name=name):

@@ -7,8 +7,10 @@ from typing import final
 import numpy as np
 
 from latentarm.alignment.profile import profile_names
+from latentarm.types import FloatArray
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
+from latentarm.web.protocol.orders import BuiltInPose, PoseToGoTo
 from latentarm.web.protocol.report import Report
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.protocol.server_messages import (
@@ -55,6 +57,19 @@ class LoadedRun:
             for goal in setup.task.goals
         ]
         self._setup = setup
+        robot = setup.task.robot
+        tuck: dict[BuiltInPose, FloatArray] = {} if robot.tuck is None else {"tuck": robot.tuck}
+        self._poses: dict[BuiltInPose, FloatArray] = {"home": robot.home, **tuck}
+
+    def built_in(self, pose: BuiltInPose, name: str) -> PoseToGoTo | None:
+        """A pose of the robot's own; None where its model states none.
+
+        Args:
+            pose: which.
+            name: what people call it.
+        """
+        q = self._poses.get(pose)
+        return None if q is None else PoseToGoTo(name=name, q=tuple(q.tolist()))
 
     @property
     def profiles(self) -> tuple[str, ...]:
@@ -93,6 +108,7 @@ class LoadedRun:
             end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),
             real=_found(setup) if self.real else None,
+            poses=tuple(self._poses),
             gripper_width_m=None if gripper is None else gripper.width_m,
             task=TaskToDo(
                 name=setup.todo.task,

@@ -245,7 +245,7 @@ class States:
             returning=report.returning and not away,
             bound_for=None if away else report.bound_for,
             at_start=report.at_start,
-            guiding=report.guiding,
+            guiding="offered" if away and report.guiding == "on" else report.guiding,
             lost=report.lost,
             let_go_first=report.let_go_first,
             late_stops=report.late_stops,

@@ -95,6 +95,7 @@ export interface Ghosts {
 export interface GoToPose {
   type: "to_pose";
   name: string;
+  built_in?: "home" | "tuck" | null;
 }
 
 export interface GripperState {
@@ -413,6 +414,7 @@ export interface Welcome {
   gripper_width_m: number | null;
   task: TaskToDo;
   real: RealArm | null;
+  poses: ("home" | "tuck")[];
 }
 
 export interface Why {

@@ -1,9 +1,11 @@
-/** Saved poses: a button for each drives the arm there; where the arm stands can be saved as another one. */
+/** Poses, the robot's own and saved ones: a button for each drives the arm there; where it stands can be saved as another one. */
 
 import { create, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { sayTo } from "../connection/notices.js";
 
+/** @import {Welcome} from "../connection/messages.js" */
+/** @typedef {Welcome["poses"][number]} BuiltInPose */
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {Choice} from "../inputs/scanner.js" */
 /** @import {WordKey} from "../layout/words.js" */
@@ -32,9 +34,14 @@ export function savesOf({ driving, state }) {
  * @param {Connection} connection
  */
 export function attachPoses(parts, connection) {
-  const go = (/** @type {string} */ name) => {
-    if (goingOf(connection).goes) connection.send({ type: "to_pose", name });
+  const go = (/** @type {string} */ name, /** @type {BuiltInPose | null} */ built_in) => {
+    if (goingOf(connection).goes) connection.send({ type: "to_pose", name, built_in });
   };
+  /** Where the arm can go: what it is called, and which one of the robot's own it is. @returns {[string, BuiltInPose | null][]} */
+  const all = () => [
+    ...(connection.welcome?.poses ?? []).map((own) => /** @type {[string, BuiltInPose]} */ ([say(`poses.${own}`), own])),
+    ...(connection.poses?.names ?? []).map((name) => /** @type {[string, null]} */ ([name, null])),
+  ];
   const save = () => {
     const name = parts.name.value.trim();
     if (name === "") parts.name.focus();
@@ -55,17 +62,19 @@ export function attachPoses(parts, connection) {
     disable(parts.save, !savesOf(connection));
   };
   const list = () => {
-    const rows = (connection.poses?.names ?? []).map((name) => {
+    const rows = all().map(([name, own]) => {
       const there = create("button", { type: "button", textContent: say("poses.go", { pose: name }) });
       there.dataset.go = name;
-      there.addEventListener("click", () => go(name));
+      there.addEventListener("click", () => go(name, own));
+      const row = create("li", { className: "row" });
+      row.append(there);
+      if (own !== null) return row;
       const forget = create("button", { type: "button", className: "quiet", textContent: "×", ariaLabel: say("poses.delete", { pose: name }) });
       forget.dataset.delete = name;
       forget.addEventListener("click", () => {
         if (connection.driving) connection.send({ type: "delete_pose", name });
       });
-      const row = create("li", { className: "row" });
-      row.append(there, forget);
+      row.append(forget);
       return row;
     });
     parts.list.replaceChildren(...rows);
@@ -73,15 +82,16 @@ export function attachPoses(parts, connection) {
   };
   parts.save.addEventListener("click", save);
   connection.addEventListener("poses", list);
+  connection.addEventListener("welcome", list);
   connection.addEventListener("state", show);
   connection.addEventListener("open", show);
   list();
 
   return {
-    /** The poses among the choices of a switch, where the arm can go to them. @returns {Choice[]} */
+    /** All of them among the choices of a switch, where the arm can go to them. @returns {Choice[]} */
     choices() {
       if (!goingOf(connection).goes) return [];
-      return (connection.poses?.names ?? []).map((name) => ({ id: `pose-${name}`, label: say("poses.go", { pose: name }), act: () => go(name) }));
+      return all().map(([name, own]) => ({ id: `pose-${own ?? "saved"}-${name}`, label: say("poses.go", { pose: name }), act: () => go(name, own) }));
     },
   };
 }

@@ -1,4 +1,4 @@
-/** The screen stays on while this page drives an enabled arm: a screen that goes dark takes Stop with it. */
+/** The screen stays on while this page drives an enabled arm, or guides one: a screen that goes dark takes Stop with it. */
 
 /** @import {Connection} from "../connection/connection.js" */
 
@@ -24,7 +24,7 @@ export function attachWakeLock(connection) {
     lock = null;
   };
   const look = () => {
-    const now = connection.driving && connection.engaged;
+    const now = connection.driving && (connection.engaged || connection.state?.guiding === "on");
     if (now === wanted) return;
     wanted = now;
     if (wanted) ask();
