@@ -83,6 +83,14 @@ test("after a Stop, or what else ends it, nothing asks for it again", () => {
   assert.deepEqual(types(), []);
 });
 
+test("an arm that is not connected is not said to need Enable", () => {
+  const connection = { open: true, silenceMs: 0, engaged: false, drove: true, own: { has: () => false }, welcome: welcomeOf() };
+  const page = { halted: null, turnedAway: "", canEnable: true, pressed: false, late: null };
+  const reason = { code: "arm_off", parameters: {} };
+  const text = (fields) => statusOf({ ...connection, state: stateOf({ lost: true, phase: "disengaged", reason, ...fields }) }, page).text;
+  for (const fields of [{ you: true }, { driver: null }]) assert.equal(text(fields), "The arm is not connected.");
+});
+
 test("what it does is said to the person and to those who watch", () => {
   const connection = { open: true, silenceMs: 0, engaged: false, drove: true, own: { has: () => false }, welcome: welcomeOf() };
   const page = { halted: null, turnedAway: "", canEnable: false, pressed: false, late: null };

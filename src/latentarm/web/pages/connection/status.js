@@ -56,7 +56,7 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
  * @param {boolean} canEnable
  * @param {Reader} reader
  */
-function driverWords({ phase, note, reason, held_back, returning, bound_for, let_go_first, copilot, guiding }, canEnable, reader) {
+function driverWords({ phase, note, reason, held_back, returning, bound_for, let_go_first, copilot, guiding, lost }, canEnable, reader) {
   if (guiding === "on") return say("status.guided");
   if (concerns(note, true)) return sayTo(note, reader);
   const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
@@ -71,7 +71,7 @@ function driverWords({ phase, note, reason, held_back, returning, bound_for, let
       return say(let_go_first ? "status.let_go" : "status.ready");
     case "moving": return cause === null ? say("status.moving") : say("status.held_back", { cause });
     case "stopping": return say("status.stopping", parameters);
-    default: return canEnable ? say(`status.${phase}`, parameters) : parameters.reason;
+    default: return canEnable && !lost ? say(`status.${phase}`, parameters) : parameters.reason;
   }
 }
 
@@ -83,7 +83,7 @@ function driverWords({ phase, note, reason, held_back, returning, bound_for, let
  * @param {boolean} asked whether this page has asked to drive
  * @param {Reader} reader
  */
-function watcherWords({ phase, note, reason, held_back, returning, bound_for, driver, driver_name, guiding }, canEnable, asked, reader) {
+function watcherWords({ phase, note, reason, held_back, returning, bound_for, driver, driver_name, guiding, lost }, canEnable, asked, reader) {
   if (concerns(note, false)) return sayTo(note, reader);
   const name = driver_name === null ? say("driver.somebody_else") : sayName(driver_name);
   if (guiding === "on") return say("status.guided_watching", { name });
@@ -97,7 +97,7 @@ function watcherWords({ phase, note, reason, held_back, returning, bound_for, dr
     case "stopping": return say("status.stopping", parameters);
     default:
   }
-  if (driver === null) return canEnable ? say("status.disengaged_nobody", parameters) : parameters.reason;
+  if (driver === null) return canEnable && !lost ? say("status.disengaged_nobody", parameters) : parameters.reason;
   return say(asked ? "status.asked" : "status.watching", parameters);
 }
 
