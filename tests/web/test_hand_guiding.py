@@ -136,11 +136,11 @@ def test_a_lost_arm_is_connected_again_by_a_button_and_enabled_by_another(site, 
         assert "not connected" in said(page.state)
         page.u = None
         page.send(type="reconnect")
-        page.wait(lambda state: "does not answer" in said(state), within_s=10.0)
+        page.wait(lambda state: "does not answer" in said(state), within_s=20.0)
         assert page.state["lost"]
         arm.repair()
         page.send(type="reconnect")
-        page.wait(lambda state: not state["lost"], within_s=10.0)
+        page.wait(lambda state: not state["lost"] and "connected again" in said(state), within_s=10.0)
         rested = arm.positions()
         time.sleep(0.3)
         assert page.state["phase"] == "disengaged"
@@ -173,7 +173,7 @@ def test_an_arm_learns_from_motions_by_hand_and_is_driven_with_what_it_learned(s
             latent_dim=2,
             episodes=[before + one for one in (1, 2, 3, 4)],
         )
-        ended = wait_for(lambda: (page.learning["training"] or {}).get("phase") in ("done", "failed"))
+        ended = wait_for(lambda: (page.learning["training"] or {}).get("phase") in ("done", "failed"), 180.0)
         assert ended
         assert page.learning["training"]["phase"] == "done", page.learning["training"]
         assert time.monotonic() - began_s < 120.0

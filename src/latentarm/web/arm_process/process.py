@@ -95,7 +95,8 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                     case None:
                         break
                     case Reconnect():
-                        _, note = _loaded(partial(reconnect, arm), None)
+                        _, failed = _loaded(partial(reconnect, arm), None)
+                        note = failed or Notice(code="reconnected")
                     case Reset():
                         setup, arm, note = _begun_again(setup, arm, BeginTask(choice=None, anew=False), clock)
                         steering.run = None
