@@ -85,6 +85,7 @@ def test_leaving_the_page_ends_guiding(teach, real, arm):
 def test_a_lost_arm_is_connected_again(chromium, real, arm):
     page = chromium.new_page(locale="en", viewport=PHONE)
     page.goto(real)
+    page.locator("#status-text", has_text="Press Enable").wait_for()  # the arm is there
     arm.cut()
     try:
         page.get_by_role("button", name="Connect again").wait_for()
