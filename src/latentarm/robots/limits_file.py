@@ -22,7 +22,7 @@ import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import Final, cast
 
 import numpy as np
 import yaml
@@ -30,6 +30,7 @@ import yaml
 from latentarm.errors import UserError
 from latentarm.robots.limits import JointLimits, LimitSources, Quantity, Source
 from latentarm.types import StatedGripper, StatedJointLimits, StatedLimits
+from latentarm.untrusted.hand_written import check_keys, number_of, table_of
 from latentarm.untrusted.opening import read_bytes
 
 MOST_BYTES: Final = 100_000
@@ -99,10 +100,10 @@ def parse_limits(document: object, where: str) -> StatedLimits:
     Raises:
         UserError: a key is unknown, given twice or in the wrong unit, or its value is no sensible number.
     """
-    top = _mapping(document, where, "")
-    _check_keys(top, ("joints", TOOL_SPEED, GRIPPER), where, "")
-    joints = _mapping(top.get("joints", {}), where, "joints")
-    tool_speed = _number(top[TOOL_SPEED], where, TOOL_SPEED) if TOOL_SPEED in top else None
+    top = table_of(document, where, "")
+    check_keys(top, ("joints", TOOL_SPEED, GRIPPER), where, "")
+    joints = table_of(top.get("joints", {}), where, "joints")
+    tool_speed = number_of(top[TOOL_SPEED], where, TOOL_SPEED) if TOOL_SPEED in top else None
     if tool_speed is not None and tool_speed <= 0.0:
         raise UserError(f"{where}: {TOOL_SPEED} is {tool_speed:g}; it must be above zero.")
     gripper = _gripper(top[GRIPPER], where) if GRIPPER in top else None
@@ -188,16 +189,16 @@ def _moves(slides: bool) -> str:
 
 
 def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
-    given = _mapping(entry, where, key)
+    given = table_of(entry, where, key)
     spelt = {f"{figure}_{unit}{per}": (figure, unit) for figure, per in _FIGURES.items() for unit in _UNITS}
-    _check_keys(given, tuple(spelt), where, f"{key}.")
+    check_keys(given, tuple(spelt), where, f"{key}.")
     values: dict[str, float] = {}
     sliding: set[bool] = set()
     for name, value in given.items():
         figure, unit = spelt[name]
         if figure in values:
             raise UserError(f"{where}: {key} gives {figure} twice, in different units: keep one of them.")
-        values[figure] = _number(value, where, f"{key}.{name}") * _UNITS[unit]
+        values[figure] = number_of(value, where, f"{key}.{name}") * _UNITS[unit]
         if figure not in ("lower", "upper") and values[figure] <= 0.0:
             raise UserError(f"{where}: {key}.{name} is {value}; it must be above zero.")
         sliding.add(unit == "m")
@@ -218,34 +219,18 @@ def _joint(entry: object, where: str, key: str) -> StatedJointLimits:
 
 
 def _gripper(entry: object, where: str) -> StatedGripper:
-    given = _mapping(entry, where, GRIPPER)
+    given = table_of(entry, where, GRIPPER)
     needed = ("joints", *_GRIPPER_FIGURES)
-    _check_keys(given, needed, where, f"{GRIPPER}.")
+    check_keys(given, needed, where, f"{GRIPPER}.")
     for key in needed:
         if key not in given:
             raise UserError(f"{where}: {GRIPPER} lacks {key}: give {', '.join(needed)}.")
-    figures = {name: _number(given[key], where, f"{GRIPPER}.{key}") for key, name in _GRIPPER_FIGURES.items()}
+    figures = {
+        name: number_of(given[key], where, f"{GRIPPER}.{key}") for key, name in _GRIPPER_FIGURES.items()
+    }
     if min(figures.values()) <= 0.0:
         raise UserError(f"{where}: the figures of {GRIPPER} must be above zero.")
     joints = cast("list[object]", given["joints"]) if isinstance(given["joints"], list) else []
     if not joints or not all(isinstance(joint, str) for joint in joints):
         raise UserError(f'{where}: {GRIPPER}.joints must be a list of names, such as ["gripper"].')
     return StatedGripper(joints=tuple(map(str, joints)), **figures)
-
-
-def _mapping(value: object, where: str, key: str) -> Mapping[str, Any]:
-    if not isinstance(value, dict) or not all(isinstance(name, str) for name in cast(dict[Any, Any], value)):
-        raise UserError(f"{where}: {key or 'the outermost level'} must be a table of names.")
-    return cast(Mapping[str, Any], value)
-
-
-def _check_keys(given: Mapping[str, Any], known: Sequence[str], where: str, prefix: str) -> None:
-    for name in given:
-        if name not in known:
-            raise UserError(f"{where}: there is no key {prefix}{name}; use {', '.join(known)}.")
-
-
-def _number(value: object, where: str, key: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e9:
-        raise UserError(f"{where}: {key} must be a finite number, not {str(value)[:40]!r}.")
-    return float(value)

@@ -84,6 +84,12 @@ class Bounds:
                 f"The safety limit link_speed is {config.link_speed:g} m/s, above the"
                 f" {robot.tool_speed_limit:g} m/s that {robot.name} can do: set it lower."
             )
+        for zone in config.zones:
+            if zone.speed > config.link_speed:
+                raise UserError(
+                    f"The zone {zone.name!r} allows {zone.speed:g} m/s, above the {config.link_speed:g} m/s"
+                    " that the arm may do anywhere (the safety limit link_speed): set it lower."
+                )
         self.config = config
         self.dt_s = dt_s
         self.dof = robot.dof

@@ -7,6 +7,7 @@ from typing import cast, final
 import numpy as np
 
 from latentarm.control.safety.obstacles import as_array, checked_obstacle
+from latentarm.control.safety.zones import Zone, checked_zones
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Obstacle
 from latentarm.types import FloatArray
@@ -83,6 +84,8 @@ class SafetyConfig:
         gripper_force: largest force with which a gripper's fingers press together, N.
         workspace: where the arm may be, or None for anywhere.
         obstacles: what the arm must keep clear of.
+        zones: where the arm is slower than link_speed; that begins where a part of it is nearer to a zone
+            than clearance.
 
     Raises:
         UserError: a figure is not a number, not finite, or out of its range.
@@ -110,6 +113,7 @@ class SafetyConfig:
     gripper_force: float = 20.0
     workspace: Workspace | None = None
     obstacles: tuple[Obstacle, ...] = ()
+    zones: tuple[Zone, ...] = ()
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -122,6 +126,7 @@ class SafetyConfig:
             )
         _check_workspace(self.workspace)
         object.__setattr__(self, "obstacles", _checked_obstacles(self.obstacles))
+        object.__setattr__(self, "zones", checked_zones(self.zones))
 
 
 _RANGES: dict[str, tuple[float, float, str]] = {

@@ -11,6 +11,7 @@ from latentarm.control.safety.bounds import BUFFER_M, BUFFER_RAD, Bounds
 from latentarm.control.safety.halfspaces import slide, unbent
 from latentarm.control.safety.proximity import Contacts, Proximity
 from latentarm.control.safety.small import largest, smallest, some
+from latentarm.control.safety.zone_distances import ZoneDistances
 from latentarm.types import FloatArray, Stop
 
 _DRIFT_RAD = 0.05
@@ -29,6 +30,7 @@ class Surroundings:
         bounds: as given.
         body: as given.
         proximity: its near pairs.
+        zones: how far it is from where it must be slow.
         reference: where the arm was placed last.
     """
 
@@ -38,6 +40,7 @@ class Surroundings:
         self.proximity = Proximity(
             body, bounds.config.obstacles, bounds.config.link_speed, bounds.nearest_m, bounds.horizon_s
         )
+        self.zones = ZoneDistances(body, bounds.config.zones)
         self.reference: Placement | None = None
 
 
@@ -78,6 +81,7 @@ class Situation:
         self._nearby: tuple[Placement, FloatArray] | None = None
         self._asked = velocity
         self._contacts: Contacts | None = None
+        self._zone_distances: FloatArray | None = None
 
     @property
     def placement(self) -> Placement:
@@ -120,6 +124,12 @@ class Situation:
         if self._contacts is None or not self._contacts.fresh:
             self._contacts = self.surroundings.proximity.measured(self.placement, self._asked)
         return self._contacts
+
+    def zone_distances(self) -> FloatArray:
+        """How far the arm's parts are from the zones, (K + T, Z), m, measured at this very state."""
+        if self._zone_distances is None:
+            self._zone_distances = self.surroundings.zones.measured(self.placement)
+        return self._zone_distances
 
 
 class SafetyFilter(ABC):

@@ -8,6 +8,8 @@ from latentarm.control.safety.body import Placement
 from latentarm.control.safety.brake import Brake
 from latentarm.control.safety.filter import Situation
 from latentarm.control.safety.small import largest, smallest, some
+from latentarm.control.safety.zone_distances import ZoneDistances
+from latentarm.control.safety.zones import Zone, zone_filter_name
 from latentarm.types import FloatArray
 
 _NUMERIC_M = 1e-9
@@ -75,10 +77,14 @@ class Guard:
       with ``M = |way|ᵀ R |way|`` (see `Body`). The right-hand side is concave up to its last term, so it is
       smallest at an end;
     - the speed of points by what turning links can add, ``|v|ᵀ R |v|`` m/s per s, while the brake does
-      not yet take off more.
+      not yet take off more;
+    - the speed in zones part by part: a part whose bound of the speed on the whole path is above a zone's
+      limit must end that path farther from the zone than the clearance. No point goes farther than that
+      bound times the time of the path, in which the brake counts half.
 
     Where the arm is already past a limit (it was put there by hand), a path is accepted that does
-    not make that violation worse, so the operator can always back out.
+    not make that violation worse, so the operator can always back out. In a zone every path that is slow
+    enough is accepted, wherever it leads.
     """
 
     def objection(self, velocity: FloatArray, brake: Brake, situation: Situation) -> str | None:
@@ -94,6 +100,10 @@ class Guard:
             return "joint position"
         if self._too_fast(velocity, path, situation):
             return "link speed"
+        if situation.bounds.config.zones:
+            entered = self._too_fast_for_a_zone(velocity, path, situation)
+            if entered is not None:
+                return zone_filter_name(entered.name)
         if self._too_close(path, situation):
             return "clearance"
         if situation.bounds.config.workspace is not None and self._leaves_workspace(path, situation):
@@ -144,6 +154,41 @@ class Guard:
             return False
         top = (grown + bends / brake.rate) ** 2 * brake.rate / (4.0 * np.maximum(bends, 1e-300))
         return bool((top[bends > brake.rate * grown] > limit).any())
+
+    def _too_fast_for_a_zone(self, velocity: FloatArray, path: Path, situation: Situation) -> Zone | None:
+        """A zone that a part could reach into too fast, or None."""
+        config, zones = situation.bounds.config, situation.surroundings.zones
+        distance = zones.bounded(situation.state)
+        # No point is faster than link_speed on the way, as was proven before.
+        farthest = config.link_speed * (path.before_s + path.brake.ramp_s)
+        if smallest(distance.ravel()) > config.clearance + farthest:
+            return None
+        nearby, drift = situation.nearby()
+        if self._entered(velocity, path, nearby, drift, distance, zones, config.clearance) is None:
+            return None
+        # Both were a few ticks old, which may be the only reason.
+        still, distance = np.zeros_like(drift), situation.zone_distances()
+        index = self._entered(velocity, path, situation.placement, still, distance, zones, config.clearance)
+        return None if index is None else config.zones[index]
+
+    @staticmethod
+    def _entered(
+        velocity: FloatArray,
+        path: Path,
+        placement: Placement,
+        drift: FloatArray,
+        distance: FloatArray,
+        zones: ZoneDistances,
+        clearance: float,
+    ) -> int | None:
+        """The first zone that a part could reach into too fast, from a placement that is ``drift`` away."""
+        body, time_s = placement.body, path.before_s + path.after_s
+        grown = placement.speeds(velocity) + body.bent(time_s * path.fastest + drift) @ path.fastest
+        if path.brake.settle_s > 0.0:
+            grown += body.surface_lever @ path.kink
+        speed = zones.of_parts(grown)[:, None]
+        harmful = (speed > zones.limit) & (distance - time_s * speed <= clearance)
+        return int(harmful.any(axis=0).argmax()) if some(harmful.ravel()) else None
 
     @staticmethod
     def _too_close(path: Path, situation: Situation) -> bool:

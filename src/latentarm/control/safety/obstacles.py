@@ -35,33 +35,45 @@ def checked_obstacle(obstacle: object) -> Obstacle:
     # An obstacle without a case below would be ignored silently.
     if not isinstance(obstacle, Obstacle):
         raise UserError(f"{obstacle!r} is not an obstacle: use HalfSpace, Sphere, Capsule or Box.")
-    name = obstacle.name
+    return checked_shape(obstacle, f"The obstacle {obstacle.name!r}")
+
+
+def checked_shape(obstacle: Obstacle, what: str) -> Obstacle:
+    """The shape with float arrays, validated.
+
+    Args:
+        obstacle: any of the shapes, whatever it stands for.
+        what: what messages call it, the subject of a sentence.
+
+    Raises:
+        UserError: as for `checked_obstacle`.
+    """
     match obstacle:
         case HalfSpace():
             return replace(
-                obstacle, point=_point(name, "point", obstacle.point), normal=_unit(name, obstacle.normal)
+                obstacle, point=_point(what, "point", obstacle.point), normal=_unit(what, obstacle.normal)
             )
         case Sphere():
             return replace(
                 obstacle,
-                centre=_point(name, "centre", obstacle.centre),
-                radius=_size(name, "radius", obstacle.radius),
+                centre=_point(what, "centre", obstacle.centre),
+                radius=_size(what, "radius", obstacle.radius),
             )
         case Capsule():
             return replace(
                 obstacle,
-                start=_point(name, "start", obstacle.start),
-                end=_point(name, "end", obstacle.end),
-                radius=_size(name, "radius", obstacle.radius),
+                start=_point(what, "start", obstacle.start),
+                end=_point(what, "end", obstacle.end),
+                radius=_size(what, "radius", obstacle.radius),
             )
         case Box():
-            extents = _point(name, "half_extents", obstacle.half_extents)
+            extents = _point(what, "half_extents", obstacle.half_extents)
             for extent in extents:
-                _size(name, "half_extents", float(extent))
+                _size(what, "half_extents", float(extent))
             return replace(
                 obstacle,
-                centre=_point(name, "centre", obstacle.centre),
-                rotation=_rotation(name, obstacle.rotation),
+                centre=_point(what, "centre", obstacle.centre),
+                rotation=_rotation(what, obstacle.rotation),
                 half_extents=extents,
             )
 
@@ -74,40 +86,38 @@ def as_array(value: object) -> NDArray[Any]:
         return np.asarray(None)
 
 
-def _numbers(name: str, field: str, value: FloatArray, shape: tuple[int, ...]) -> FloatArray:
+def _numbers(what: str, field: str, value: FloatArray, shape: tuple[int, ...]) -> FloatArray:
     given = as_array(value)
     if given.shape != shape or given.dtype.kind not in "iuf" or not np.isfinite(given).all():
         count = "×".join(map(str, shape))
-        raise UserError(f"The obstacle {name!r} needs {count} finite numbers as its {field}.")
+        raise UserError(f"{what} needs {count} finite numbers as its {field}.")
     return given.astype(np.float64)
 
 
-def _point(name: str, field: str, value: FloatArray) -> FloatArray:
-    point = _numbers(name, field, value, (3,))
+def _point(what: str, field: str, value: FloatArray) -> FloatArray:
+    point = _numbers(what, field, value, (3,))
     if np.abs(point).max() > _FAR_M:
-        raise UserError(f"The obstacle {name!r} has its {field} over {_FAR_M:g} m away: give metres.")
+        raise UserError(f"{what} has its {field} over {_FAR_M:g} m away: give metres.")
     return point
 
 
-def _unit(name: str, value: FloatArray) -> FloatArray:
-    normal = _numbers(name, "normal", value, (3,))
+def _unit(what: str, value: FloatArray) -> FloatArray:
+    normal = _numbers(what, "normal", value, (3,))
     if abs(float(normal @ normal) - 1.0) > 1e-6:
-        raise UserError(f"The obstacle {name!r} needs a normal of length 1.")
+        raise UserError(f"{what} needs a normal of length 1.")
     return normal / np.sqrt(normal @ normal)
 
 
-def _rotation(name: str, value: FloatArray) -> FloatArray:
-    rotation = _numbers(name, "rotation", value, (3, 3))
+def _rotation(what: str, value: FloatArray) -> FloatArray:
+    rotation = _numbers(what, "rotation", value, (3, 3))
     if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0.0:
-        raise UserError(f"The obstacle {name!r} needs a rotation matrix as its rotation.")
+        raise UserError(f"{what} needs a rotation matrix as its rotation.")
     return rotation
 
 
-def _size(name: str, field: str, value: object) -> float:
+def _size(what: str, field: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-        raise UserError(f"The obstacle {name!r} needs a number as its {field}.")
+        raise UserError(f"{what} needs a number as its {field}.")
     if not 0.0 < value <= _FAR_M:
-        raise UserError(
-            f"The obstacle {name!r} has {field} {value}: it must be above 0 and at most {_FAR_M:g} m."
-        )
+        raise UserError(f"{what} has {field} {value}: it must be above 0 and at most {_FAR_M:g} m.")
     return float(value)

@@ -24,6 +24,7 @@ from latentarm.control.safety.filter import (
 from latentarm.control.safety.guard import Guard
 from latentarm.control.safety.ramp import Ramp
 from latentarm.control.safety.small import largest, some
+from latentarm.control.safety.zone_speed import ZoneSpeed
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, Stop
 
@@ -71,8 +72,9 @@ class SafetyStack:
         self._sliding: tuple[SafetyFilter, ...] = (Clearance(), WorkspaceBox())
         # Sliding along one thing can turn joints towards their limits, or speed one up.
         self._after_sliding: tuple[SafetyFilter, ...] = (position, velocity)
-        self._last: tuple[SafetyFilter, ...] = (LinkSpeed(),)
         bounds = self.bounds
+        zones = [ZoneSpeed(bounds, index) for index in range(len(config.zones))]
+        self._last: tuple[SafetyFilter, ...] = (LinkSpeed(), *zones)
         self._ramp = Ramp(dt_s, bounds.acceleration, bounds.jerk)
         self._release = Ramp(dt_s, bounds.release_acceleration, bounds.release_jerk)
         self._guard = Guard()

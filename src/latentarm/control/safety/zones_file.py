@@ -1,0 +1,135 @@
+"""A zones file: where the arm is slow, in TOML, with units in the keys.
+
+An example::
+
+    [zones.face]
+    shape = "sphere"
+    centre_m = [0.6, 0.0, 0.55]
+    radius_m = 0.15
+    speed_m_per_s = 0.05
+
+Shapes and their keys: ``sphere`` (``centre_m``, ``radius_m``), ``capsule`` (``start_m``, ``end_m``,
+``radius_m``), ``box`` (``centre_m``, ``size_m``, and ``turned_deg`` about the base's x, y and z axes in this
+order, where it is turned) and ``half_space`` (``point_m`` and ``normal``, out of the solid).
+"""
+
+import tomllib
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Final, cast
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from latentarm.control.safety.zones import Zone, checked_zones
+from latentarm.errors import UserError
+from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
+from latentarm.types import FloatArray
+from latentarm.untrusted.hand_written import check_keys, number_of, table_of
+from latentarm.untrusted.opening import read_bytes
+
+MOST_BYTES: Final = 100_000
+"""A longer file is refused: a zone takes some 200 bytes."""
+
+_SPEED: Final = "speed_m_per_s"
+
+
+def read_zones(path: Path) -> tuple[Zone, ...]:
+    """Read a zones file.
+
+    Args:
+        path: of a TOML file.
+
+    Raises:
+        UserError: the file cannot be read or is invalid; the message names the key.
+    """
+    text = read_bytes(path, MOST_BYTES)
+    try:
+        document = tomllib.loads(text.decode("utf-8"))
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+        what = "nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
+        raise UserError(f"The zones file {path} cannot be read as TOML: {what}.") from error
+    return parse_zones(document, str(path))
+
+
+def parse_zones(document: object, where: str) -> tuple[Zone, ...]:
+    """Validate the zones of a zones file.
+
+    Args:
+        document: tables, lists and numbers.
+        where: the file, for messages.
+
+    Raises:
+        UserError: a key is missing or unknown, a value cannot be used, or two zones have the same name.
+    """
+    top = table_of(document, where, "")
+    check_keys(top, ("zones",), where, "")
+    given = table_of(top.get("zones", {}), where, "zones")
+    if not given:
+        raise UserError(f"{where} states no zones: begin one with [zones.face].")
+    zones = [_zone(name, entry, where) for name, entry in given.items()]
+    try:
+        return checked_zones(zones)
+    except UserError as error:
+        raise UserError(f"{where}: {error}") from error
+
+
+def _zone(name: str, entry: object, where: str) -> Zone:
+    key = f"zones.{name}"
+    given = table_of(entry, where, key)
+    shape = given.get("shape")
+    if not isinstance(shape, str) or shape not in _SHAPES:
+        raise UserError(f"{where}: {key}.shape must be one of {', '.join(_SHAPES)}, not {str(shape)[:40]!r}.")
+    needed, optional, make = _SHAPES[shape]
+    check_keys(given, ("shape", *needed, *optional, _SPEED), where, f"{key}.")
+    for one in (*needed, _SPEED):
+        if one not in given:
+            raise UserError(f"{where}: {key} lacks {one}: a {shape} needs {', '.join((*needed, _SPEED))}.")
+    figures = {
+        one: _figure(value, where, f"{key}.{one}")
+        for one, value in given.items()
+        if one not in ("shape", _SPEED)
+    }
+    speed = number_of(given[_SPEED], where, f"{key}.{_SPEED}")
+    try:
+        return Zone(make(name, figures), speed)
+    except UserError as error:
+        raise UserError(f"{where}: {error}") from error
+
+
+def _figure(value: object, where: str, key: str) -> Any:
+    """A length, m; or three numbers, (3,)."""
+    if key.endswith("radius_m"):
+        return number_of(value, where, key)
+    entries = cast("list[object]", value) if isinstance(value, list) else []
+    if len(entries) != 3:
+        raise UserError(f"{where}: {key} must be three numbers, such as [0.5, 0.0, 0.3].")
+    return np.array([number_of(one, where, key) for one in entries])
+
+
+def _half_space(name: str, given: Mapping[str, Any]) -> HalfSpace:
+    normal: FloatArray = given["normal"]
+    length = float(np.sqrt(normal @ normal))
+    if length == 0.0:
+        raise UserError(f"The zone {name!r} has a normal of length 0: give a direction.")
+    return HalfSpace(name, given["point_m"], normal / length)
+
+
+def _box(name: str, given: Mapping[str, Any]) -> Box:
+    turned = Rotation.from_euler("xyz", given.get("turned_deg", np.zeros(3)), degrees=True)
+    return Box(name, given["centre_m"], turned.as_matrix(), given["size_m"] / 2.0)
+
+
+_SHAPES: Final[
+    dict[str, tuple[tuple[str, ...], tuple[str, ...], Callable[[str, Mapping[str, Any]], Obstacle]]]
+] = {
+    # name: (keys that it needs, keys that it may have, how it is made)
+    "sphere": (("centre_m", "radius_m"), (), lambda name, of: Sphere(name, of["centre_m"], of["radius_m"])),
+    "capsule": (
+        ("start_m", "end_m", "radius_m"),
+        (),
+        lambda name, of: Capsule(name, of["start_m"], of["end_m"], of["radius_m"]),
+    ),
+    "box": (("centre_m", "size_m"), ("turned_deg",), _box),
+    "half_space": (("point_m", "normal"), (), _half_space),
+}

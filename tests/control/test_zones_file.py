@@ -1,0 +1,104 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from latentarm.control.safety.bounds import Bounds
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.safety.zones_file import read_zones
+from latentarm.errors import UserError
+from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+
+EXAMPLE = Path(__file__).parents[2] / "docs" / "your-arm" / "zones.toml"
+FACE = """
+[zones.face]
+shape = "sphere"
+centre_m = [0.6, 0.0, 0.55]
+radius_m = 0.15
+speed_m_per_s = 0.05
+"""
+
+
+@pytest.fixture
+def written(tmp_path):
+    def write(text):
+        path = tmp_path / "zones.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def test_the_file_of_the_docs_holds_for_a_panda(arm):
+    zones = read_zones(EXAMPLE)
+    assert [(zone.name, zone.speed) for zone in zones] == [("face", 0.05), ("table", 0.1), ("self", 0.08)]
+    face, table, person = (zone.shape for zone in zones)
+    assert (type(face), type(table), type(person)) == (Sphere, Box, Capsule)
+    np.testing.assert_allclose(table.half_extents, [0.3, 0.6, 0.06])
+    assert Bounds(SafetyConfig(zones=zones), arm, 0.01).config.zones == zones
+
+
+def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
+    box, wall = read_zones(
+        written("""
+        [zones."Stuhl 1"]
+        shape = "box"
+        centre_m = [0, 0, 1]
+        size_m = [2, 1, 1]
+        turned_deg = [0, 0, 90]
+        speed_m_per_s = 0.1
+        [zones.wall]
+        shape = "half_space"
+        point_m = [1, 0, 0]
+        normal = [-2, 0, 0]
+        speed_m_per_s = 0.1
+        """)
+    )
+    assert box.name == "Stuhl 1"
+    np.testing.assert_allclose(box.shape.rotation[:, 0], [0.0, 1.0, 0.0], atol=1e-12)
+    assert isinstance(wall.shape, HalfSpace)
+    np.testing.assert_allclose(wall.shape.normal, [-1.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "states no zones: begin one with [zones.face]"),
+        ("[zones.face", "cannot be read as TOML"),
+        (FACE + FACE, "cannot be read as TOML"),
+        (FACE + FACE.replace("face", "Face"), "Two zones are called 'Face'"),
+        ("[zone.face]", "there is no key zone; use zones"),
+        ("zones = 3", "zones must be a table of names"),
+        (FACE.replace("sphere", "ball"), "zones.face.shape must be one of sphere, capsule, box, half_space"),
+        (FACE.replace('"sphere"', "1"), "zones.face.shape must be one of"),
+        (FACE.replace("radius_m = 0.15", ""), "zones.face lacks radius_m: a sphere needs centre_m, radius_m"),
+        (FACE.replace("speed_m_per_s = 0.05", ""), "zones.face lacks speed_m_per_s"),
+        (FACE + "size_m = [1, 1, 1]", "there is no key zones.face.size_m; use shape, centre_m, radius_m"),
+        (FACE.replace("0.55]", "nan]"), "zones.face.centre_m must be a finite number, not 'nan'"),
+        (FACE.replace("0.55]", "0.55, 1]"), "zones.face.centre_m must be three numbers"),
+        (FACE.replace("0.15", "inf"), "zones.face.radius_m must be a finite number"),
+        (FACE.replace("0.15", "0"), "The zone 'face' has radius 0.0"),
+        (FACE.replace("0.6", "600"), "The zone 'face' has its centre over 100 m away: give metres"),
+        (FACE.replace("0.05", "0.001"), "The zone 'face' allows 0.001 m/s: it must be at least 0.01"),
+        (FACE.replace("0.05", '"slow"'), "zones.face.speed_m_per_s must be a finite number, not 'slow'"),
+        (FACE.replace("zones.face", 'zones."a,b"'), "needs another name"),
+        (FACE.replace("zones.face", 'zones."\\u0007"'), "cannot be shown"),
+        (
+            '[zones.wall]\nshape = "half_space"\npoint_m = [0, 0, 0]\nnormal = [0, 0, 0]\n'
+            "speed_m_per_s = 0.1",
+            "The zone 'wall' has a normal of length 0",
+        ),
+    ],
+)
+def test_what_cannot_be_used_is_one_sentence_that_names_the_file(written, text, said):
+    path = written(text)
+    with pytest.raises(UserError) as refused:
+        read_zones(path)
+    assert said in str(refused.value)
+    assert str(path) in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_file_that_is_not_there_is_said(tmp_path):
+    with pytest.raises(UserError, match=r"nowhere\.toml"):
+        read_zones(tmp_path / "nowhere.toml")
