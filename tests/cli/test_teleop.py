@@ -29,6 +29,7 @@ def test_a_port_in_use_is_said(run):
         (["--certfile", "cert.pem"], "name both --certfile and --keyfile"),
         (["--certfile", "cert.pem", "--keyfile", "key.pem"], "not a certificate and key for TLS"),
         (["--seed", "-1"], "seed"),
+        (["--zones", "nowhere.toml"], "nowhere.toml"),
         (["--camera", "front=/dev/video77"], "Camera front: the device does not exist"),
         (["--camera", "front=nowhere.mp4"], "Camera front: the file does not exist"),
         (["--camera", "testsrc"], "Camera 1 is not NAME=ADDRESS"),

@@ -34,6 +34,13 @@ def teleop(
     ] = None,
     end_effector: EndEffector = None,
     limits: LimitsFile = None,
+    zones: Annotated[
+        Path | None,
+        arg(
+            metavar="FILE",
+            help="TOML file of zones in which the arm is slow, such as about a face; see docs/your-arm.md.",
+        ),
+    ] = None,
     task: Annotated[
         TaskName | None,
         arg(help="What the arm is driven at; the run's own task, or a table, where none is named."),
@@ -62,6 +69,7 @@ def teleop(
     Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
     """
     from latentarm.control.journal_limits import JournalLimits
+    from latentarm.control.safety.zones_file import read_zones
     from latentarm.web.arm_process.beginning import RobotOptions
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.cameras.sources import kept, parse_cameras
@@ -77,7 +85,8 @@ def teleop(
 
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
     named = RobotOptions(robot, end_effector, limits)
-    spec = Spec(run, profile, seed, out, room, arm, task, robot=named)
+    slow = () if zones is None else read_zones(zones)
+    spec = Spec(run, profile, seed, out, room, arm, task, robot=named, zones=slow)
     config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

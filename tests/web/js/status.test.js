@@ -122,6 +122,8 @@ for (const [who, fields, words, page] of [
   [WATCHER, { phase: "moving" }, "Ada is moving the arm."],
   [DRIVER, { phase: "moving", held_back: "clearance" }, "Moving slower than you ask: it is close to something."],
   [WATCHER, { phase: "moving", held_back: "clearance" }, "Ada is moving the arm, slower than asked: it is close to something."],
+  [DRIVER, { phase: "moving", held_back: "zone", zone: "self" }, "Moving slower than you ask: it is in or near the zone “body”."],
+  [WATCHER, { phase: "moving", held_back: "zone", zone: "Tray 2" }, "Ada is moving the arm, slower than asked: it is in or near the zone “Tray 2”."],
   [DRIVER, { phase: "moving", returning: true }, "Going back to the start. A push or Stop ends it."],
   [DRIVER, { phase: "moving", returning: true, held_back: "clearance" }, "Going back to the start, but held back: it is close to something."],
   [WATCHER, { phase: "moving", returning: true }, "The arm is going back to the start."],

@@ -11,6 +11,7 @@ from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
 from latentarm.control.safety.straight_way import StraightWay
+from latentarm.control.safety.zones import zone_of_filter
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.episodes import Episodes
@@ -353,9 +354,14 @@ class Drive:
         phase, spec = self._phase(), self._setup.spec
         q = self._observed.q
         tool = self._setup.task.robot.chain.forward(q).position.tolist()
-        held_back: list[HeldBack] = [
-            _HELD_BACK[name] for name in record.command.limited_by if name in _HELD_BACK
-        ]
+        held_back: list[HeldBack] = []
+        zone = None
+        if phase == "moving":
+            limited_by = record.command.limited_by
+            held_back = [_HELD_BACK[name] for name in limited_by if name in _HELD_BACK]
+            zone = next((name for one in limited_by if (name := zone_of_filter(one)) is not None), None)
+        if zone is not None:
+            held_back.append("zone")
         return Report(
             nonce=self._inputs.issue_nonce(),
             tick=self._steering.tick,
@@ -364,7 +370,8 @@ class Drive:
             phase=phase,
             note=self._note if record.time_s < self._note_until_s else None,
             reason=self._standing.lost or self._reason(self._step.stopped),
-            held_back=held_back[0] if held_back and phase == "moving" else None,
+            held_back=held_back[0] if held_back else None,
+            zone=zone,
             returning=self._way_back.on,
             bound_for=self._way_back.pose if self._way_back.on else None,
             at_start=self._way_back.away(q) <= AT_START_RAD,

@@ -15,6 +15,7 @@ from latentarm.context import BELIEF
 from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.safety.zones import Zone
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.joined import JoinedController
@@ -76,6 +77,7 @@ class Spec:
         choice: index of what is done first, of the task's choices or goals.
         robot: which robot, where the run or the task is not to say.
         found: what was found out about a real arm, names and values.
+        zones: where the arm is slow.
 
     Raises:
         UserError: the seed is out of range, or a profile is named without a run.
@@ -91,6 +93,7 @@ class Spec:
     choice: int = 0
     robot: RobotOptions = field(default_factory=RobotOptions)
     found: tuple[tuple[str, str], ...] = ()
+    zones: tuple[Zone, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
@@ -233,6 +236,7 @@ class DriveSetup:
                 release_fraction=RELEASE_FRACTION,
                 command_periods=COMMAND_PERIODS,
                 obstacles=tuple(self.task.obstacles),
+                zones=self.spec.zones,
             ),
             goals=self.task.goals,
             belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,

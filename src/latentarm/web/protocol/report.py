@@ -8,7 +8,7 @@ from latentarm.tasks.mishap import MishapKind
 from latentarm.web.protocol.notice import Message, Notice
 from latentarm.web.protocol.orders import HelpLevel, ModeName
 
-HeldBack = Literal["clearance", "freshness", "workspace", "joint_position"]
+HeldBack = Literal["clearance", "freshness", "workspace", "joint_position", "zone"]
 Phase = Literal["disengaged", "neutral_needed", "ready", "moving", "stopping"]
 Guiding = Literal["offered", "on", "own"]
 """*own*: guiding by hand is a mode of the arm's own, which is switched on at the arm."""
@@ -169,6 +169,7 @@ class ArmState(Message):
         note: shown for a while instead of what the arm does; None for nothing.
         reason: why the arm may not move; None if it may.
         held_back: why it moves slower than asked; None if it does not.
+        zone: name of the zone that it is slowed down for now; None if it is not.
         returning: whether it is on its way back to its start, or to a saved pose.
         bound_for: what that pose is called; None on the way to the start, and on no way.
         at_start: whether it is there.
@@ -196,6 +197,7 @@ class ArmState(Message):
     note: Notice | None
     reason: Notice | None
     held_back: HeldBack | None
+    zone: str | None
     returning: bool
     bound_for: str | None
     at_start: bool

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from latentarm.control.safety.zones import Zone
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.kinematics.reader import ModelChain, read, reference_positions
 from latentarm.scene.scene import Scene
@@ -44,7 +45,8 @@ class Drawable:
             poses, each with its ``geoms``; a geom's ``pos`` and ``quat`` (w, x, y, z) are in its body's
             frame, its ``size`` is MuJoCo's. ``fingers`` are those of a gripper, closed, each with its
             ``geoms``, the index of the ``body`` that it slides on, the direction in which it ``opens`` there,
-            and how far it is open ``at`` first, m.
+            and how far it is open ``at`` first, m. ``zones`` are obstacles that the arm may go into, at a
+            ``speed``, m/s, and no faster.
             For ``things`` and ``grains`` see `latentarm.web.protocol.things.described`.
         meshes: ``/mesh/ID``: uint32 vertices, uint32 faces, float32 vertices, uint32 faces, little-endian.
     """
@@ -53,12 +55,13 @@ class Drawable:
     meshes: dict[int, bytes]
 
 
-def drawable(place: Place, scene: Scene | None) -> Drawable:
+def drawable(place: Place, scene: Scene | None, zones: Sequence[Zone] = ()) -> Drawable:
     """What a page draws: the robot, its goals, its obstacles, what stands about it, and from where to look.
 
     Args:
         place: where the robot is driven.
         scene: what stands about it; None where nothing does.
+        zones: where the arm is slow.
     """
     robot = place.robot
     model = robot.model()
@@ -87,6 +90,7 @@ def drawable(place: Place, scene: Scene | None) -> Drawable:
             ],
             "goals": [{"name": goal.name, "position": _rounded(goal.pose.position)} for goal in place.goals],
             "obstacles": [_obstacle(one) for one in place.obstacles],
+            "zones": [{**_obstacle(zone.shape), "speed": zone.speed} for zone in zones],
             **described(scene or Scene()),
             "cameras": _cameras(robot.chain.link_transforms(robot.home)[:, :3, 3], positions),
         },

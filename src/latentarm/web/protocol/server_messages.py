@@ -30,6 +30,14 @@ class NamedThing(Message):
 
 
 @final
+class NamedZone(Message):
+    """A zone in which the arm is slow: its name, and the largest speed there, m/s."""
+
+    name: str
+    speed: float
+
+
+@final
 class Limits(Message):
     """Limits that a page must know."""
 
@@ -101,6 +109,7 @@ class Welcome(Message):
         modes: how the arm can be steered.
         goals: in the order of the belief.
         things: what stands about the arm, in the order of `State.things`.
+        zones: where the arm is slow.
         end_effector_modes: names of the pairs of axes.
         limits: see `Limits`.
         gripper_width_m: how wide its gripper opens, m, or null where it has none that can be driven.
@@ -120,6 +129,7 @@ class Welcome(Message):
     modes: tuple[ModeName, ...]
     goals: tuple[NamedGoal, ...]
     things: tuple[NamedThing, ...]
+    zones: tuple[NamedZone, ...]
     end_effector_modes: tuple[str, ...]
     limits: Limits
     gripper_width_m: float | None

@@ -18,6 +18,7 @@ from latentarm.web.protocol.server_messages import (
     Limits,
     NamedGoal,
     NamedThing,
+    NamedZone,
     RealArm,
     StepToDo,
     TaskToDo,
@@ -45,7 +46,7 @@ class LoadedRun:
     def __init__(self, setup: DriveSetup, name: str | None) -> None:
         self.name = name
         self.spec = setup.spec
-        self.scene = drawable(setup.task, setup.shown)
+        self.scene = drawable(setup.task, setup.shown, setup.spec.zones)
         self.chain = setup.task.robot.chain
         self.robot_name = setup.task.robot.name
         self.real = setup.real
@@ -105,6 +106,7 @@ class LoadedRun:
                 NamedThing(name=thing.name, position=tuple(thing.pose.position.tolist()))
                 for thing in (() if setup.shown is None else setup.shown.things)
             ),
+            zones=tuple(NamedZone(name=zone.name, speed=zone.speed) for zone in setup.spec.zones),
             end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),
             real=_found(setup) if self.real else None,

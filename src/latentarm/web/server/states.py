@@ -242,6 +242,7 @@ class States:
             note=self._why_away() if away else self._shown_note(report),
             reason=None if away else report.reason,
             held_back=None if away else report.held_back,
+            zone=None if away else report.zone,
             returning=report.returning and not away,
             bound_for=None if away else report.bound_for,
             at_start=report.at_start,

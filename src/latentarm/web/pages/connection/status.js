@@ -1,6 +1,7 @@
 /** The state of things in one sentence, for eyes and for screen readers. */
 
 import { setText } from "../layout/dom.js";
+import { zoneWords } from "../layout/thing_words.js";
 import { say, sayName } from "../layout/words.js";
 import { whoAsks } from "./driver_lease.js";
 import { concerns, sayTo } from "./notices.js";
@@ -56,11 +57,11 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
  * @param {boolean} canEnable
  * @param {Reader} reader
  */
-function driverWords({ phase, note, reason, held_back, returning, bound_for, let_go_first, copilot, guiding, lost }, canEnable, reader) {
+function driverWords({ phase, note, reason, held_back, zone, returning, bound_for, let_go_first, copilot, guiding, lost }, canEnable, reader) {
   if (guiding === "on") return say("status.guided");
   if (concerns(note, true)) return sayTo(note, reader);
   const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
-  const cause = held_back && say(`held_back.${held_back}`);
+  const cause = held_back && say(`held_back.${held_back}`, { zone: zoneWords(zone ?? "") });
   if (returning && bound_for !== null) {
     return cause === null ? say("status.to_pose", { pose: bound_for }) : say("status.to_pose_held_back", { pose: bound_for, cause });
   }
@@ -83,7 +84,7 @@ function driverWords({ phase, note, reason, held_back, returning, bound_for, let
  * @param {boolean} asked whether this page has asked to drive
  * @param {Reader} reader
  */
-function watcherWords({ phase, note, reason, held_back, returning, bound_for, driver, driver_name, guiding, lost }, canEnable, asked, reader) {
+function watcherWords({ phase, note, reason, held_back, zone, returning, bound_for, driver, driver_name, guiding, lost }, canEnable, asked, reader) {
   if (concerns(note, false)) return sayTo(note, reader);
   const name = driver_name === null ? say("driver.somebody_else") : sayName(driver_name);
   if (guiding === "on") return say("status.guided_watching", { name });
@@ -93,7 +94,7 @@ function watcherWords({ phase, note, reason, held_back, returning, bound_for, dr
     case "ready": return say("status.ready_watching", parameters);
     case "moving": return held_back === null
       ? say("status.moving_watching", parameters)
-      : say("status.held_back_watching", { name, cause: say(`held_back.${held_back}`) });
+      : say("status.held_back_watching", { name, cause: say(`held_back.${held_back}`, { zone: zoneWords(zone ?? "") }) });
     case "stopping": return say("status.stopping", parameters);
     default:
   }

@@ -41,6 +41,7 @@ import { attachToGo, movedPart } from "./to_go.js";
 import { wantedThing } from "./task_words.js";
 import { whereWords } from "./where_words.js";
 import { attachWayBack } from "./way_back.js";
+import { attachZones } from "./zones.js";
 
 /** @import {Direction} from "../inputs/deflection.js" */
 /** @import {Welcome} from "../connection/messages.js" */
@@ -100,6 +101,7 @@ const inPair = (/** @type {number} */ axes, /** @type {number} */ x, /** @type {
 attachToGo(byId("to-go"), connection, inPair);
 const help = attachHelp({ fieldset: byId("help"), text: byId("help-text") }, connection, settings);
 attachCopilot(connection);
+attachZones(byId("zones"), connection);
 attachTrialBanner(connection, settings, lease);
 attachProfileChoice(connection, settings);
 attachRecording({

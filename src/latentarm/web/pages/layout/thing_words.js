@@ -19,6 +19,12 @@ export function intoThing(name) {
   return inWords(name, ".into");
 }
 
+/** What a zone in which the arm is slow is called. @param {string} name as the person who set it up calls it */
+export function zoneWords(name) {
+  const key = `zone.name.${name.toLowerCase()}`;
+  return knows(key) ? say(/** @type {WordKey} */ (key)) : name;
+}
+
 /** What a robot is called. @param {string} name as its model has it */
 export function robotWords(name) {
   const key = `robot.${name}`;

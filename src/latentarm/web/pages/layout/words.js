@@ -70,6 +70,11 @@ export function sayNumber(value, digits = 0) {
   return value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false });
 }
 
+/** Texts as a list. @param {string[]} texts */
+export function sayList(texts) {
+  return new Intl.ListFormat(language).format(texts);
+}
+
 /** A share as a percentage. @param {number} share @param {number} [digits] */
 export function sayPercent(share, digits = 0) {
   return say("unit.percent", { value: digits ? sayNumber(100 * share, digits) : Math.round(100 * share) });

@@ -1,8 +1,8 @@
 /** All that is drawn in three dimensions: the arm in two views, with goals, ghosts, trail and labels. */
 
 import { THREE } from "../three/index.js";
-import { thingWords } from "../layout/thing_words.js";
-import { say, sayPercent } from "../layout/words.js";
+import { thingWords, zoneWords } from "../layout/thing_words.js";
+import { say, sayNumber, sayPercent } from "../layout/words.js";
 import { Ghosts } from "./ghosts.js";
 import { Labels } from "./labels.js";
 import { isLikeliest } from "./likeliest.js";
@@ -20,6 +20,9 @@ import { Views } from "./views.js";
 const FADE_M = [0.05, 0.14];
 const FADED = 0.2;
 
+/** How long a zone stays marked after it slowed the arm, ms: pushes at its limit would make it blink. */
+const MARKED_MS = 500;
+
 export class Drawing {
   /**
    * @param {{canvas: HTMLCanvasElement, front: HTMLElement, side: HTMLElement}} elements
@@ -36,6 +39,9 @@ export class Drawing {
     this._pose = this._around = this._pressed = "";
     /** @type {State["things"]} */
     this._things = null;
+    /** @type {string | null} The zone that slows the arm, or did a moment ago. */
+    this._zone = null;
+    this._slowedAt = -Infinity;
     this._first = true;
     this._late = () => false;
     // Until it is known where the arm is.
@@ -69,7 +75,8 @@ export class Drawing {
   show(state, paths, pressed, wanted, thing = null) {
     // An arm at rest needs no new frame; a press or a new belief none that would be in the way of its motion.
     const pose = JSON.stringify([state.bodies, state.gripper?.width_m]);
-    const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted, thing]);
+    const zone = this._slowing(state.zone ?? null);
+    const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted, thing, zone]);
     const moved = pose !== this._pose || state.things !== this._things;
     if (!moved && around === this._around) return false;
     const turned = this._pressed !== pressed.join();
@@ -88,6 +95,7 @@ export class Drawing {
     this._scene.markTool(true);
     this._nameGoals(state.belief, tool, thing);
     this._nameThing(thing, tool);
+    this._nameZones(zone);
     this._ghosts.show(paths, pressed, wanted.showGhosts, this._clearOf(tool, thing));
     this._lookFrom(wanted.seat);
     if (moved) this._views.invalidate();
@@ -179,6 +187,23 @@ export class Drawing {
     const place = known || name === null ? null : this._scene.things.placeOf(name);
     const share = place && tool ? away(tool, place) : undefined;
     this._labels.set("wanted", place, place && name ? thingWords(name) : "", { shown: place !== null, share });
+  }
+
+  /** The zone that slows the arm, or did a moment ago. @param {string | null} zone that slows it now */
+  _slowing(zone) {
+    const now = performance.now();
+    if (zone !== null) this._slowedAt = now;
+    if (zone !== null || now - this._slowedAt > MARKED_MS) this._zone = zone;
+    return this._zone;
+  }
+
+  /** @param {string | null} slowing the zone that slows the arm */
+  _nameZones(slowing) {
+    this._scene.zones.slow(slowing);
+    this._scene.zones.all.forEach(({ name, speed, top }, index) => {
+      const text = name === slowing ? say("zone.slow", { zone: zoneWords(name) }) : zoneWords(name);
+      this._labels.set(`zone-${index}`, top, text, { share: say("zone.speed", { centimetres: sayNumber(100 * speed) }) });
+    });
   }
 
   /** How much of the arrows is to be seen with the tool there. @param {THREE.Vector3} tool @param {string | null} thing */

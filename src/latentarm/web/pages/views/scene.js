@@ -8,6 +8,7 @@ import { Table } from "./table.js";
 import { Things } from "./things.js";
 import { ToolMarker } from "./tool_marker.js";
 import { Trail } from "./trail.js";
+import { Zones } from "./zones.js";
 
 /** @import {State} from "../connection/messages.js" */
 /** @import {SceneDescription} from "./scene_description.js" */
@@ -27,6 +28,7 @@ export class ArmScene {
     this.tool = new THREE.Vector3();
     this.trail = new Trail();
     this._table = new Table(description.obstacles);
+    this.zones = new Zones(description.zones ?? []);
     this._marker = new ToolMarker();
     this._bodies = description.bodies.map(({ geoms }) => groupOf(geoms, meshes));
     this._fingers = description.fingers.map(({ body, opens, at, geoms }) => {
@@ -56,7 +58,7 @@ export class ArmScene {
     const sun = new THREE.DirectionalLight(0xffffff, 1.7);
     sun.position.set(0.6, -0.8, 1.6);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8a98a0, 2.1), sun);
-    this.scene.add(...this._bodies, ...this.things.objects, ...this._table.objects, this._marker.object, ...this.markers.objects, this.trail.object);
+    this.scene.add(...this._bodies, ...this.things.objects, ...this._table.objects, ...this.zones.objects, this._marker.object, ...this.markers.objects, this.trail.object);
     this.repaint();
   }
 
@@ -170,13 +172,14 @@ export class ArmScene {
   repaint() {
     this.scene.background = new THREE.Color(colour("view"));
     this._shadowMaterial.color.set(colour("way"));
-    for (const part of [this._table, this._marker, this.trail, this.markers]) part.repaint();
+    for (const part of [this._table, this.zones, this._marker, this.trail, this.markers]) part.repaint();
   }
 
   /** Points that a view must hold. */
   extent() {
     const goals = this.goals.map((goal) => new THREE.Vector3(...goal.position));
-    return [...this._bodies.map((body) => body.position.clone()), ...this.things.extent, ...goals, this.tool.clone()];
+    const zones = this.zones.all.map(({ top }) => top.clone());
+    return [...this._bodies.map((body) => body.position.clone()), ...this.things.extent, ...goals, ...zones, this.tool.clone()];
   }
 }
 

@@ -13,11 +13,22 @@ export interface Geom {
   mesh: number | null;
 }
 
-export type Obstacle =
-  | { name: string; type: "plane"; point: Vector; normal: Vector }
+export interface Plane {
+  name: string;
+  type: "plane";
+  point: Vector;
+  normal: Vector;
+}
+
+export type Solid =
   | { name: string; type: "sphere"; centre: Vector; radius: number }
   | { name: string; type: "capsule"; start: Vector; end: Vector; radius: number }
   | { name: string; type: "box"; pos: Vector; quat: Quaternion; half_extents: Vector };
+
+export type Obstacle = Plane | Solid;
+
+/** Where no part of the arm is faster than the speed, m/s. */
+export type Zone = Obstacle & { speed: number };
 
 export interface Goal {
   name: string;
@@ -60,4 +71,6 @@ export interface SceneDescription {
   grains: Grains[];
   goals: Goal[];
   obstacles: Obstacle[];
+  /** Scenes of earlier versions have none. */
+  zones?: Zone[];
 }

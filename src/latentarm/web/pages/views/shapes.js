@@ -5,7 +5,7 @@ import { coarser } from "./coarser.js";
 import { ROUND, SOFTWARE } from "./fineness.js";
 import { merged } from "./merged.js";
 
-/** @import {Geom, Obstacle} from "./scene_description.js" */
+/** @import {Geom, Plane, Solid} from "./scene_description.js" */
 /** @typedef {Map<number, THREE.BufferGeometry>} Meshes geometries by number */
 
 /**
@@ -54,32 +54,47 @@ export function materialOf(rgba) {
 }
 
 /**
- * Something that the arm must keep clear of; planes are drawn as the table.
+ * Something solid where it stands.
  *
- * @param {Obstacle} obstacle
+ * @template {THREE.Material} M
+ * @param {Solid} solid
+ * @param {M} material
+ * @returns {THREE.Mesh<THREE.BufferGeometry, M>}
  */
-export function obstacleOf(obstacle) {
-  const material = new THREE.MeshLambertMaterial({ transparent: true, opacity: 0.6 });
-  if (obstacle.type === "sphere") {
-    const ball = new THREE.Mesh(ballOf(obstacle.radius), material);
-    ball.position.set(...obstacle.centre);
+export function solidOf(solid, material) {
+  if (solid.type === "sphere") {
+    const ball = new THREE.Mesh(ballOf(solid.radius), material);
+    ball.position.set(...solid.centre);
     return ball;
   }
-  if (obstacle.type === "capsule") {
-    const [start, end] = [new THREE.Vector3(...obstacle.start), new THREE.Vector3(...obstacle.end)];
+  if (solid.type === "capsule") {
+    const [start, end] = [new THREE.Vector3(...solid.start), new THREE.Vector3(...solid.end)];
     const along = end.clone().sub(start);
-    const rod = new THREE.Mesh(rodOf(obstacle.radius, along.length()), material);
+    const rod = new THREE.Mesh(rodOf(solid.radius, along.length()), material);
     rod.position.copy(start).lerp(end, 0.5);
     rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), along.normalize());
     return rod;
   }
-  if (obstacle.type === "box") {
-    const [a, b, c] = obstacle.half_extents;
-    const box = new THREE.Mesh(new THREE.BoxGeometry(2 * a, 2 * b, 2 * c), material);
-    place(box, [...obstacle.pos, ...obstacle.quat]);
-    return box;
-  }
-  return null;
+  const [a, b, c] = solid.half_extents;
+  const box = new THREE.Mesh(new THREE.BoxGeometry(2 * a, 2 * b, 2 * c), material);
+  place(box, [...solid.pos, ...solid.quat]);
+  return box;
+}
+
+/**
+ * A square piece of a plane.
+ *
+ * @template {THREE.Material} M
+ * @param {Plane} plane
+ * @param {number} size m
+ * @param {M} material
+ * @returns {THREE.Mesh<THREE.BufferGeometry, M>}
+ */
+export function sheetOf({ point, normal }, size, material) {
+  const sheet = new THREE.Mesh(new THREE.PlaneGeometry(size, size), material);
+  sheet.position.set(...point);
+  sheet.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), new THREE.Vector3(...normal));
+  return sheet;
 }
 
 /** @param {Geom} geom @param {Meshes} meshes @returns {THREE.BufferGeometry | null} null for a kind that is not drawn */

@@ -2,7 +2,7 @@
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
-import { obstacleOf } from "./shapes.js";
+import { solidOf } from "./shapes.js";
 
 /** @import {Obstacle} from "./scene_description.js" */
 
@@ -13,7 +13,8 @@ const CELL_M = 0.1;
 export class Table {
   /** @param {Obstacle[]} obstacles level planes are drawn as the table */
   constructor(obstacles) {
-    this._solids = obstacles.map(obstacleOf).filter((shape) => shape !== null);
+    const look = { transparent: true, opacity: 0.6 };
+    this._solids = obstacles.flatMap((one) => (one.type === "plane" ? [] : [solidOf(one, new THREE.MeshLambertMaterial(look))]));
     const level = obstacles.find((one) => one.type === "plane" && one.normal[2] > 0.99);
     /** m */
     this.height = level?.type === "plane" ? level.point[2] : 0;
