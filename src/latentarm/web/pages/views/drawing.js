@@ -20,6 +20,9 @@ import { Views } from "./views.js";
 const FADE_M = [0.05, 0.14];
 const FADED = 0.2;
 
+const ZONE_MARK = "◌";
+/** In narrower views zones whose names would cover others have their mark alone, px. */
+const NAMED_PX = 300;
 /** How long a zone stays marked after it slowed the arm, ms: pushes at its limit would make it blink. */
 const MARKED_MS = 500;
 
@@ -200,9 +203,11 @@ export class Drawing {
   /** @param {string | null} slowing the zone that slows the arm */
   _nameZones(slowing) {
     this._scene.zones.slow(slowing);
+    const room = this._views.views[0].width >= NAMED_PX;
     this._scene.zones.all.forEach(({ name, speed, top }, index) => {
       const text = name === slowing ? say("zone.slow", { zone: zoneWords(name) }) : zoneWords(name);
-      this._labels.set(`zone-${index}`, top, text, { share: say("zone.speed", { centimetres: sayNumber(100 * speed) }) });
+      const share = say("zone.speed", { centimetres: sayNumber(100 * speed) });
+      this._labels.set(`zone-${index}`, top, text, { mark: ZONE_MARK, told: room || name === slowing, share });
     });
   }
 
