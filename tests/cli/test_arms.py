@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 
 import numpy as np
 import pytest
@@ -82,7 +83,8 @@ def test_the_commands_of_the_page_about_your_arm_run(line, server, trained, work
 
 
 @pytest.mark.parametrize("line", [line for line in LINES if line.startswith("latentarm teleop")])
-def test_the_page_is_served_as_the_page_about_your_arm_says(line, server, trained, monkeypatch):
+def test_the_page_is_served_as_the_page_about_your_arm_says(line, server, trained, workplace, monkeypatch):
+    shutil.copy(PAGE.parent / "your-arm" / "zones.toml", workplace)
     stand_ins = ROOT / "tests" / "stand_ins"
     monkeypatch.setenv("PYTHONPATH", f"{stand_ins}:{os.environ.get('PYTHONPATH', '')}")
     serve(line.replace("franka://172.16.0.2", server.address).replace("runs/mine", str(trained)))

@@ -157,7 +157,7 @@ export function key(type, code, fields = {}) {
 }
 
 const STATE = {
-  type: "state", nonce: "n", tick: 0, phase: "disengaged", note: null, reason: null, held_back: null, mode: "latent", axes: 0, help: "off", profile: null, bodies: [], tool: [0, 0, 0],
+  type: "state", nonce: "n", tick: 0, phase: "disengaged", note: null, reason: null, held_back: null, zone: null, mode: "latent", axes: 0, help: "off", profile: null, bodies: [], tool: [0, 0, 0],
   gripper: null, task: { choice: 0, done: 0, outcome: null, why: null, time_s: 0 }, things: null, ghosts: null, belief: null, alpha: 0, bound_m: null, driver: null, driver_name: null, watchers: 0, asking: null,
   asking_name: null, returning: false, bound_for: null, guiding: null, lost: false, at_start: false, let_go_first: false, late_stops: 0, copilot: null, copilot_asking: null, recording: null, trail: 0, late_share: 0, you: false,
 };
@@ -172,7 +172,7 @@ export function welcomeOf(fields = {}) {
   return {
     type: "welcome", version: 1, id: "me", dof: 7, latent_dim: 2, robot: "panda", run: "one", profiles: [],
     modes: ["latent", "assisted", "end_effector"], goals: [], end_effector_modes: ["x-y", "z-yaw", "roll-pitch"],
-    limits: { latch_max_s: 5 }, gripper_width_m: null, things: [], real: null, poses: [],
+    limits: { latch_max_s: 5 }, gripper_width_m: null, things: [], real: null, poses: [], zones: [],
     task: { name: "reach", seed: 0, choices: [], choice: 0, steps: [] }, ...fields,
   };
 }

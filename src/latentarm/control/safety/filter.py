@@ -81,7 +81,7 @@ class Situation:
         self._nearby: tuple[Placement, FloatArray] | None = None
         self._asked = velocity
         self._contacts: Contacts | None = None
-        self._zone_distances: FloatArray | None = None
+        self._zone_distances: tuple[FloatArray, FloatArray] | None = None
 
     @property
     def placement(self) -> Placement:
@@ -125,11 +125,19 @@ class Situation:
             self._contacts = self.surroundings.proximity.measured(self.placement, self._asked)
         return self._contacts
 
-    def zone_distances(self) -> FloatArray:
-        """How far the arm's parts are from the zones, (K + T, Z), m, measured at this very state."""
+    def zone_distances(self) -> tuple[FloatArray, FloatArray]:
+        """How far the arm's parts are from the zones at least, and at most, (Z, K + T), m.
+
+        As far as is known without measuring, see `ZoneDistances`.
+        """
         if self._zone_distances is None:
-            self._zone_distances = self.surroundings.zones.measured(self.placement)
+            self._zone_distances = self.surroundings.zones.bounded(self.state)
         return self._zone_distances
+
+    def zone_distances_now(self, zone: int) -> FloatArray:
+        """How far the arm's parts are from one zone, (K + T,), m, measured at this very state."""
+        self._zone_distances = None
+        return self.surroundings.zones.measured(zone, self.placement)
 
 
 class SafetyFilter(ABC):

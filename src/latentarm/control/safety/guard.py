@@ -10,10 +10,11 @@ from latentarm.control.safety.filter import Situation
 from latentarm.control.safety.small import largest, smallest, some
 from latentarm.control.safety.zone_distances import ZoneDistances
 from latentarm.control.safety.zones import Zone, zone_filter_name
-from latentarm.types import FloatArray
+from latentarm.types import FloatArray, IntArray
 
 _NUMERIC_M = 1e-9
 _NUMERIC_RAD = 1e-12
+_NONE: IntArray = np.zeros(0, dtype=np.int64)
 
 
 @final
@@ -158,37 +159,40 @@ class Guard:
     def _too_fast_for_a_zone(self, velocity: FloatArray, path: Path, situation: Situation) -> Zone | None:
         """A zone that a part could reach into too fast, or None."""
         config, zones = situation.bounds.config, situation.surroundings.zones
-        distance = zones.bounded(situation.state)
+        least, _ = situation.zone_distances()
         # No point is faster than link_speed on the way, as was proven before.
         farthest = config.link_speed * (path.before_s + path.brake.ramp_s)
-        if smallest(distance.ravel()) > config.clearance + farthest:
+        if smallest(least.ravel()) > config.clearance + farthest:
             return None
         nearby, drift = situation.nearby()
-        if self._entered(velocity, path, nearby, drift, distance, zones, config.clearance) is None:
+        suspects = self._entered(least, self._fastest(velocity, path, nearby, drift, zones), path, situation)
+        if not suspects.size:
             return None
-        # Both were a few ticks old, which may be the only reason.
-        still, distance = np.zeros_like(drift), situation.zone_distances()
-        index = self._entered(velocity, path, situation.placement, still, distance, zones, config.clearance)
-        return None if index is None else config.zones[index]
+        # Placement and distances were a few ticks old, which may be the only reason.
+        fastest = self._fastest(velocity, path, situation.placement, np.zeros_like(drift), zones)
+        for zone in suspects.tolist():
+            least[zone] = situation.zone_distances_now(zone)
+        entered = self._entered(least, fastest, path, situation)
+        return config.zones[entered[0]] if entered.size else None
 
     @staticmethod
-    def _entered(
-        velocity: FloatArray,
-        path: Path,
-        placement: Placement,
-        drift: FloatArray,
-        distance: FloatArray,
-        zones: ZoneDistances,
-        clearance: float,
-    ) -> int | None:
-        """The first zone that a part could reach into too fast, from a placement that is ``drift`` away."""
-        body, time_s = placement.body, path.before_s + path.after_s
-        grown = placement.speeds(velocity) + body.bent(time_s * path.fastest + drift) @ path.fastest
+    def _fastest(
+        velocity: FloatArray, path: Path, placement: Placement, drift: FloatArray, zones: ZoneDistances
+    ) -> FloatArray:
+        """(K + T,), bounds of the parts' speeds on the path, m/s, from a placement that is ``drift`` away."""
+        body = placement.body
+        way = (path.before_s + path.after_s) * path.fastest
+        grown = placement.speeds(velocity) + body.bent(way + drift) @ path.fastest
         if path.brake.settle_s > 0.0:
             grown += body.surface_lever @ path.kink
-        speed = zones.of_parts(grown)[:, None]
-        harmful = (speed > zones.limit) & (distance - time_s * speed <= clearance)
-        return int(harmful.any(axis=0).argmax()) if some(harmful.ravel()) else None
+        return zones.of_parts(grown)
+
+    @staticmethod
+    def _entered(distance: FloatArray, speed: FloatArray, path: Path, situation: Situation) -> IntArray:
+        """Indices of the zones that a part reaches into on the path, and is too fast for."""
+        near = distance - (path.before_s + path.after_s) * speed <= situation.bounds.config.clearance
+        harmful = (speed > situation.surroundings.zones.limit) & near
+        return np.flatnonzero(harmful.any(axis=1)) if some(harmful.ravel()) else _NONE
 
     @staticmethod
     def _too_close(path: Path, situation: Situation) -> bool:

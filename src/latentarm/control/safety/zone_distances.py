@@ -15,51 +15,61 @@ from latentarm.types import FloatArray, IntArray
 class ZoneDistances:
     """Distances of the arm's parts to zones, measured when they are asked for and bounded in between.
 
-    The K + T parts are the arm's moving capsules and its tools. A distance that was measured at q' is at
-    q at least ``d - Σ_j lever_j |q_j - q'_j|`` (see `Body`).
+    The K + T parts are the arm's moving capsules and its tools. A distance that was measured at q' is at q
+    within ``Σ_j lever_j |q_j - q'_j|`` of what it was (see `Body`).
 
     Args:
         body: the arm.
         zones: Z zones.
 
     Attributes:
-        limit: (Z,), the zones' speeds, m/s.
+        limit: (Z, 1), the zones' speeds, m/s.
     """
 
     def __init__(self, body: Body, zones: tuple[Zone, ...]) -> None:
         count = body.count
         tools = np.arange(2 * count, len(body.link))
+        self.limit: FloatArray = np.array([[zone.speed] for zone in zones])
         self._start: IntArray = np.concatenate([np.arange(count), tools])
         self._end: IntArray = np.concatenate([np.arange(count, 2 * count), tools])
         self._radius: FloatArray = body.radius[self._start]
-        self._lever: FloatArray = np.maximum(body.lever[self._start], body.lever[self._end])
-        self.limit: FloatArray = np.array([zone.speed for zone in zones])
+        self._lever: FloatArray = np.maximum(body.lever[self._start], body.lever[self._end]).T
         self._zones = zones
-        self._distance = np.full((len(self._start), len(zones)), -np.inf)
-        self._at = np.zeros(body.robot.dof)
+        self._distance = np.zeros((len(zones), len(self._start)))
+        # What is not known: everything at first.
+        self._doubt = np.full((len(zones), 1), np.inf)
+        self._at = np.zeros((len(zones), body.robot.dof))
+        self._measured: list[Placement | None] = [None] * len(zones)
 
     def of_parts(self, figures: FloatArray) -> FloatArray:
         """The larger of the figures of a part's ends, (K + T,), from those of the body's points (P,)."""
         return np.maximum(figures[self._start], figures[self._end])
 
-    def bounded(self, q: FloatArray) -> FloatArray:
-        """Lower bounds of the distances, (K + T, Z), m, from what was measured last.
+    def bounded(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Bounds of the distances from what was measured last.
 
         Args:
             q: (n,), rad.
-        """
-        return self._distance - (self._lever @ np.abs(q - self._at))[:, None]
 
-    def measured(self, placement: Placement) -> FloatArray:
-        """The distances, (K + T, Z), m; zero or less where a part reaches into a zone.
+        Returns:
+            The least that each can be, and the most, (Z, K + T), m.
+        """
+        change = np.abs(q - self._at) @ self._lever + self._doubt
+        return self._distance - change, self._distance + change
+
+    def measured(self, zone: int, placement: Placement) -> FloatArray:
+        """The distances to a zone, (K + T,), m; zero or less where a part reaches into it.
 
         Args:
+            zone: its index.
             placement: the arm.
         """
-        start, end = placement.points[self._start], placement.points[self._end]
-        self._distance = np.stack([self._to(zone, start, end) for zone in self._zones], axis=1)
-        self._at = placement.q
-        return self._distance
+        if self._measured[zone] is not placement:
+            start, end = placement.points[self._start], placement.points[self._end]
+            self._distance[zone] = self._to(self._zones[zone], start, end)
+            self._at[zone], self._doubt[zone] = placement.q, 0.0
+            self._measured[zone] = placement
+        return self._distance[zone]
 
     def _to(self, zone: Zone, start: FloatArray, end: FloatArray) -> FloatArray:
         """Distances of the parts to one zone, (K + T,), m; lower bounds where they are above zero."""

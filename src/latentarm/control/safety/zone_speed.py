@@ -52,18 +52,20 @@ class ZoneSpeed(SafetyFilter):
     def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
         """See the base class."""
         zones, bounds = situation.surroundings.zones, situation.bounds
-        distance = zones.bounded(situation.state)[:, self._index]
-        if smallest(distance) >= self._far_m:
+        least, most = (distances[self._index] for distances in situation.zone_distances())
+        if smallest(least) >= self._far_m:
             return velocity
         size = np.abs(velocity)
         nearby, drift = situation.nearby()
         bend = nearby.body.bent(bounds.reach_s * size + drift) @ size
-        fastest = zones.of_parts(nearby.speeds(velocity) + bend)
-        if not some(fastest > self._allowed(distance)):
+        too_fast = zones.of_parts(nearby.speeds(velocity) + bend) > self._allowed(least)
+        if not some(too_fast):
             return velocity
-        # Both were a few ticks old, which may be the only reason.
+        # Placement and distances were a few ticks old, which may be the only reason.
         placement = situation.placement
-        allowed = self._allowed(situation.zone_distances()[:, self._index])
+        if some(most[too_fast] > self._begins_m):
+            least = situation.zone_distances_now(self._index)
+        allowed = self._allowed(least)
         speed = zones.of_parts(placement.speeds(velocity))
         bend = zones.of_parts(placement.body.bent(bounds.reach_s * size) @ size)
         # The largest share s with s speed + s² bend <= allowed; what links that turn add is the second.

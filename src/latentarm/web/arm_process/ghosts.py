@@ -29,8 +29,8 @@ class GhostPaths:
 
     The look ahead holds the deflection and the belief, integrates what the controller and the robot's help
     want in as many steps as there are points, and keeps the default limits of joints, speed and of the planes
-    (table, walls) that the arm must not pass. It leaves out ramps, and obstacles that are not planes. It is
-    for display only; the safety filters decide.
+    (table, walls) that the arm must not pass. It leaves out ramps, zones, and obstacles that are not planes.
+    It is for display only; the safety filters decide.
 
     Args:
         task: the robot, its goals and what it must keep clear of.

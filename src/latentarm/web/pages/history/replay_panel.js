@@ -33,7 +33,7 @@ export function attachReplay(settings) {
     const { bodies, tool, width_m, things } = newest;
     tick += 1;
     const gripper = width_m === null ? null : { width_m, holding: false, closing: null };
-    const state = /** @type {State} */ (/** @type {unknown} */ ({ tick, bodies, tool, gripper, things, belief: null, bound_m: null }));
+    const state = /** @type {State} */ (/** @type {unknown} */ ({ tick, bodies, tool, gripper, things, belief: null, bound_m: null, zone: null }));
     drawing.show(state, NO_PATHS, [], { ...settings.values, showGhosts: false, showBound: false });
   };
   const show = (/** @type {Moment} */ moment) => {

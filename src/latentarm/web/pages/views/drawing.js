@@ -78,7 +78,7 @@ export class Drawing {
   show(state, paths, pressed, wanted, thing = null) {
     // An arm at rest needs no new frame; a press or a new belief none that would be in the way of its motion.
     const pose = JSON.stringify([state.bodies, state.gripper?.width_m]);
-    const zone = this._slowing(state.zone ?? null);
+    const zone = this._slowing(state.zone);
     const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted, thing, zone]);
     const moved = pose !== this._pose || state.things !== this._things;
     if (!moved && around === this._around) return false;

@@ -1,0 +1,21 @@
+/** Where the arm is slow, in words. */
+
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+
+import { attachZones } from "#pages/drive/zones.js";
+import { FakeElement, newBrowser, welcomeOf } from "./browser.js";
+
+beforeEach(newBrowser);
+
+test("zones are listed with their speeds, by the page's words or by their own names", () => {
+  const text = new FakeElement();
+  const connection = Object.assign(new EventTarget(), { welcome: welcomeOf({ zones: [] }) });
+  attachZones(text, connection);
+  connection.dispatchEvent(new Event("welcome"));
+  assert.ok(text.hidden);
+  connection.welcome = welcomeOf({ zones: [{ name: "self", speed: 0.08 }, { name: "Tray 2", speed: 0.1 }] });
+  connection.dispatchEvent(new Event("welcome"));
+  assert.ok(!text.hidden);
+  assert.equal(text.textContent, "Slow zones: body (at most 8 cm/s) and Tray 2 (at most 10 cm/s).");
+});
