@@ -33,12 +33,12 @@ from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, Input
 from physics_safety import PERIOD_S, imperfect
 
-SPEEDS: Final = (0.03, 0.05, 0.1)
-LATE_TICKS: Final = (None, 0, 1, 3)
+SPEEDS: Final = (0.03, 0.1)
+LATE_TICKS: Final = (None, 0, 3)
 """How late readings of the physical arm are; None is the arm that moves exactly as it is told."""
 
 IN_TICKS: Final = 200
-OUT_TICKS: Final = 400
+OUT_TICKS: Final = 300
 TURN_TICKS: Final = 5
 PUSH_M_PER_S: Final = 0.25
 
@@ -51,8 +51,8 @@ class Seen:
         late_ticks: how late readings were; None for the arm that is exact.
         speed: what the zone allows, m/s.
         drives: how many there were.
-        entered: in how many of them a part reached into the zone.
-        left: in how many of these no part did at the end.
+        entered: in how many of them the tool came into the zone.
+        left: in how many of these it was out of it at the end.
         ticks: how many ticks a part was in the zone for.
         fastest: of any part in the zone, m/s.
         too_fast: in how many ticks one was faster than the zone allows.
@@ -83,11 +83,11 @@ def parts(robot: Robot, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArr
 def drive(robot: Robot, seen: Seen, rng: np.random.Generator) -> None:
     """Push in, then out."""
     start = np.clip(
-        robot.home + 0.3 * rng.normal(size=robot.dof), robot.limits.lower + 0.2, robot.limits.upper - 0.2
+        robot.home + 0.15 * rng.normal(size=robot.dof), robot.limits.lower + 0.2, robot.limits.upper - 0.2
     )
     away = rng.normal(size=3)
-    centre = robot.chain.forward(start).position + away * (rng.uniform(0.25, 0.4) / np.sqrt(away @ away))
-    ball = Sphere("face", centre, rng.uniform(0.05, 0.12))
+    centre = robot.chain.forward(start).position + away * (rng.uniform(0.22, 0.3) / np.sqrt(away @ away))
+    ball = Sphere("face", centre, rng.uniform(0.06, 0.1))
     clock, controller = SimulatedClock(), Pusher(robot.dof)
     late = seen.late_ticks or 0
     arm = (
@@ -131,9 +131,9 @@ def drive(robot: Robot, seen: Seen, rng: np.random.Generator) -> None:
             fastest = float((np.maximum(*gone) * within).max()) / PERIOD_S
             seen.fastest = max(seen.fastest, fastest)
             seen.too_fast += fastest > seen.speed + 1e-9
-        inside = bool(within.any())
+        inside = bool(within[-1])
         entered |= inside
-        seen.ticks += inside
+        seen.ticks += bool(within.any())
         before = (starts, ends)
     seen.entered += entered
     seen.left += entered and not inside
