@@ -2,6 +2,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.config import SafetyConfig
@@ -45,7 +46,7 @@ def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
         shape = "box"
         centre_m = [0, 0, 1]
         size_m = [2, 1, 1]
-        turned_deg = [0, 0, 90]
+        turned_deg = [90, 20, -70]
         speed_m_per_s = 0.1
         [zones.wall]
         shape = "half_space"
@@ -55,7 +56,8 @@ def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
         """)
     )
     assert box.name == "Stuhl 1"
-    np.testing.assert_allclose(box.shape.rotation[:, 0], [0.0, 1.0, 0.0], atol=1e-12)
+    turned = Rotation.from_euler("xyz", [90, 20, -70], degrees=True)
+    np.testing.assert_allclose(box.shape.rotation, turned.as_matrix(), atol=1e-12)
     assert isinstance(wall.shape, HalfSpace)
     np.testing.assert_allclose(wall.shape.normal, [-1.0, 0.0, 0.0])
 

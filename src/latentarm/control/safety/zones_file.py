@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any, Final, cast
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from latentarm.control.safety.zones import Zone, checked_zones
 from latentarm.errors import UserError
@@ -116,8 +115,20 @@ def _half_space(name: str, given: Mapping[str, Any]) -> HalfSpace:
 
 
 def _box(name: str, given: Mapping[str, Any]) -> Box:
-    turned = Rotation.from_euler("xyz", given.get("turned_deg", np.zeros(3)), degrees=True)
-    return Box(name, given["centre_m"], turned.as_matrix(), given["size_m"] / 2.0)
+    turned = _turned(np.deg2rad(given.get("turned_deg", np.zeros(3))))
+    return Box(name, given["centre_m"], turned, given["size_m"] / 2.0)
+
+
+def _turned(angles: FloatArray) -> FloatArray:
+    """The rotation (3, 3) by angles (3,), rad, about the x, then the y, then the z axis of the base."""
+    rotation = np.eye(3)
+    for axis, (cos, sin) in enumerate(zip(np.cos(angles), np.sin(angles), strict=True)):
+        first, second = (axis + 1) % 3, (axis + 2) % 3
+        turn = np.eye(3)
+        turn[first, first] = turn[second, second] = cos
+        turn[first, second], turn[second, first] = -sin, sin
+        rotation = turn @ rotation
+    return rotation
 
 
 _SHAPES: Final[
