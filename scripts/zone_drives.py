@@ -51,8 +51,6 @@ class Seen:
         late_ticks: how late readings were; None for the arm that is exact.
         speed: what the zone allows, m/s.
         drives: how many there were.
-        entered: in how many of them the tool came into the zone.
-        left: in how many of these it was out of it at the end.
         ticks: how many ticks a part was in the zone for.
         fastest: of any part in the zone, m/s.
         too_fast: in how many ticks one was faster than the zone allows.
@@ -62,8 +60,6 @@ class Seen:
     late_ticks: int | None
     speed: float
     drives: int = 0
-    entered: int = 0
-    left: int = 0
     ticks: int = 0
     fastest: float = 0.0
     too_fast: int = 0
@@ -107,7 +103,7 @@ def drive(robot: Robot, seen: Seen, rng: np.random.Generator) -> None:
     if (refused := step.enable()) is not None:
         raise RuntimeError(f"the arm could not be enabled: {refused.reason}")
     seen.drives += 1
-    entered = inside = stopped = False
+    stopped = False
     before = None
     for tick in range(IN_TICKS + OUT_TICKS):
         clock.wait_until(PERIOD_S * (late + 2 + tick))
@@ -131,12 +127,8 @@ def drive(robot: Robot, seen: Seen, rng: np.random.Generator) -> None:
             fastest = float((np.maximum(*gone) * within).max()) / PERIOD_S
             seen.fastest = max(seen.fastest, fastest)
             seen.too_fast += fastest > seen.speed + 1e-9
-        inside = bool(within[-1])
-        entered |= inside
         seen.ticks += bool(within.any())
         before = (starts, ends)
-    seen.entered += entered
-    seen.left += entered and not inside
     seen.stops += stopped
 
 
@@ -161,8 +153,6 @@ def main() -> None:
         "ticks late",
         "allowed (m/s)",
         "drives",
-        "entered",
-        "left",
         "stops",
         "ticks in it",
         "fastest",
@@ -172,10 +162,7 @@ def main() -> None:
     for one in seen:
         late = "exact" if one.late_ticks is None else one.late_ticks
         table.add_row(
-            *(
-                str(value)
-                for value in (late, one.speed, one.drives, one.entered, one.left, one.stops, one.ticks)
-            ),
+            *(str(value) for value in (late, one.speed, one.drives, one.stops, one.ticks)),
             f"{one.fastest:.4f}",
             str(one.too_fast),
         )
