@@ -1,14 +1,16 @@
 """What figures show of a trial: the tool's way, how far it was from the plates, and the stick."""
 
 from dataclasses import asdict, dataclass
-from typing import Any, Final, final
+from typing import TYPE_CHECKING, Any, Final, final
 
 import numpy as np
 
 from latentarm.metrics.task_drives import StepAlignment
-from latentarm.simulation.task_drive import TaskTrace
 from latentarm.types import FloatArray
 from latentarm.user_studies.definition import StudyTask
+
+if TYPE_CHECKING:
+    from latentarm.simulation.task_drive import TaskTrace
 
 POINTS: Final = 60
 """Of a way and of a course over time, at most."""
@@ -56,7 +58,7 @@ class Trace:
         return asdict(self)
 
 
-def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: TaskTrace) -> Trace:
+def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: "TaskTrace") -> Trace:
     """What is kept of a drive.
 
     Args:
@@ -89,7 +91,7 @@ def trace_of(person: int, condition: str, task: StudyTask, trial: int, driven: T
     )
 
 
-def _stick(driven: TaskTrace) -> FloatArray:
+def _stick(driven: "TaskTrace") -> FloatArray:
     pushed = driven.input[driven.input.any(axis=-1)][:, :2]
     edges = np.linspace(-1.0, 1.0, BINS + 1)
     counts = np.histogram2d(pushed[:, 0], pushed[:, 1], bins=(edges, edges))[0]
