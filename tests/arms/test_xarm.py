@@ -1,6 +1,7 @@
 """The driver of xArms against a stand-in for their controller, in real time."""
 
 import os
+import socket
 import subprocess
 import sys
 import time
@@ -212,6 +213,15 @@ def test_firmware_without_times_in_its_reports_is_driven_too() -> None:
             assert MonotonicClock().now_s() - arm.read().time_s < 0.05
 
 
+@pytest.fixture
+def own_timeout() -> Iterator[None]:
+    """The manufacturer's API changes the timeout of every socket that is made in the process afterwards."""
+    before_s = socket.getdefaulttimeout()
+    yield
+    socket.setdefaulttimeout(before_s)
+
+
+@pytest.mark.usefixtures("own_timeout")
 def test_the_stand_in_is_driven_by_the_manufacturers_own_api() -> None:
     from xarm.wrapper import XArmAPI
 
