@@ -36,6 +36,8 @@ class WoodenServer(StandIn):
         self._way = threading.Event()
         self._way.set()
         self._listening = socket.create_server(("127.0.0.1", 0))
+        # Whatever else runs in this process may have set a timeout for all sockets.
+        self._listening.settimeout(None)
         self.port = int(self._listening.getsockname()[1])
         self.guiding = False
         threading.Thread(target=self._serve, daemon=True).start()
@@ -84,6 +86,7 @@ class WoodenServer(StandIn):
                 connection, _ = self._listening.accept()
             except OSError:
                 return
+            connection.settimeout(None)
             threading.Thread(target=self._talk, args=(connection,), daemon=True).start()
 
     def _talk(self, connection: socket.socket) -> None:
