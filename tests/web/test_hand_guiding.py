@@ -104,13 +104,13 @@ def test_whatever_ends_guiding_lets_the_arm_hold_still(site, arm, robot):
         hands.begin()
         page.send(type="stop")
         page.wait(lambda state: state["guiding"] == "offered" and "pressed Stop" in said(state))
-        assert not arm.guiding
+        wait_for(lambda: not arm.guiding, within_s=0.5)
         hands.begin()
         page.wait(lambda state: "has gone" in said(state))  # it says nothing more
-        assert not arm.guiding
+        wait_for(lambda: not arm.guiding, within_s=0.5)
         hands.begin()
         page.enable()
-        assert not arm.guiding
+        wait_for(lambda: not arm.guiding, within_s=0.5)
         page.send(type="guide", on=True)
         page.wait(lambda state: "Stop the arm first" in said(state))
         page.u = None
