@@ -21,7 +21,7 @@ LEGEND_MM: Final = 9.0
 SPREAD: Final = 0.6
 """How much of the room of a step its conditions take."""
 
-NAME_LETTERS: Final = 14
+NAME_LETTERS: Final = 12
 """Of a step's name in one line."""
 
 
