@@ -1,4 +1,4 @@
-"""Cameras: what is asked for, what is read of their pictures, and what is said when there are none."""
+"""Cameras: which are asked for, reading their pictures, and messages when one is missing."""
 
 import asyncio
 import json

@@ -15,7 +15,7 @@ class LostArm:
         arm: what is driven.
 
     Attributes:
-        lost: whether there is none.
+        lost: whether the connection is lost.
     """
 
     def __init__(self, arm: Arm) -> None:

@@ -171,8 +171,8 @@ class CameraProcess:
             The session description that answers it.
 
         Raises:
-            NoticeError: too many pages look already, the offer is none, or the process of the cameras has
-                just ended.
+            NoticeError: too many pages are watching already, the offer is not valid, or the process of the
+                cameras has just ended.
         """
         return await asyncio.get_running_loop().run_in_executor(self._thread, self._answer, page, offer)
 

@@ -218,7 +218,7 @@ const draw = () => attachViews(settings, say("drive.cannot_draw"), (loaded) => {
   drawing.pace(() => input.lateness.frameGapMs > 0, () => input.goFirst());
   show();
 });
-// Whoever looks at cameras needs no drawing, until they ask for it.
+// A page that shows a camera draws no scene until the person asks for it.
 if (document.getElementById("cameras")) {
   import("../cameras/cameras.js").then(({ attachCameras }) => attachCameras(settings, connection, draw));
 } else draw();
