@@ -185,7 +185,7 @@ def measure(browser: Browser, address: str, seconds: float, loss: float, seed: i
         "packets_relayed_and_dropped": [count.value for count in counts],
         "seconds": round(took_s, 1),
         "cameras": ages,
-        "share_of_time_grey": round(grey / (clear + grey), 4),
+        "share_of_time_grey": round(grey / (clear + grey), 4) if ages else None,
         "deadlines_met": round(1.0 - watcher.state["late_share"], 5),
         "enabled_s": round(watcher.enabled_s, 1),
         "presses_of_enable": presses,
@@ -203,12 +203,13 @@ def main() -> None:
         "--loss", type=float, nargs="+", default=[0.0, 0.05], help="shares of packets dropped"
     )
     parser.add_argument("--seed", type=int, default=0, help="of which packets are dropped")
+    parser.add_argument("--without", action="store_true", help="drive without cameras too, for comparison")
     parser.add_argument("--out", type=Path, help="file for the figures")
     chosen = parser.parse_args()
     words = [word for name in CAMERAS for word in ("--camera", f"{name}=testsrc")]
     found = []
-    for loss in chosen.loss:
-        with served(chosen.run, options=words) as site, chromium(USUAL_GL) as browser:
+    for options, loss in [*(([], 0.0) for _ in range(chosen.without)), *((words, one) for one in chosen.loss)]:
+        with served(chosen.run, options=options) as site, chromium(USUAL_GL) as browser:
             found.append(measure(browser, site.address, chosen.seconds, loss, chosen.seed))
     usable = len(os.sched_getaffinity(0))
     tell({"usable_cores": usable, "seed": chosen.seed, "measured": found}, chosen.out)

@@ -259,27 +259,38 @@ def fault_try(
     # Time alone, and what the driver goes on to send, move nothing.
     stand_in.wait(QUIET_S)
     stand_in.ask(f"save {log}")
-    rows = np.load(log)
+    found = measured(np.load(log), at_s)
+    if fault == "driver killed":
+        driver = Driver(clock_path=Path(str(log) + ".clock"), seed=int(1e3 * at_s))
+    before = stand_in.positions()
+    driver.enable()
+    found["moves_when_enabled"] = float(moves(stand_in, clock, before))
+    return found, driver
+
+
+def measured(rows: FloatArray, at_s: float) -> dict[str, float]:
+    """How the arm came to rest.
+
+    Args:
+        rows: (n, 18), of the stand-in's log: time (s), joints (rad), their velocities (rad/s), tool (m).
+        at_s: when the fault was made, on the arm's clock, s; 0 where the arm has lost its power.
+
+    Returns:
+        The figures.
+    """
     t, dq, tool = rows[:, 0], rows[:, 8:15], rows[:, 15:18]
     moving = np.flatnonzero((np.abs(dq) > REST_RAD_S).any(axis=1) & (t >= at_s))
     rest_s = float(t[moving[-1]] - at_s) if len(moving) else 0.0
-    after = t >= at_s
-    steps = np.linalg.norm(np.diff(tool[after], axis=0), axis=1)
-    found = {
+    steps = np.linalg.norm(np.diff(tool[t >= at_s], axis=0), axis=1)
+    return {
         "rest_ms": 1e3 * rest_s,
         "jump_mm": 1e3 * float(steps.max()) if len(steps) else 0.0,
         "moved_before_enabling": float(rest_s > QUIET_S),
         "speed_rad_s": float(np.abs(dq[np.searchsorted(t, at_s) - 1]).max()) if at_s else 0.0,
     }
-    if fault == "driver killed":
-        driver = Driver(clock_path=Path(str(log) + ".clock"), seed=int(1e3 * at_s))
-    before = stand_in.positions()
-    driver.enable()
-    found["moves_when_enabled"] = float(_moves(stand_in, clock, before))
-    return found, driver
 
 
-def _moves(stand_in: FrankaStandIn, clock: ArmClock, before: FloatArray) -> bool:
+def moves(stand_in: FrankaStandIn, clock: ArmClock, before: FloatArray) -> bool:
     """Whether the arm goes anywhere; not at once where the stick happens to push against a limit."""
     end_s = clock.now_s() + MOVES_WITHIN_S
     while clock.now_s() < end_s:
@@ -344,10 +355,11 @@ def main() -> None:
                     found, driver = fault_try(fault, stand_in, clock, driver, log)
                     tries.append(found)
                 driver.end()
-                print(json.dumps({"fault": fault, "tries": len(tries)} | _summary(tries)), flush=True)
+                print(json.dumps({"fault": fault, "tries": len(tries)} | summary(tries)), flush=True)
 
 
-def _summary(tries: list[dict[str, float]]) -> dict[str, float]:
+def summary(tries: list[dict[str, float]]) -> dict[str, float]:
+    """The figures of all tries of a fault."""
     rest = np.array([one["rest_ms"] for one in tries])
     return {
         "rest_ms_median": float(np.median(rest)),

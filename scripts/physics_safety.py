@@ -20,6 +20,7 @@ from rich.progress import track
 from rich.table import Table
 
 from clearance_drives import HARMS, Pusher, scene
+from enabled_arm import enabled
 from latentarm.arms.mujoco import Imperfections, MujocoArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.safety.config import SafetyConfig
@@ -122,17 +123,7 @@ def drive(robot: Robot, harm: str, seen: Seen, rng: np.random.Generator) -> None
         imperfect(seen.late_ticks, rng),
     )
     step = Step(robot, controller, config, dt_s=PERIOD_S)
-    arm.connect()
-    for tick in range(seen.late_ticks + 2):
-        clock.wait_until(PERIOD_S * tick)
-        reading = arm.read()
-        if tick == 0:
-            step.reset(reading.q)
-        step(Input(np.zeros(1)), 0.0, reading, clock.now_s())
-    arm.enable()
-    if (refused := step.enable()) is not None:
-        raise RuntimeError(f"the arm could not be enabled: {refused.reason}")
-    first = seen.late_ticks + 2
+    first = enabled(arm, step, clock, seen.late_ticks)
     before = ends(robot, arm.truth()[0])
     seen.drives += 1
     stopped = False

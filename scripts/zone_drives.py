@@ -20,6 +20,7 @@ from rich.progress import track
 from rich.table import Table
 
 from clearance_drives import Pusher
+from enabled_arm import enabled
 from latentarm.arms.kinematic import KinematicArm
 from latentarm.arms.mujoco import MujocoArm
 from latentarm.control.clock import SimulatedClock
@@ -92,21 +93,12 @@ def drive(robot: Robot, seen: Seen, rng: np.random.Generator) -> None:
         else MujocoArm(robot, start, clock.now_s, imperfect(late, rng))
     )
     step = Step(robot, controller, SafetyConfig(zones=(Zone(ball, seen.speed),)), dt_s=PERIOD_S)
-    arm.connect()
-    for tick in range(late + 2):
-        clock.wait_until(PERIOD_S * tick)
-        reading = arm.read()
-        if tick == 0:
-            step.reset(reading.q)
-        step(Input(np.zeros(1)), 0.0, reading, clock.now_s())
-    arm.enable()
-    if (refused := step.enable()) is not None:
-        raise RuntimeError(f"the arm could not be enabled: {refused.reason}")
+    first = enabled(arm, step, clock, late)
     seen.drives += 1
     stopped = False
     before = None
     for tick in range(IN_TICKS + OUT_TICKS):
-        clock.wait_until(PERIOD_S * (late + 2 + tick))
+        clock.wait_until(PERIOD_S * (first + tick))
         q = arm.truth()[0] if isinstance(arm, MujocoArm) else arm.read().q
         if tick % TURN_TICKS == 0:
             way = centre - robot.chain.forward(q).position if tick < IN_TICKS else -away

@@ -119,8 +119,10 @@ class XArm(GuidableArm):
                 return ArmStatus("off", "The arm is not connected.")
             case "disabled":
                 return ArmStatus("disabled", "The arm is not enabled.")
-            case "enabling" | "releasing":
+            case "enabling":
                 return ArmStatus("disabled", "The arm is being enabled.")
+            case "releasing":
+                return ArmStatus("disabled", "The arm is being switched to its manual mode.")
             case "guided":
                 return ArmStatus("guided", "The arm is guided by hand.")
             case "enabled" | "stopping":
