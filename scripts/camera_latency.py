@@ -208,7 +208,9 @@ def main() -> None:
     chosen = parser.parse_args()
     words = [word for name in CAMERAS for word in ("--camera", f"{name}=testsrc")]
     found = []
-    for options, loss in [*(([], 0.0) for _ in range(chosen.without)), *((words, one) for one in chosen.loss)]:
+    drives: list[tuple[list[str], float]] = [([], 0.0)] if chosen.without else []
+    drives += [(words, loss) for loss in chosen.loss]
+    for options, loss in drives:
         with served(chosen.run, options=options) as site, chromium(USUAL_GL) as browser:
             found.append(measure(browser, site.address, chosen.seconds, loss, chosen.seed))
     usable = len(os.sched_getaffinity(0))

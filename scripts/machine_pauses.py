@@ -2,7 +2,8 @@
 
 A process on each core wakes up 100 times a second, above everything else. Where those on all cores are late
 at the same moment, the whole computer stood still, as a virtual machine does while its host runs others. Run
-it next to a drive: a command lasts 25 ms, or 50 ms on the page, and a longer pause stops the arm. For example:
+it next to a drive: a command lasts 25 ms, or 50 ms on the page, and a longer pause stops the arm. Times are
+of the monotonic clock. For example:
 
     python scripts/machine_pauses.py --minutes 10
 """
@@ -56,7 +57,7 @@ def main() -> None:
         "minutes": minutes,
         "pauses_of_each_core": {core: len(late) for core, late in zip(cores, found, strict=True)},
         "pauses_of_all_cores": [
-            {"after_s": round(at_s - began_s, 2), "ms": round(1e3 * late_s, 1)} for at_s, late_s in together
+            {"at_s": round(at_s, 2), "ms": round(1e3 * late_s, 1)} for at_s, late_s in together
         ],
     }
     print(json.dumps(figures, indent=2))

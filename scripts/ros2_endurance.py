@@ -123,12 +123,12 @@ def drive(address: str, robot: Robot, pipe: Connection) -> None:
     arm = make_real_arm(address, robot, clock.now_s)
     arm.connect()
     newest: list[StepRecord] = []
-    aborts: list[str] = []
+    aborts: list[tuple[float, str]] = []
 
     def observe(record: StepRecord) -> None:
         stop = record.command.stop
         if stop is not None and newest and newest[0].command.stop is None:
-            aborts.append(stop.reason)
+            aborts.append((clock.now_s(), stop.reason))
         newest[:] = [record]
 
     step = Step(robot, EndEffectorController(robot), SafetyConfig(), dt_s=PERIOD_S)
@@ -182,8 +182,8 @@ class Driver:
         """Say what to do."""
         self.pipe.send((what, given))
 
-    def state(self) -> tuple[bool, str, list[str], Any]:
-        """Whether it drives, why not, why it was ever stopped, and how punctual it was."""
+    def state(self) -> tuple[bool, str, list[tuple[float, str]], Any]:
+        """Whether it drives, why not, when and why it was ever stopped, and how punctual it was."""
         self.tell("state")
         return self.pipe.recv()
 
@@ -415,7 +415,7 @@ def table(found: dict[str, Any]) -> str:
         f" {100 * ran['deadlines_met']:.1f} % of deadlines met, p99 {ran['late_p99_ms']:.1f} ms;"
         f" {ran['gripper_goals']} gripper goals, {ran['gripper_aborts']} aborted."
         f" Load average {ran['load'][0]:.1f} on {found['machine']}.",
-        *(f"- aborted: {reason}" for reason in sorted(set(ran["aborts"]))),
+        *(f"- aborted at {at_s:.2f} s of the monotonic clock: {reason}" for at_s, reason in ran["aborts"]),
         "",
         "| what happens | n | at rest after, ms: mean (SD) | worst | largest creep of the tool, mm |"
         " moves again only when enabled | enabling, s: median, worst |",
