@@ -39,9 +39,10 @@ def test_an_arm_that_can_be_driven_is_described_and_does_not_move(server, capsys
 def test_the_line_that_drives_the_arm_has_what_it_was_checked_with(server, capsys, tmp_path):
     limits = tmp_path / "slow limits.toml"
     limits.write_text("[joints.joint1]\nvelocity_rad_per_s = 0.7\n")
-    assert main(["arms", "check", server.address, "--robot", "panda", "--limits", str(limits)]) == 0
+    words = ["arms", "check", server.address, "--robot", "panda", "--limits", str(limits)]
+    assert main([*words, "--joint-speed", "0.2"]) == 0
     told = capsys.readouterr().out.replace("\n", " ")
-    assert f"--arm {server.address} --robot panda --limits '{limits}'" in told
+    assert f"--arm {server.address} --robot panda --limits '{limits}' --joint-speed 0.2" in told
 
 
 def test_everything_that_an_arm_is_refused_for_is_said_at_once(capsys):

@@ -13,7 +13,7 @@ DIRECTIONS = {"up": (0.0, 1.0), "down": (0.0, -1.0), "left": (-1.0, 0.0), "right
 
 
 def looked(setup, q, mode):
-    ghosts = GhostPaths(setup.task, setup.controller, setup.help)
+    ghosts = GhostPaths(setup.task, setup.controller, setup.help, setup.step().safety)
     assert ghosts.newest is None
     belief = np.full(len(setup.task.goals), 1.0 / len(setup.task.goals))
     for direction in range(4):

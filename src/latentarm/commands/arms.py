@@ -13,21 +13,23 @@ from latentarm.arms.catalogue import ARMS
 from latentarm.arms.checking import look_at
 from latentarm.arms.real import Findings
 from latentarm.arms.real_catalogue import REAL_ARMS, make_real_arm
-from latentarm.commands.options import EndEffector, Json, LimitsFile
+from latentarm.commands.options import EndEffector, JointSpeed, Json, LimitsFile, LinkSpeed
 from latentarm.commands.output import note, print_renderables, say
 from latentarm.control.clock import MonotonicClock
 from latentarm.errors import UserError
 from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive_setup import PERIOD_S, Spec, load_setup
+from latentarm.web.arm_process.speeds import Speeds
 
 
-def check_arm_at(address: str, run: Path | None, robot: RobotOptions) -> Findings:
+def check_arm_at(address: str, run: Path | None, robot: RobotOptions, speeds: Speeds) -> Findings:
     """What there is to know of a real arm before it is driven from the page; nothing moves.
 
     Args:
         address: of the arm, such as ``franka://172.16.0.2``.
         run: what it is to be driven with, or None.
         robot: what the arm is, where the run is not to say.
+        speeds: how fast it is to be driven.
 
     Raises:
         UserError: the address, the run or the robot cannot be used. Why the arm is refused, or does
@@ -35,7 +37,7 @@ def check_arm_at(address: str, run: Path | None, robot: RobotOptions) -> Finding
     """
     if not is_address(address):
         raise UserError(f"{address} is not the address of a real arm: write SCHEME://HOST.")
-    driven = load_setup(Spec(run, arm=address, robot=robot)).task.robot
+    driven = load_setup(Spec(run, arm=address, robot=robot, speeds=speeds)).task.robot
     arm = make_real_arm(address, driven, MonotonicClock().now_s)
     try:
         return look_at(arm, driven, PERIOD_S)
@@ -58,13 +60,16 @@ def check(
     ] = None,
     end_effector: EndEffector = None,
     limits: LimitsFile = None,
+    joint_speed: JointSpeed = None,
+    link_speed: LinkSpeed = None,
     json: Json = False,
 ) -> int:
     """Look at a real arm without moving it: what it is, whether it can be driven, and if not, why.
 
     Exits with 2 where it is refused. For example: latentarm arms check franka://172.16.0.2
     """
-    found = check_arm_at(address, run, RobotOptions(robot, end_effector, limits))
+    speeds = Speeds.asked(joint_speed, link_speed)
+    found = check_arm_at(address, run, RobotOptions(robot, end_effector, limits), speeds)
     if json:
         facts = [{"name": fact.name, "value": fact.value} for fact in found.facts]
         print(json_format.dumps({"address": address, "facts": facts, "refusals": found.refusals}, indent=2))
@@ -76,7 +81,14 @@ def check(
     if found.refusals:
         note([f"Refused: {sentence}" for sentence in found.refusals])
         return 2
-    options = {"--arm": address, "--robot": robot, "--end-effector": end_effector, "--limits": limits}
+    options = {
+        "--arm": address,
+        "--robot": robot,
+        "--end-effector": end_effector,
+        "--limits": limits,
+        "--joint-speed": joint_speed,
+        "--link-speed": link_speed,
+    }
     given = [word for name, value in options.items() if value is not None for word in (name, str(value))]
     words = join(["latentarm", "teleop", *([] if run is None else [str(run)]), *given])
     say(f"It can be driven. Nothing was moved. To drive it: {words}", json)

@@ -29,6 +29,14 @@ AnyArm = Annotated[
 RobotName = Annotated[
     str, arg(help="A robot's name (see `latentarm robots`) or the path of an MJCF or URDF file.")
 ]
+JointSpeed = Annotated[
+    float | None,
+    arg(metavar="RAD_PER_S", help="Fastest that a joint may turn: 0.5 at most, and by default."),
+]
+LinkSpeed = Annotated[
+    float | None,
+    arg(metavar="M_PER_S", help="Fastest that any point of the arm may move: 0.25 at most, and by default."),
+]
 EndEffector = Annotated[
     str | None, arg(help="Site, body or link of the model file that is the end-effector.", metavar="NAME")
 ]

@@ -9,7 +9,7 @@ from tyro.conf import Positional, UseAppendAction, arg
 
 from latentarm.commands.choices import TaskName
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import AnyArm, EndEffector, Json, LimitsFile, Seed
+from latentarm.commands.options import AnyArm, EndEffector, JointSpeed, Json, LimitsFile, LinkSpeed, Seed
 from latentarm.commands.output import draws_blocks, say
 
 
@@ -41,6 +41,8 @@ def teleop(
             help="TOML file of zones in which the arm is slow, such as about a face; see docs/your-arm.md.",
         ),
     ] = None,
+    joint_speed: JointSpeed = None,
+    link_speed: LinkSpeed = None,
     task: Annotated[
         TaskName | None,
         arg(help="What the arm is driven at; the run's own task, or a table, where none is named."),
@@ -72,6 +74,7 @@ def teleop(
     from latentarm.control.safety.zones_file import read_zones
     from latentarm.web.arm_process.beginning import RobotOptions
     from latentarm.web.arm_process.drive_setup import Spec
+    from latentarm.web.arm_process.speeds import Speeds
     from latentarm.web.cameras.sources import kept, parse_cameras
     from latentarm.web.server.addresses import TeleopConfig
     from latentarm.web.server.app import serve
@@ -86,7 +89,8 @@ def teleop(
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
     named = RobotOptions(robot, end_effector, limits)
     slow = () if zones is None else read_zones(zones)
-    spec = Spec(run, profile, seed, out, room, arm, task, robot=named, zones=slow)
+    speeds = Speeds.asked(joint_speed, link_speed)
+    spec = Spec(run, profile, seed, out, room, arm, task, robot=named, zones=slow, speeds=speeds)
     config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

@@ -77,12 +77,13 @@ class Bounds:
             raise UserError(
                 f"The safety limit {name} is {speed[joint]:g} {unit}, above the"
                 f" {hardware.velocity[joint]:g} {unit} that joint {names[joint]!r} of {robot.name} can do:"
-                " set it lower."
+                f" set it lower (teleop: --{name.replace('_', '-')})."
             )
         if config.link_speed > robot.tool_speed_limit:
             raise UserError(
                 f"The safety limit link_speed is {config.link_speed:g} m/s, above the"
-                f" {robot.tool_speed_limit:g} m/s that {robot.name} can do: set it lower."
+                f" {robot.tool_speed_limit:g} m/s that {robot.name} can do: set it lower (teleop:"
+                " --link-speed)."
             )
         for zone in config.zones:
             if zone.speed > config.link_speed:
@@ -124,8 +125,8 @@ class Bounds:
                 f"From the last fresh input the command would take {1000 * needed:.0f} ms to reach zero"
                 f" (input_timeout_s {1000 * config.input_timeout_s:.0f} ms, one period {1000 * dt_s:.0f} ms,"
                 f" stopping {1000 * self.stop_s:.0f} ms), but only {1000 * STOPPED_WITHIN_S:.0f} ms are safe:"
-                " lower joint_speed (link_speed where joints slide) or input_timeout_s, or raise"
-                " stop_fraction or the rate."
+                " lower joint_speed (teleop: --joint-speed; where joints slide, link_speed) or"
+                " input_timeout_s, or raise stop_fraction or the rate."
             )
         self.reading_timeout_s = min(config.reading_periods * dt_s, STOPPED_WITHIN_S - dt_s - self.stop_s)
         if config.input_timeout_s + config.input_grace_s > STOPPED_WITHIN_S:

@@ -129,7 +129,7 @@ class Drive:
         self._enable_until_s = -math.inf
         self._enable_driver = -1
         self._observed = Observed(setup.start, setup.task.robot.gripper)
-        self._ghosts = GhostPaths(setup.task, setup.controller, setup.help)
+        self._ghosts = GhostPaths(setup.task, setup.controller, setup.help, self._step.safety)
         self._late_share = self._late_p99_ms = 0.0
         self._whereabouts = Whereabouts(setup.scene, arm)
         self._episodes = Episodes(setup, writer, steering, self._inputs, self._whereabouts)

@@ -33,6 +33,7 @@ from latentarm.types import FloatArray
 from latentarm.web.arm_process.beginning import RobotOptions, begin, begin_real
 from latentarm.web.arm_process.help import Help
 from latentarm.web.arm_process.page_inputs import INPUT_TIMEOUT_S
+from latentarm.web.arm_process.speeds import Speeds
 from latentarm.web.arm_process.task_run import Todo
 from latentarm.web.protocol.orders import HelpLevel, ModeName
 
@@ -78,6 +79,7 @@ class Spec:
         robot: which robot, where the run or the task is not to say.
         found: what was found out about a real arm, names and values.
         zones: where the arm is slow.
+        speeds: how fast it may move anywhere.
 
     Raises:
         UserError: the seed is out of range, or a profile is named without a run.
@@ -94,6 +96,7 @@ class Spec:
     robot: RobotOptions = field(default_factory=RobotOptions)
     found: tuple[tuple[str, str], ...] = ()
     zones: tuple[Zone, ...] = ()
+    speeds: Speeds = field(default_factory=Speeds)
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
@@ -231,6 +234,8 @@ class DriveSetup:
             self.task.robot,
             JoinedController([self.controller, to_pose or self.to_pose()]),
             SafetyConfig(
+                joint_speed=self.spec.speeds.joint,
+                link_speed=self.spec.speeds.link,
                 input_timeout_s=INPUT_TIMEOUT_S,
                 input_grace_s=INPUT_GRACE_S,
                 release_fraction=RELEASE_FRACTION,

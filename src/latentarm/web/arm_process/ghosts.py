@@ -28,7 +28,7 @@ class GhostPaths:
     """Looks ahead along the four full deflections, one direction at a time.
 
     The look ahead holds the deflection and the belief, integrates what the controller and the robot's help
-    want in as many steps as there are points, and keeps the default limits of joints, speed and of the planes
+    want in as many steps as there are points, and keeps the limits of joints, speed and of the planes
     (table, walls) that the arm must not pass. It leaves out ramps, zones, and obstacles that are not planes.
     It is for display only; the safety filters decide.
 
@@ -36,13 +36,13 @@ class GhostPaths:
         task: the robot, its goals and what it must keep clear of.
         controller: what a deflection asks for.
         help_: how much the robot helps.
+        limits: of the drive.
     """
 
-    def __init__(self, task: Place, controller: Controller, help_: Help) -> None:
+    def __init__(self, task: Place, controller: Controller, help_: Help, limits: SafetyConfig) -> None:
         self._controller = controller
         self._help = help_
         robot = task.robot
-        limits = SafetyConfig()
         self._chain = robot.chain
         self._capsules = robot.capsules
         self._lower = robot.limits.lower + limits.joint_margin

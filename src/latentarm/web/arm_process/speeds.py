@@ -1,0 +1,43 @@
+"""How fast the arm may move on the page: as fast as the safety limits have it, or slower."""
+
+import math
+from dataclasses import dataclass
+from typing import Final, Self, final
+
+from latentarm.control.safety.config import SafetyConfig
+from latentarm.errors import UserError
+
+SLOWEST: Final = 0.01
+"""An arm that is slower hardly moves at all, rad/s or m/s."""
+
+
+@final
+@dataclass(frozen=True)
+class Speeds:
+    """Limits of speed.
+
+    Attributes:
+        joint: of joints that turn, rad/s.
+        link: of any point of the arm, and of joints that slide, m/s.
+
+    Raises:
+        UserError: one is higher than the safety limits allow, or hardly a motion.
+    """
+
+    joint: float = SafetyConfig.joint_speed
+    link: float = SafetyConfig.link_speed
+
+    def __post_init__(self) -> None:
+        _check("--joint-speed", self.joint, SafetyConfig.joint_speed, "rad/s")
+        _check("--link-speed", self.link, SafetyConfig.link_speed, "m/s")
+
+    @classmethod
+    def asked(cls, joint: float | None, link: float | None) -> Self:
+        """As somebody asked for them; None for the usual one."""
+        usual = cls()
+        return cls(usual.joint if joint is None else joint, usual.link if link is None else link)
+
+
+def _check(option: str, value: float, most: float, unit: str) -> None:
+    if not (math.isfinite(value) and SLOWEST <= value <= most):
+        raise UserError(f"{option} is {value:g} {unit}: it must be from {SLOWEST:g} to {most:g} {unit}.")
