@@ -75,6 +75,6 @@ def test_an_arm_that_can_do_less_is_driven_more_slowly(tmp_path):
     limits.write_text("[joints.joint1]\nvelocity_rad_per_s = 0.3\n")
     robot = RobotOptions("panda", limits=limits)
     with pytest.raises(UserError, match=r"set it lower \(teleop: --joint-speed\)"):
-        load_setup(Spec(robot=robot)).step()
-    step = load_setup(Spec(robot=robot, speeds=Speeds(joint=0.3))).step()
+        load_setup(Spec(task="reach", robot=robot)).step()
+    step = load_setup(Spec(task="reach", robot=robot, speeds=Speeds(joint=0.3))).step()
     assert step.joint_speed.max() == 0.3
