@@ -130,8 +130,8 @@ def open_link(host: str, options: FrankaOptions, robot: Robot) -> Link:
             " one that its README names for the arm's system version; a Panda needs libfranka 0.9."
         ) from error
     raise UserError(
-        f"There is no Franka at {host} that can be driven ({plain(error)}): check its power, its cable and the"
-        " address, open its brakes and activate FCI in Desk, and end any other program that is connected."
+        f"There is no Franka at {host} that can be driven ({plain(error)}): check its power, its cable and"
+        " the address, open its brakes and activate FCI in Desk, and end any other program that is connected."
     ) from error
 
 
