@@ -10,12 +10,18 @@ from wooden_server import wooden_server
 
 from documentation import ROOT, blocks, lines_of, serve
 from latentarm.cli import main
-from latentarm.robots.panda import panda
+from latentarm.robots.panda import fr3, panda
 
 
 @pytest.fixture(scope="module")
 def server():
     with wooden_server(panda()) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def fr3_server():
+    with wooden_server(fr3()) as server:
         yield server
 
 
@@ -76,16 +82,26 @@ PAGE = ROOT / "docs" / "your-arm.md"
 LINES = [line for block in blocks(PAGE) if block.language == "text" for line in lines_of(block)]
 
 
+@pytest.fixture
+def as_tried(server, fr3_server, trained):
+    """A line of the page with the arm that it names and a run that exists."""
+
+    def tried(line):
+        address = (fr3_server if "--robot fr3" in line else server).address
+        return line.replace("franka://172.16.0.2", address).replace("runs/mine", str(trained))
+
+    return tried
+
+
 @pytest.mark.parametrize("line", [line for line in LINES if line.startswith("latentarm arms check")])
-def test_the_commands_of_the_page_about_your_arm_run(line, server, trained, workplace):
+def test_the_commands_of_the_page_about_your_arm_run(line, as_tried, workplace):
     (workplace / "limits.toml").write_text("[joints.joint1]\nvelocity_rad_per_s = 0.7\n")
-    said = line.replace("franka://172.16.0.2", server.address).replace("runs/mine", str(trained))
-    assert main(said.split()[1:]) == 0
+    assert main(as_tried(line).split()[1:]) == 0
 
 
 @pytest.mark.parametrize("line", [line for line in LINES if line.startswith("latentarm teleop")])
-def test_the_page_is_served_as_the_page_about_your_arm_says(line, server, trained, workplace, monkeypatch):
+def test_the_page_is_served_as_the_page_about_your_arm_says(line, as_tried, workplace, monkeypatch):
     shutil.copy(PAGE.parent / "your-arm" / "zones.toml", workplace)
     stand_ins = ROOT / "tests" / "stand_ins"
     monkeypatch.setenv("PYTHONPATH", f"{stand_ins}:{os.environ.get('PYTHONPATH', '')}")
-    serve(line.replace("franka://172.16.0.2", server.address).replace("runs/mine", str(trained)))
+    serve(as_tried(line))
