@@ -35,7 +35,7 @@ from franka_endurance import (
     summary,
 )
 from teleop_page import NO_GL, VIEWPORT, chromium, enable, served, tell
-from teleop_throttled import Watcher
+from teleop_throttled import Watcher, wait
 
 ARROWS: Final = ("ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight")
 OTHER_AXES, HAND, ENABLE = "m", "g", "Enter"
@@ -44,7 +44,6 @@ OTHER_AXES_SHARE, HAND_SHARE = 0.3, 0.15
 
 HELD_S: Final = (0.4, 1.0)
 AGAIN_S: Final = 2.0
-LOOK_MS: Final = 50
 PRIORITY: Final = 20
 """Of the simulator, above that of the process which drives the arm."""
 
@@ -74,7 +73,7 @@ def hold_keys(
         if not watcher.enabled:
             presses += 1
             page.keyboard.press(ENABLE)
-            _wait(page, AGAIN_S, lambda: watcher.enabled)
+            wait(page, lambda: watcher.enabled, AGAIN_S)
             continue
         if rng.random() < OTHER_AXES_SHARE:
             page.keyboard.press(OTHER_AXES)
@@ -82,16 +81,10 @@ def hold_keys(
             page.keyboard.press(HAND)
         arrow = str(rng.choice(ARROWS))
         page.keyboard.down(arrow)
-        _wait(page, float(rng.uniform(*HELD_S)), lambda: not watcher.enabled)
+        wait(page, lambda: not watcher.enabled, float(rng.uniform(*HELD_S)))
         page.keyboard.up(arrow)
         widths.append(watcher.state["gripper"]["width_m"])
     return presses, widths
-
-
-def _wait(page: Page, at_most_s: float, until: Any) -> None:
-    end_s = time.monotonic() + at_most_s
-    while time.monotonic() < end_s and not until():
-        page.wait_for_timeout(LOOK_MS)
 
 
 def endure(browser: Browser, address: str, clock: ArmClock, minutes: float, seed: int) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import json
 import threading
 import time
 from collections import Counter
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -119,17 +120,18 @@ def to_and_fro(page: Page, watcher: Watcher, until_s: float) -> int:
         if not watcher.enabled:
             presses += 1
             page.keyboard.press("Enter")
-            _wait(page, lambda: watcher.enabled, 2.0)
+            wait(page, lambda: watcher.enabled, 2.0)
             continue
         key = keys[turn % 2]
         turn += 1
         page.keyboard.down(key)
-        _wait(page, lambda: not watcher.enabled, TURN_S)
+        wait(page, lambda: not watcher.enabled, TURN_S)
         page.keyboard.up(key)
     return presses
 
 
-def _wait(page: Page, until: Any, within_s: float) -> None:
+def wait(page: Page, until: Callable[[], bool], within_s: float) -> None:
+    """Let the page go on until something is so, and no longer than a while, s."""
     end_s = time.monotonic() + within_s
     while time.monotonic() < end_s and not until():
         page.wait_for_timeout(LOOK_MS)

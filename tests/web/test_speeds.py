@@ -35,20 +35,13 @@ def driven(desk):
     ).max() / 0.01
 
 
-def test_joints_are_as_slow_as_asked(setup, desk_of):
+@pytest.mark.parametrize(("what", "limit", "place"), [("joint", 0.1, 0), ("link", 0.03, 1)])
+def test_the_arm_is_as_slow_as_asked(setup, desk_of, what, limit, place):
     with desk_of(setup) as desk:
-        usual, _ = driven(desk)
-    with desk_of(with_speeds(setup, joint=0.1)) as desk:
-        slow, _ = driven(desk)
-    assert 0.05 < slow <= 0.1 + 1e-9 < usual
-
-
-def test_the_tool_is_as_slow_as_asked(setup, desk_of):
-    with desk_of(setup) as desk:
-        _, usual = driven(desk)
-    with desk_of(with_speeds(setup, link=0.03)) as desk:
-        _, slow = driven(desk)
-    assert 0.015 < slow <= 0.03 + 1e-9 < usual
+        usual = driven(desk)[place]
+    with desk_of(with_speeds(setup, **{what: limit})) as desk:
+        slow = driven(desk)[place]
+    assert 0.5 * limit < slow <= limit + 1e-9 < usual
 
 
 def test_arrows_are_as_short_as_the_arm_is_slow(setup):
