@@ -94,13 +94,13 @@ def drive(address: str, robot: Robot, orders: Connection) -> None:
     arm = XArm(robot, parse_address(address), clock.now_s)
     arm.connect()
     step = Step(robot, EndEffectorController(robot), SafetyConfig(joint_speed=JOINT_SPEED), dt_s=PERIOD_S)
-    stops: Counter[str] = Counter()
+    stops: list[tuple[float, str]] = []
     armed = ending = False
 
     def observe(record: StepRecord) -> None:
         nonlocal armed
         if armed and record.command.stop is not None and not ending:
-            stops[record.command.stop.reason] += 1
+            stops.append((round(clock.now_s(), 2), record.command.stop.reason))
         armed = record.command.stop is None
 
     loop = ControlLoop(step, arm, hand, clock, [observe])
@@ -134,7 +134,7 @@ def drive(address: str, robot: Robot, orders: Connection) -> None:
             "deadlines_met": figures.met_share,
             "worst_start_ms": 1000.0 * figures.worst_start_s,
             "toggles": hand.toggles,
-            "stops": dict(stops),
+            "stops": stops,
         }
     )
 
@@ -275,7 +275,7 @@ def endure(robot: Robot, minutes: float) -> dict[str, Any]:
         "minutes": minutes,
         "commands_received": sent,
         "gripper_units_seen": [min(widths), max(widths)],
-        "aborts": sum(figures["stops"].values()),
+        "aborts": len(figures["stops"]),
     }
 
 
