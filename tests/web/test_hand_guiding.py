@@ -83,7 +83,7 @@ def test_a_motion_by_hand_is_recorded_with_the_gripper(site, arm, robot, out):
         page.send(type="record", on=False)
         page.wait(lambda state: not state["recording"]["on"])
         page.send(type="guide", on=False)
-        page.wait(lambda state: state["guiding"] == "offered")
+        page.wait(lambda state: state["guiding"] == "offered" and "Guiding by hand has ended" in said(state))
         held = arm.positions()
         assert np.abs(held - begun).max() > 0.2
         arm.push(by)

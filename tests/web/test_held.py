@@ -55,7 +55,7 @@ def run(arm):
 
 def seen(run, *times_s):
     for time_s in times_s:
-        run.see(time_s, np.zeros(7), enabled=True)
+        run.see(time_s, np.zeros(7), enabled=True, steered=True)
     return run.state
 
 

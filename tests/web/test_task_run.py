@@ -58,8 +58,10 @@ def run_of(arm: Arm) -> TaskRun:
     )
 
 
-def seen(run: TaskRun, time_s: float, *, enabled: bool = True) -> tuple[int, str | None, float]:
-    run.see(time_s, np.zeros(7), enabled=enabled)
+def seen(
+    run: TaskRun, time_s: float, *, enabled: bool = True, steered: bool = True
+) -> tuple[int, str | None, float]:
+    run.see(time_s, np.zeros(7), enabled=enabled, steered=steered)
     return run.state.done, run.state.outcome, run.state.time_s
 
 
@@ -73,6 +75,11 @@ def test_a_run_begins_with_the_first_enable_and_its_time_ends_with_its_outcome()
     assert seen(run, 14.5, enabled=False) == (2, "success", 3.5)
     arm.height_m = -1.0
     assert seen(run, 20.0) == (2, "success", 3.5)
+
+
+def test_what_becomes_of_things_counts_whoever_moves_the_arm():
+    run = run_of(Table(0.3))
+    assert seen(run, 10.0, steered=False) == (1, None, 0.0)
 
 
 def test_what_goes_wrong_is_told_as_a_code_and_a_thing_and_stays():
@@ -99,16 +106,18 @@ def test_at_the_table_a_goal_is_reached_where_simulated_drives_say_so(goal):
         ("approached", name),
         ("reached", name),
     ]
-    run.see(0.0, robot.home, enabled=True)
+    run.see(0.0, robot.home, enabled=True, steered=True)
     assert run.state.done == 0
     near = task.goals[goal].configuration
-    run.see(1.0, near, enabled=True)
+    run.see(0.5, near, enabled=True, steered=False)
+    assert run.state.done == 0, "a goal on the way to a saved pose is not reached"
+    run.see(1.0, near, enabled=True, steered=True)
     assert run.state.done == 1
     end = task._manipulation(goal, "stab")[-1]
     tool = robot.chain.forward(end).position
     food = np.array([*ITEMS[name], ITEM_HEIGHT])
     assert np.linalg.norm(tool - food) < REACHED_DISTANCE
-    run.see(2.0, end, enabled=True)
+    run.see(2.0, end, enabled=True, steered=True)
     assert (run.state.done, run.state.outcome, run.state.time_s) == (2, "success", 2.0)
 
 

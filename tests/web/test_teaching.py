@@ -112,7 +112,9 @@ def test_an_axis_that_moves_nothing_is_named(tmp_path):
     journal_of(tmp_path / "alike.sqlite", (2.0, 2.0, 2.0), alike=True)
     wire = Listener()
     train_as_planned(wire, replace(plan, journal=tmp_path / "alike.sqlite"))
-    assert len(wire.said[-1].lesson.weak) == 1
+    lesson = wire.said[-1].lesson
+    assert len(lesson.weak) == 1
+    assert (lesson.recordings, lesson.learned_from) == (3, 1)
     assert wire.said[-1].warned == ()
 
 

@@ -14,7 +14,7 @@ from latentarm.arms.checking import look_at
 from latentarm.arms.real import Findings
 from latentarm.arms.real_catalogue import REAL_ARMS, make_real_arm
 from latentarm.commands.options import EndEffector, JointSpeed, Json, LimitsFile, LinkSpeed
-from latentarm.commands.output import note, print_renderables, say
+from latentarm.commands.output import print_renderables, refuse, say
 from latentarm.control.clock import MonotonicClock
 from latentarm.errors import UserError
 from latentarm.web.arm_process.beginning import RobotOptions
@@ -79,7 +79,7 @@ def check(
             table.add_row(fact.name, fact.value)
         print_renderables(table)
     if found.refusals:
-        note([f"Refused: {sentence}" for sentence in found.refusals])
+        refuse(found.refusals)
         return 2
     options = {
         "--arm": address,

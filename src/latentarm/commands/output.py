@@ -59,6 +59,12 @@ def note(sentences: "Sequence[str]") -> None:
         print(f"latentarm: note: {visible(sentence)}", file=sys.stderr)
 
 
+def refuse(sentences: "Sequence[str]") -> None:
+    """Print why something is refused on standard error, with ``--json`` too."""
+    for sentence in sentences:
+        print(f"latentarm: refused: {visible(sentence)}", file=sys.stderr)
+
+
 def print_renderables(*renderables: "RenderableType") -> None:
     """Print tables and other things that rich can draw."""
     from latentarm.untrusted.console import VisibleConsole

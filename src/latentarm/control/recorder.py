@@ -292,6 +292,19 @@ class Recorder:
             raise _unwritable(self._path, error) from error
         self._episode = None
 
+    def drop_episode(self) -> None:
+        """Delete the episode under way, where there is one.
+
+        Raises:
+            UserError: the journal cannot be written; the episode then stays incomplete.
+        """
+        number, self._episode = self._episode, None
+        try:
+            self._database.execute("DELETE FROM samples WHERE episode = ?", (number,))
+            self._database.execute("DELETE FROM episodes WHERE id = ?", (number,))
+        except sqlite3.Error as error:
+            raise _unwritable(self._path, error) from error
+
     def close(self) -> None:
         """Close the journal; an episode that is under way stays incomplete."""
         self._episode = None

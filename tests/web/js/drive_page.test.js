@@ -59,8 +59,16 @@ for (const [recording, you, words] of [
   [{ on: true, samples: 250, episodes: 2, problem: null }, true, "Recording 3: 2 s."],
   [{ on: true, samples: 250, episodes: 2, problem: null }, false, "Recording 3: 2 s."],
 ]) {
-  test(`recording: ${words}`, () => assert.equal(recordingWords({ recording, you }), words));
+  test(`recording: ${words}`, () => assert.equal(recordingWords({ recording, you, phase: "moving", guiding: null }), words));
 }
+
+test("a recording of an arm that is not enabled says what is missing", () => {
+  const recording = { on: true, samples: 250, episodes: 0, problem: null };
+  const words = (fields) => recordingWords({ recording, you: true, phase: "disengaged", guiding: null, ...fields });
+  assert.match(words({}), /^Recording 1 has begun, but the arm is not enabled\./);
+  assert.match(words({ guiding: "offered", phase: "neutral_needed" }), /not enabled/);
+  for (const guiding of ["on", "own"]) assert.equal(words({ guiding }), "Recording 1: 2 s.");
+});
 
 test("where the stick is, is said with its parts", () => {
   assert.equal(deflectionWords(0, 0), "Centre");

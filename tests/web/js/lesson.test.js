@@ -9,7 +9,7 @@ import { newBrowser } from "./browser.js";
 
 beforeEach(newBrowser);
 
-const words = (lesson) => lessonWords({ short: [], ...lesson }).map(({ text }) => text);
+const words = (lesson) => lessonWords({ recordings: 4, learned_from: 2, short: [], ...lesson }).map(({ text }) => text);
 
 test("a model whose directions work is good enough to drive", () => {
   assert.deepEqual(words({ speeds_m_s: [0.12, 0.1], weak: [] }), ["Both directions work. It is good enough to drive."]);
@@ -31,7 +31,7 @@ test("recordings that are short are named", () => {
 });
 
 test("figures are apart from the words", () => {
-  assert.deepEqual(lessonFigures({ short: [], speeds_m_s: [0.123, 0.05], weak: [] }), ["left and right: 12.3 cm/s", "up and down: 5.0 cm/s"]);
+  assert.deepEqual(lessonFigures({ recordings: 5, learned_from: 3, short: [], speeds_m_s: [0.123, 0.05], weak: [] }), ["learned from 3 of 5 recordings, and checked on the others", "left and right: 12.3 cm/s", "up and down: 5.0 cm/s"]);
   assert.deepEqual(lessonFigures(null), []);
   assert.equal(leftWords({ phase: "training", seconds_left: 4.2 }), "up to about 5 s left");
   assert.equal(leftWords({ phase: "training", seconds_left: null }), "");

@@ -40,6 +40,10 @@ test("a real arm is enabled once everything was confirmed, a simulated one at on
   for (const box of boxes) box.checked = true;
   assert.ok(checklist.done());
   assert.deepEqual(checklist.choices(), []);
+  connection.state = stateOf({ lost: true });
+  connection.dispatchEvent(new Event("state"));
+  assert.equal(checklist.choices().length, 3, "it may have been moved, or carry something else now");
+  assert.ok(!parts.panel.hidden);
 });
 
 test("the robot's own poses come before saved ones, and cannot be deleted", () => {

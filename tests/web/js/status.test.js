@@ -158,9 +158,9 @@ for (const [who, fields, words, page] of [
   [WATCHER, { reason: ADA, note: note("stop_first") }, "Ada pressed Stop. Ada is driving; you are watching."],
   [WATCHER, { reason: ADA, note: note("let_go_first") }, "Ada pressed Stop. Ada is driving; you are watching."],
   [WATCHER, { phase: "ready", note: note("at_start") }, "The arm is back at the start."],
-  [DRIVER, { reason: ADA }, "The arm is not enabled. Press Enable to continue.", { pressed: true }],
-  [NOBODY, { reason: ADA }, "The arm is not enabled. Press Enable to continue.", { pressed: true }],
-  [WATCHER, { phase: "moving" }, "You are watching. Press “Ask to drive” first.", { pressed: true }],
+  [DRIVER, { reason: ADA }, "The arm is not enabled. Press Enable to continue.", { refused: "halted.not_enabled" }],
+  [NOBODY, { reason: ADA }, "The arm is not enabled. Press Enable to continue.", { refused: "halted.not_enabled" }],
+  [WATCHER, { phase: "moving" }, "You are watching. Press “Ask to drive” first.", { refused: "halted.not_enabled" }],
 ]) {
   const about = who === DRIVER ? "the driver" : who === WATCHER ? "a watcher" : "a page while nobody drives";
   test(`what ${about} reads: ${words}`, () => {
@@ -170,7 +170,7 @@ for (const [who, fields, words, page] of [
     const connection = {
       open: true, silenceMs: 0, engaged: ["ready", "moving"].includes(state.phase), state, drove: who.you, own, welcome: welcomeOf(),
     };
-    const shown = { halted: null, turnedAway: "", canEnable: true, pressed: false, late: "connection", ...page };
+    const shown = { halted: null, turnedAway: "", canEnable: true, refused: null, late: "connection", ...page };
     assert.equal(statusOf(connection, shown).text, words);
   });
 }

@@ -207,7 +207,7 @@ def findings(link: Link, options: FrankaOptions, robot: Robot, stops_after_s: fl
         Fact("arm", "not known" if limits is None else limits.kind),
         Fact("mode", str(state.robot_mode.name)),
         Fact("control library", _version()),
-        Fact("joints", ", ".join(f"{q:.3f}" for q in state.q) + " rad"),
+        Fact("joint positions", ", ".join(f"{q:.3f}" for q in state.q) + " rad"),
         Fact("end-effector", f"{state.m_ee:.2f} kg (set in Desk)"),
         Fact("payload", f"{state.m_load:.2f} kg now, {options.payload_kg:g} kg when connected"),
         Fact("collision thresholds", _thresholds(options)),

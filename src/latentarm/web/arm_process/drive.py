@@ -159,7 +159,8 @@ class Drive:
         record = self._standing.seen(record)
         self._steering.tick += 1
         self._observed.see(record)
-        self._run.see(record.time_s, self._observed.q, enabled=self._step.stopped is None)
+        enabled, steered = self._step.stopped is None, not self._way_back.on
+        self._run.see(record.time_s, self._observed.q, enabled=enabled, steered=steered)
         # Only a recording is worth the look: some 0.1 ms.
         kept = replace(record, things=self._whereabouts.rows()) if self._writer.on else record
         self._episodes.follow(kept, at_rest=self._step.at_rest)
@@ -188,12 +189,16 @@ class Drive:
 
     def _stop(self, reason: Notice) -> None:
         self._enable_until_s = self._note_until_s = -math.inf
-        if self._standing.end_guiding():
-            self._step.refuse(Stop(reason.text))
-            self._reasons[reason.text] = reason
+        self._end_guiding(reason)
         if self._step.stopped is None:
             self._reasons[reason.text] = reason
         self._loop.stop(reason.text)
+
+    def _end_guiding(self, reason: Notice) -> None:
+        """End it where it is under way; the arm may not move for this reason."""
+        if self._standing.end_guiding():
+            self._step.refuse(Stop(reason.text))
+            self._reasons[reason.text] = reason
 
     def _stop_if_enabled(self, reason: Notice) -> None:
         if self._step.stopped is None:
@@ -229,7 +234,7 @@ class Drive:
                     self._note_until_s = -math.inf
                     self._standing.begin_guiding(record.time_s)
             case Guide():
-                self._standing.end_guiding()
+                self._end_guiding(Notice(code="guiding_ended"))
             case KeepGuiding(gripper=ask):
                 self._standing.keep_guiding(record.time_s, ask)
             case Reconnect():
@@ -319,6 +324,9 @@ class Drive:
             else:
                 self._standing.end_guiding()
                 self._note_until_s = -math.inf
+                if self._standing.lost is not None:
+                    # Enabling connects it first, which takes seconds.
+                    self._say(Notice(code="reconnecting"))
                 self._reasons.clear()
                 self._loop.enable()
 

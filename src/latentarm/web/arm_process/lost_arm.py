@@ -4,6 +4,7 @@ from typing import Literal, final
 
 from latentarm.arms.contract import Arm, ArmStatus
 from latentarm.control.loop import stop_of
+from latentarm.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 
 
@@ -32,7 +33,10 @@ class LostArm:
     @property
     def reason(self) -> Notice:
         """Why it is lost, or why the last try failed."""
-        return notice_of_stop(stop_of(self._arm.status()))
+        status = self._arm.status()
+        if status.lost:
+            return Notice(code="arm_lost", parameters={"text": one_line(status.reason)})
+        return notice_of_stop(stop_of(status))
 
     def connect_again(self) -> Literal["under way", "anew"]:
         """Ask the driver for a new connection; the arm is disabled afterwards.

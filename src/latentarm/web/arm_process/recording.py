@@ -23,6 +23,7 @@ _CHECK_S: Final = 1.0
 """How often the journal is checked while nothing is recorded, s."""
 
 _CLOSE: Final = "close"
+_DROP: Final = "drop"
 
 
 @final
@@ -121,6 +122,16 @@ class EpisodeWriter:
             self._on = False
             self._put(_End(device))
 
+    def drop(self, why: Notice) -> None:
+        """End the episode, where one is under way, without keeping it.
+
+        Args:
+            why: what people are told.
+        """
+        if self._on:
+            self._put(_DROP)
+            self._break_off(why)
+
     def close(self) -> None:
         """Write what is waiting and close the journal; an episode under way stays incomplete."""
         if self._thread is not None:
@@ -174,6 +185,8 @@ class EpisodeWriter:
         elif isinstance(item, _End) and recorder.recording:
             recorder.end_episode(item.device)
             self._episodes += 1
+        elif item == _DROP:
+            recorder.drop_episode()
 
     def _full(self, recorder: Recorder, error: JournalFullError) -> None:
         """The journal has no room for more: what was recorded of the episode is kept."""

@@ -120,13 +120,15 @@ class TaskRun:
             short=self._fills.short and not self._over,
         )
 
-    def see(self, time_s: float, q: FloatArray, *, enabled: bool) -> None:
+    def see(self, time_s: float, q: FloatArray, *, enabled: bool, steered: bool) -> None:
         """Take how things stand, in every tick.
 
         Args:
             time_s: the clock, s.
             q: (n,), where the joints are, rad.
             enabled: whether the arm may move.
+            steered: whether a person steers it. A goal that it passes on its way to a saved pose is not
+                reached; what becomes of things counts always.
         """
         if not self._todo.steps or self._over:
             return
@@ -138,7 +140,8 @@ class TaskRun:
         state = self._scene_state(q)
         if self._began_s is not None:
             self._time_s = time_s - self._began_s
-            self._progress.update(state)
+            if steered or self._arm is not None:
+                self._progress.update(state)
             self._lost = None if self._over else self._held.see(self._progress.done, state, time_s)
         if looks or self._over:
             self._looked_s = time_s

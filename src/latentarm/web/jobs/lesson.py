@@ -62,10 +62,20 @@ def lesson_of(run: Path, demonstrations: Demonstrations, moved_s: Mapping[int, f
     speeds = _speeds(run, demonstrations)
     least = max(WEAK_M_S, WEAK_SHARE * max(speeds))
     return Lesson(
+        recordings=len(moved_s),
+        learned_from=len(demonstrations.episodes) - _checking(run),
         short=tuple(number for number, seconds in moved_s.items() if seconds < SHORT_SHARE * usual_s),
         speeds_m_s=tuple(round(speed, 3) for speed in speeds),
         weak=tuple(axis for axis, speed in enumerate(speeds) if speed < least),
     )
+
+
+def _checking(run: Path) -> int:
+    """How many episodes a run was not fitted to: those that stopped its training, and those held out."""
+    from latentarm.models.saving import read_model
+    from latentarm.runs.folder import read_run
+
+    return len(read_model(run).summary.validation_episodes) + len(read_run(run).held_out)
 
 
 def _speeds(run: Path, demonstrations: Demonstrations) -> Sequence[float]:

@@ -65,11 +65,15 @@ class Lesson(Message):
     """What the arm learned in a training, as a person would notice it.
 
     Attributes:
+        recordings: how many were chosen.
+        learned_from: how many of them its weights were fitted to; the others checked it.
         short: numbers of the recordings that are much shorter than the others.
         speeds_m_s: how fast a full push moves the tool along each axis of the stick, m/s.
         weak: axes that do little, 0 for left and right, 1 for up and down.
     """
 
+    recordings: int
+    learned_from: int
     short: tuple[int, ...]
     speeds_m_s: tuple[float, ...]
     weak: tuple[int, ...]

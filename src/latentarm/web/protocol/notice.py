@@ -14,6 +14,7 @@ PersonName = str | int
 
 NoticeCode = Literal[
     StopCode,
+    "arm_lost",
     "arm_process_ended",
     "arm_process_silent",
     "arm_stopped",
@@ -80,6 +81,7 @@ NoticeCode = Literal[
     "recording_ended",
     "recording_in_use",
     "recording_left_out",
+    "recording_still",
     "recording_unreadable",
     "request_invalid",
     "return_blocked",

@@ -90,6 +90,9 @@ def serve(
 
     for sentence in notices(setup.task.robot):
         say(sentence)
+    if config.spec.zones:
+        slow = ", ".join(f"{zone.name} ({100 * zone.speed:g} cm/s)" for zone in config.spec.zones)
+        say(f"The arm is slow in these zones: {slow}.")
     out = config.spec.out
     before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     control = ControlProcess(config.spec)
@@ -137,7 +140,9 @@ def _looked_at(
     found = look_at(make_real_arm(setup.arm, robot, MonotonicClock().now_s), robot, PERIOD_S)
     for refusal in found.refusals:
         raise UserError(refusal)
-    say(f"A real arm is at {setup.arm}: {'; '.join(f'{fact.name}: {fact.value}' for fact in found.facts)}.")
+    say(f"A real arm is at {setup.arm}. It says of itself:")
+    for fact in found.facts:
+        say(f"  {fact.name}: {fact.value}")
     spec = replace(setup.spec, found=tuple((fact.name, fact.value) for fact in found.facts))
     return replace(config, spec=spec), replace(setup, spec=spec)
 

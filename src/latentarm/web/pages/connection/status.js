@@ -10,6 +10,7 @@ import { concerns, sayTo } from "./notices.js";
 /** @import {Connection} from "./connection.js" */
 /** @import {State} from "./messages.js" */
 /** @import {Reader} from "./notices.js" */
+/** @import {WordKey} from "../layout/words.js" */
 
 /** A sentence that lasts shorter than this, ms, is not announced: people who nudge would hear nothing else. */
 const SETTLE_MS = 120;
@@ -23,7 +24,7 @@ const REFUSED_MS = 4000;
  * @property {HaltReason | null} halted why this page itself stopped the arm
  * @property {string} turnedAway why the server refused the page
  * @property {boolean} canEnable whether it has a button that enables
- * @property {boolean} pressed whether a press did nothing a moment ago
+ * @property {WordKey | null} refused why a press did nothing a moment ago
  * @property {Reader["late"]} late what was too slow, where an input of this page came late
  */
 
@@ -36,14 +37,14 @@ const REFUSED_MS = 4000;
  * @param {PageState} page
  * @returns {{phase: string, text: string}}
  */
-export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome }, { halted, turnedAway, canEnable, pressed, late }) {
+export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome }, { halted, turnedAway, canEnable, refused, late }) {
   if (turnedAway && state === null) return { phase: "lost", text: turnedAway };
   if (!open) return { phase: "lost", text: say(drove === null ? "status.unreached" : drove ? "status.lost" : "status.lost_watching") };
   if (state === null) return { phase: "connecting", text: say("status.connecting") };
   const { you } = state;
   if (silenceMs > SILENT_MS) return { phase: "lost", text: say(you ? "status.silent" : "status.silent_watching") };
-  if (pressed && !you && state.driver !== null) return { phase: state.phase, text: say("status.watching_first") };
-  if (pressed && !engaged) return { phase: "disengaged", text: say("halted.not_enabled") };
+  if (refused && !you && state.driver !== null) return { phase: state.phase, text: say("status.watching_first") };
+  if (refused && !engaged) return { phase: "disengaged", text: say(refused) };
   if (halted !== null && you && !engaged) return { phase: "disengaged", text: say(`halted.${halted}`) };
   const reader = { you, own, late };
   const text = you ? driverWords(state, canEnable, reader) : watcherWords(state, canEnable, whoAsks(state, welcome?.id) === "you", reader);
@@ -112,6 +113,8 @@ export function attachStatus(parts, connection) {
   let turnedAway = "";
   let wanted = "";
   let refusedUntil = -Infinity;
+  /** @type {WordKey} */
+  let why = "halted.not_enabled";
   let wasLate = false;
   /** @type {Reader["late"]} */
   let late = "connection";
@@ -132,8 +135,8 @@ export function attachStatus(parts, connection) {
     heard = state !== null;
     // What this page did counts for nothing once somebody else drives.
     if (state !== null && !state.you) halted = null;
-    const pressed = performance.now() < refusedUntil;
-    const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, pressed, late });
+    const refused = performance.now() < refusedUntil ? why : null;
+    const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, refused, late });
     if (parts.line.dataset.phase !== phase) parts.line.dataset.phase = phase;
     if (text === wanted) return;
     wanted = text;
@@ -159,8 +162,9 @@ export function attachStatus(parts, connection) {
       refusedUntil = -Infinity;
       show();
     },
-    /** A press cannot move the arm now: say why. */
-    refused() {
+    /** A press cannot move the arm now. @param {WordKey} because what is said of it */
+    refused(because = "halted.not_enabled") {
+      why = because;
       refusedUntil = performance.now() + REFUSED_MS;
       show();
     },

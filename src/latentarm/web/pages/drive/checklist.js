@@ -1,4 +1,4 @@
-/** What a person confirms before a real arm is enabled for the first time. */
+/** What a person confirms before a real arm is enabled for the first time, and after its connection was lost. */
 
 import { create } from "../layout/dom.js";
 import { say } from "../layout/words.js";
@@ -20,6 +20,12 @@ export function attachChecklist(parts, connection) {
   };
   for (const box of parts.boxes) box.addEventListener("change", show);
   connection.addEventListener("welcome", show);
+  connection.addEventListener("state", () => {
+    if (!connection.state?.lost || !parts.boxes.some((box) => box.checked)) return;
+    // It may have been switched off, moved, or given something else to carry.
+    for (const box of parts.boxes) box.checked = false;
+    show();
+  });
   show();
 
   return {

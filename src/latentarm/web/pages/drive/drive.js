@@ -82,7 +82,10 @@ const checklist = attachChecklist({
 const enable = () => {
   // Behind a dialog nothing moves. A press that enables asks nobody for anything.
   if (dialogIsOpen()) return;
-  if (!checklist.done()) checklist.refuse();
+  if (!checklist.done()) {
+    checklist.refuse();
+    status.refused("checklist.first");
+  }
   else if (!connection.driving && connection.state?.driver) status.refused();
   else if (!connection.engaged) lease.ask(() => input.enable());
 };

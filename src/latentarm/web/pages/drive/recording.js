@@ -9,10 +9,13 @@ import { say, sayNotice } from "../layout/words.js";
 /** Samples a second: the control loop's rate. */
 const RATE_HZ = 100;
 
-/** How the recording stands, in words. @param {Pick<State, "recording" | "you">} state */
-export function recordingWords({ recording, you }) {
+/** How the recording stands, in words. @param {Pick<State, "recording" | "you" | "phase" | "guiding">} state */
+export function recordingWords({ recording, you, phase, guiding }) {
   if (recording?.problem) return sayNotice(recording.problem);
   const episodes = recording?.episodes ?? 0;
+  // An arm with a mode of its own for guiding by hand moves without being enabled.
+  const still = (phase === "disengaged" || phase === "neutral_needed") && (guiding === null || guiding === "offered");
+  if (recording?.on && still) return say("recording.waiting", { episode: episodes + 1 });
   if (recording?.on) return say("recording.on", { episode: episodes + 1, seconds: Math.floor(recording.samples / RATE_HZ) });
   if (!you) return say("recording.not_you");
   return episodes ? say("recording.kept", { count: episodes }) : say("recording.none");

@@ -26,9 +26,11 @@ export function lessonWords({ short, speeds_m_s, weak }) {
   return rows;
 }
 
-/** How fast each direction moves the tool. @param {Lesson | null} lesson */
+/** From how many recordings it learned, and how fast each direction moves the tool. @param {Lesson | null} lesson */
 export function lessonFigures(lesson) {
-  return (lesson?.speeds_m_s ?? []).map((speed, axis) => say(`lesson.speed_${AXES[axis]}`, { centimetres: sayNumber(100 * speed, 1) }));
+  if (lesson === null) return [];
+  const speeds = lesson.speeds_m_s.map((speed, axis) => say(`lesson.speed_${AXES[axis]}`, { centimetres: sayNumber(100 * speed, 1) }));
+  return [say("lesson.learned_from", { count: lesson.learned_from, all: lesson.recordings }), ...speeds];
 }
 
 /** Numbers of the recordings that are much shorter than the others. @param {Recorded[]} recordings */
