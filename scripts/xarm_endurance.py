@@ -220,7 +220,7 @@ def try_fault(
     if fault == "killed":
         driver = Driver(server.address(), robot)
     elif fault == "cut":
-        server.do("mend")
+        server.do("reconnect")
     elif fault == "press":
         server.do("release")
     elif fault == "input":
