@@ -356,24 +356,6 @@ def test_an_episode_is_in_the_journal(desk, tmp_path):
     assert desk.writer.status.episodes == 1
 
 
-def test_a_recording_in_which_nothing_moved_is_not_kept(desk, tmp_path):
-    def tick(now_s):
-        enabled_at(desk, now_s)
-        desk.give(0.0, 0.0)
-        if abs(now_s - 0.3) < 0.005:
-            desk.order(Record(on=True, task="nothing"))
-        if abs(now_s - 1.0) < 0.005:
-            desk.order(Record(on=False, task=""))
-
-    desk.each_tick = tick
-    desk.run(1.5)
-    desk.writer.close()
-    assert desk.writer.status.problem.text == "The arm did not move, so this recording was not kept."
-    assert desk.writer.status.episodes == 0
-    (path,) = (tmp_path / "teleop").glob("*.sqlite")
-    assert read_journal(path) == []
-
-
 def test_a_disk_that_cannot_be_written_ends_the_recording_and_not_the_drive(desk, tmp_path):
     (tmp_path / "teleop").write_text("no folder")
 

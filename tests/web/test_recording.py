@@ -15,8 +15,9 @@ from latentarm.web.arm_process.recording import EpisodeWriter
 HEADER = EpisodeHeader("panda", tuple(f"joint{i + 1}" for i in range(7)), 100.0)
 
 
-def sample(tick, *, state=0.5, stop=None):
+def sample(tick, *, state=None, stop=None):
     zeros = np.zeros(7)
+    state = 0.5 + 0.01 * tick if state is None else state
     command = Command(zeros, 0.05, stop)
     return StepRecord(
         0.01 * tick, np.full(7, state), zeros[:2], zeros[:2], zeros, zeros, 0.0, zeros[:0], 0, command
@@ -95,9 +96,29 @@ def test_a_deleted_journal_is_noticed_and_the_next_episode_goes_into_another(tmp
     assert writer.status.problem.code == "journal_lost"
     assert not writer.on
     writer.begin(HEADER)
-    writer.add(sample(10))
+    for tick in (10, 11, 12):
+        writer.add(sample(tick))
     writer.end()
     assert writer.status.problem is None
     writer.close()
     (episode,) = read_journal(next(iter(tmp_path.glob("*.sqlite"))))
-    assert (episode.complete, len(episode.records)) == (True, 1)
+    assert (episode.complete, len(episode.records)) == (True, 3)
+
+
+@pytest.mark.parametrize("ending", ["the person", "a reading that cannot be trusted"])
+def test_an_episode_in_which_nothing_moved_is_not_kept(tmp_path, ending):
+    writer = EpisodeWriter(tmp_path)
+    writer.begin(HEADER)
+    for tick in range(10):
+        writer.add(sample(tick, state=0.5 + 1e-4 * tick))
+    if ending == "the person":
+        writer.end()
+        assert writer.status.problem.text == "The arm did not move, so this recording was not kept."
+    else:
+        writer.add(sample(10, state=np.nan))
+    writer.begin(HEADER)
+    for tick in range(10):
+        writer.add(sample(tick))
+    writer.end()
+    assert recorded(writer).header == HEADER
+    assert writer.status.episodes == 1

@@ -28,8 +28,8 @@ from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.whereabouts import Whereabouts
 from latentarm.web.protocol.channel import new_channel
-from latentarm.web.protocol.orders import Record
-from latentarm.web.protocol.report import Things
+from latentarm.web.protocol.orders import Enable, Given, Record
+from latentarm.web.protocol.report import Things, parse_report
 from latentarm.web.protocol.scene import drawable
 from latentarm.web.protocol.things import described, whereabouts
 from latentarm.web.server.states import PageMemory
@@ -142,11 +142,22 @@ def test_a_recording_says_where_things_went_and_a_model_can_see_them(tmp_path):
         scene=Scene((cup, ball)),
     )
     reading, orders = Pipe(duplex=False)
-    clock, writer = SimulatedClock(), EpisodeWriter(tmp_path / "teleop")
+    clock, writer, channel = SimulatedClock(), EpisodeWriter(tmp_path / "teleop"), new_channel(reading)
+
+    def push(record):
+        """The arm moves too: a recording in which it does not is not kept."""
+        tick = round(record.time_s * 100)
+        nonce = parse_report(channel.report.read()[1]).nonce
+        given = Given(
+            driver=1, seq=tick, nonce=nonce, u=(float(tick > 10), 0.0), latched=False, source="keyboard"
+        )
+        channel.given.write(given.model_dump_json().encode())
+
     with make_scene_arm("mujoco", setup.task.robot, setup.start, clock.now_s, setup.scene) as arm:
-        orders.send_bytes(Record(on=True, task="watch", person="Ada").model_dump_json().encode())
+        for order in (Record(on=True, task="watch", person="Ada"), Enable(driver=1, stops=0)):
+            orders.send_bytes(order.model_dump_json().encode())
         steering = Steering("end_effector")
-        Drive(setup, arm, new_channel(reading), clock, writer, lambda: False, steering).run(40)
+        Drive(setup, arm, channel, clock, writer, lambda: False, steering, observers=[push]).run(60)
     writer.end()
     writer.close()
     orders.close()

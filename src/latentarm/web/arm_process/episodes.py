@@ -1,21 +1,15 @@
 """When an episode of a drive begins and ends, and what it is called."""
 
-from typing import Final, final
-
-import numpy as np
+from typing import final
 
 from latentarm.demonstrations.provenance import BY_HAND
-from latentarm.types import FloatArray, StepRecord
+from latentarm.types import StepRecord
 from latentarm.web.arm_process.drive_setup import DriveSetup
 from latentarm.web.arm_process.page_inputs import PageInputs
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.arm_process.whereabouts import Whereabouts
-from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import Record
-
-STILL_RAD: Final = 0.01
-"""The arm has not moved where no joint was ever farther from its first position, rad (m for a slide)."""
 
 
 @final
@@ -44,8 +38,6 @@ class Episodes:
         self._inputs = inputs
         self._whereabouts = whereabouts
         self._by_hand = False
-        self._first: FloatArray | None = None
-        self._moved = False
 
     @property
     def by_hand(self) -> bool:
@@ -57,7 +49,6 @@ class Episodes:
         self._steering.ending_episode = False
         if not self._writer.on:
             self._inputs.devices.clear()
-            self._first, self._moved = None, False
             self._by_hand = order.by_hand
         how = BY_HAND if order.by_hand else self._steering.mode
         self._writer.begin(self._setup.episode(self._whereabouts.names, how, order.task, order.person))
@@ -67,11 +58,8 @@ class Episodes:
         self._steering.ending_episode = True
 
     def end(self) -> None:
-        """End it now. One in which nothing moved teaches nothing, and is not kept."""
-        if self._moved:
-            self._writer.end(", ".join(sorted(self._inputs.devices)))
-        else:
-            self._writer.drop(Notice(code="recording_still"))
+        """End it now."""
+        self._writer.end(", ".join(sorted(self._inputs.devices)))
         self._steering.ending_episode = False
 
     def follow(self, record: StepRecord, *, at_rest: bool) -> None:
@@ -82,10 +70,5 @@ class Episodes:
             at_rest: whether the arm is told to stand still.
         """
         self._writer.add(record)
-        if self._writer.on and not self._moved:
-            if self._first is None:
-                self._first = record.state
-            turned = float(np.abs(record.state - self._first).max())
-            self._moved = turned > STILL_RAD or record.command.gripper is not None
         if self._steering.ending_episode and at_rest:
             self.end()

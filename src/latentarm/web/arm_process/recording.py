@@ -8,13 +8,18 @@ from pathlib import Path
 from queue import Empty, Full, Queue
 from typing import Final, final
 
+import numpy as np
+
 from latentarm.control.journal_limits import JournalFullError, JournalLimits, JournalLostError
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.errors import UserError
-from latentarm.types import StepRecord, Stop
+from latentarm.types import FloatArray, StepRecord, Stop
 from latentarm.untrusted.terminal import one_line
 from latentarm.web.protocol.notice import Notice, notice_of_stop
 from latentarm.web.protocol.report import Recording
+
+STILL_RAD: Final = 0.01
+"""The arm has not moved where no joint was ever farther from its first position, rad (m for a slide)."""
 
 _MOST_WAITING: Final = 6000
 """Samples that may wait for the disk: a minute of them."""
@@ -40,7 +45,8 @@ class EpisodeWriter:
 
     The journal is created when the first episode begins, and again if it was lost. An episode that the
     disk cannot keep up with is left incomplete and so never becomes part of a dataset. An episode ends before
-    the arm's readings become untrustworthy, and when the journal is full; both are complete.
+    the arm's readings become untrustworthy, and when the journal is full; both are complete. One in which
+    nothing moved teaches nothing, and is not kept.
 
     Args:
         folder: where journals go.
@@ -56,6 +62,8 @@ class EpisodeWriter:
         self._thread: threading.Thread | None = None
         self._on = False
         self._samples = 0
+        self._first: FloatArray | None = None
+        self._moved = False
         self._episodes = 0
         self._problem: Notice | None = None
         self._lost = False
@@ -87,6 +95,7 @@ class EpisodeWriter:
         if self._lost:
             self._lost, self._path, self._episodes = False, self._new_path(), 0
         self._on, self._samples = True, 0
+        self._first, self._moved = None, False
         self._put(header)
         if self._thread is None or not self._thread.is_alive():
             self._thread = threading.Thread(target=self._write, name="recording", daemon=True)
@@ -110,6 +119,9 @@ class EpisodeWriter:
                 self._problem = Notice(code="recording_ended", parameters=because)
         else:
             self._samples += 1
+            self._first = record.state if self._first is None else self._first
+            turned = np.abs(record.state - self._first).max()
+            self._moved |= bool(turned > STILL_RAD) or record.command.gripper is not None
             self._put(record)
 
     def end(self, device: str = "") -> None:
@@ -118,19 +130,14 @@ class EpisodeWriter:
         Args:
             device: kind of input device that it was driven with.
         """
-        if self._on:
+        if not self._on:
+            return
+        if self._moved:
             self._on = False
             self._put(_End(device))
-
-    def drop(self, why: Notice) -> None:
-        """End the episode, where one is under way, without keeping it.
-
-        Args:
-            why: what people are told.
-        """
-        if self._on:
+        else:
             self._put(_DROP)
-            self._break_off(why)
+            self._break_off(Notice(code="recording_still"))
 
     def close(self) -> None:
         """Write what is waiting and close the journal; an episode under way stays incomplete."""
