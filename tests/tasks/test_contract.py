@@ -68,3 +68,18 @@ def test_episodes_in_which_the_tool_goes_nowhere_are_not_followed(table_top):
     assert len(routes_of(table_top.robot, replace(shown, episodes=(twitch, shown.episodes[1])))) == 1
     with pytest.raises(UserError, match=r"In none of these episodes does tool of panda go anywhere"):
         routes_of(table_top.robot, replace(shown, episodes=(twitch,)))
+
+
+def test_a_short_way_there_and_back_has_a_waypoint_away_from_its_start(table_top):
+    shown = table_top.demonstrate(1, np.random.default_rng(0))
+    one = shown.episodes[0]
+    turned = 0.1 * np.sin(np.linspace(0.0, np.pi, len(one.timestamp)))
+    state = np.repeat(one.state[:1], len(turned), axis=0)
+    state[:, 1] += turned
+    (route,) = routes_of(table_top.robot, replace(shown, episodes=(replace(one, state=state),)))
+    assert len(route) == 3
+    task = Replay(table_top.robot, (route,))
+    start = table_top.robot.chain.forward(task.sample_start(0, np.random.default_rng(0)))
+    there, back = task.waypoints(0, "follow")
+    assert not task.reached(start, there)
+    assert task.reached(start, back)

@@ -11,7 +11,7 @@ from latentarm.kinematics.rotations import angle_between
 from latentarm.kinematics.stillness import moving_range
 from latentarm.robots.robot import Robot
 from latentarm.tasks.demonstrator import demonstrate_goals
-from latentarm.tasks.task import GripperTask, within
+from latentarm.tasks.task import REACHED_ANGLE, REACHED_DISTANCE, GripperTask, within
 from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray, Goal, GripperAsk, IntArray, Pose
 
 WAYPOINT_SPACING = 0.25
@@ -195,17 +195,28 @@ def _leaving(robot: Robot, demonstrations: Demonstrations) -> list[Episode]:
 
 
 def _stops(robot: Robot, path: FloatArray) -> IntArray:
-    """Which of the states (T, n) of an episode are its start and its waypoints, (K + 1,)."""
+    """Which of the states (T, n) of an episode are its start and its waypoints, (K + 1,).
+
+    One of them is away from the start, also where the way is short and leads back.
+    """
     poses = robot.chain.forward(path)
     turned = angle_between(poses.rotation[1:], poses.rotation[:-1])
     way = np.cumsum(np.linalg.norm(np.diff(poses.position, axis=0), axis=1) + RADIAN * turned)
     count = max(1, round(way[-1] / WAYPOINT_SPACING))
     at = np.searchsorted(way, way[-1] * np.arange(1, count) / count - 1e-9) + 1
-    return np.array([0, *at, len(path) - 1])
+    stops = np.array([0, *at, len(path) - 1])
+    away = _away(robot, path)
+    return stops if away[stops].max() > 1.0 else np.union1d(stops, away.argmax())
 
 
 def _leaves(robot: Robot, path: FloatArray) -> bool:
     """Whether the tool is ever anywhere but where it began."""
+    return bool(_away(robot, path).max() > 1.0)
+
+
+def _away(robot: Robot, path: FloatArray) -> FloatArray:
+    """How far the tool is from where it began, (T,): up to 1 it is still there, see `within`."""
     poses = robot.chain.forward(path)
-    start = Pose(poses.position[0], poses.rotation[0])
-    return not all(within(start, Pose(*pose)) for pose in zip(poses.position, poses.rotation, strict=True))
+    distance = np.linalg.norm(poses.position - poses.position[0], axis=1)
+    angle = angle_between(poses.rotation, poses.rotation[0])
+    return np.maximum(distance / REACHED_DISTANCE, angle / REACHED_ANGLE)
