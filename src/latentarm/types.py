@@ -300,6 +300,7 @@ StopCode = Literal[
     "clock_stood_still",
     "controller_failed",
     "controller_invalid",
+    "emergency_stop_released",
     "gripper_invalid",
     "input_invalid",
     "input_late",

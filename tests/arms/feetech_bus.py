@@ -65,6 +65,7 @@ class _Bus:
         self.written: deque[tuple[float, int, int, list[int]]] = deque(maxlen=10_000)
         self.places: deque[tuple[float, list[int]]] = deque(maxlen=4000)
         self.silent = False
+        self.late = 0
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
         self.port = os.ttyname(self._slave)
@@ -109,6 +110,8 @@ class _Bus:
                 del self.servos[order["number"]]
             case "silent":
                 self.silent = order["silent"]
+            case "late":
+                self.late = order["times"]
             case "written":
                 return list(self.written)
             case "places":
@@ -134,6 +137,10 @@ class _Bus:
             for index in range(2, len(data), size + 1):
                 self._write(data[index], address, data[index + 1 : index + 1 + size])
         elif instruction == SYNC_READ:
+            if self.late and data[0] == PRESENT:
+                self.late -= 1
+                for one in data[2:]:
+                    self._status(one, bytes([self.servos[one].registers[TORQUE]]))
             for one in data[2:]:
                 self._status(one, bytes(self.servos[one].registers[data[0] : data[0] + data[1]]))
         elif number in self.servos:
@@ -207,6 +214,10 @@ class FeetechBus:
     def silence(self, silent: bool) -> None:
         """Let the bus answer nothing any more, or answer again."""
         self._do("silent", silent=silent)
+
+    def answer_late(self, times: int) -> None:
+        """Before the next positions come answers to an earlier question, of one byte each, so many times."""
+        self._do("late", times=times)
 
     def written(self) -> list[tuple[float, int, int, bytes]]:
         """The newest writes as time (monotonic, s), servo, address and data."""

@@ -18,7 +18,7 @@ from .conftest import said
 
 GRIPPER = ("observation.gripper_width", "action.gripper")
 
-PRESSED = "The emergency stop on the arm is pressed."
+PRESSED = "The emergency stop on the arm is pressed: release it first."
 
 
 def drive(desk, happenings, enabled_at_s=(0.1,)):

@@ -1,5 +1,6 @@
 """Looking at a real arm before it is driven: what its driver finds out, and what all arms must be."""
 
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -37,7 +38,7 @@ def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
         refusals += _beyond(found.limits, robot)
     stops = "not known" if spec.stops_after_s is None else f"after {1000 * spec.stops_after_s:.0f} ms"
     common = (
-        Fact("robot", robot.name),
+        Fact("robot", Path(robot.name).name),
         Fact("joints", ", ".join(spec.joint_names)),
         Fact("gripper", "none" if spec.gripper is None else f"opens {1000 * spec.gripper.width_m:.0f} mm"),
         Fact("commands", f"up to {spec.rate_hz:g} per second"),

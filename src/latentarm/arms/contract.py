@@ -220,7 +220,8 @@ def arm_refusals(spec: ArmSpec, robot: Robot) -> tuple[str, ...]:
     assumed = assumed_limits(robot)
     if assumed and not spec.simulated:
         found.append(
-            f"{robot.name} is a real arm, and its {assumed} is not known but assumed: state the"
-            " manufacturer's figures in a file and name it with --limits FILE."
+            f"A real arm is driven by known limits alone, and those of {robot.name} are assumed in part"
+            f" ({assumed}): state the manufacturer's figures in a file (of joints, and tool_speed_m_per_s)"
+            " and name it with --limits FILE."
         )
     return tuple(found)

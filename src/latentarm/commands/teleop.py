@@ -1,6 +1,7 @@
 """`latentarm teleop`: the web page."""
 
 import json as json_format
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -88,8 +89,12 @@ def teleop(
 
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
     named = RobotOptions(robot, end_effector, limits)
-    slow = () if zones is None else read_zones(zones)
     speeds = Speeds.asked(joint_speed, link_speed)
+    # Nowhere may the arm be faster than elsewhere.
+    slow = tuple(
+        replace(zone, speed=min(zone.speed, speeds.link))
+        for zone in (() if zones is None else read_zones(zones))
+    )
     spec = Spec(run, profile, seed, out, room, arm, task, robot=named, zones=slow, speeds=speeds)
     config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())

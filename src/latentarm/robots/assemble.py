@@ -76,6 +76,7 @@ def assemble(
         gripper=gripper,
         attachment=attachment,
         tuck=_tuck(model, reading, limits),
+        home_stated=model_path is None or mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "home") >= 0,
     )
 
 

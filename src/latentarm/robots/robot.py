@@ -35,6 +35,8 @@ class Robot:
         gripper: its gripper, or None where it has none that can be driven.
         attachment: what it carries in its hand, or None.
         tuck: (n,), a configuration in which it is out of the way, rad; None where its model states none.
+        home_stated: whether the robot or its model states ``home``; else it is the middle of the joints'
+            ranges, where an arm need not ever have been.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Robot:
     gripper: Gripper | None = None
     attachment: Attachment | None = None
     tuck: FloatArray | None = None
+    home_stated: bool = True
 
     @property
     def dof(self) -> int:

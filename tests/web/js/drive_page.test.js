@@ -65,7 +65,7 @@ for (const [recording, you, words] of [
 test("a recording of an arm that is not enabled says what is missing", () => {
   const recording = { on: true, samples: 250, episodes: 0, problem: null };
   const words = (fields) => recordingWords({ recording, you: true, phase: "disengaged", guiding: null, ...fields });
-  assert.match(words({}), /^Recording 1 has begun, but the arm is not enabled\./);
+  assert.match(words({}), /^Recording 1: 2 s\. The arm is not enabled/);
   assert.match(words({ guiding: "offered", phase: "neutral_needed" }), /not enabled/);
   for (const guiding of ["on", "own"]) assert.equal(words({ guiding }), "Recording 1: 2 s.");
 });

@@ -32,7 +32,7 @@ test("a real arm is enabled once everything was confirmed, a simulated one at on
   const boxes = Array.from({ length: 3 }, () => Object.assign(new FakeElement(), { checked: false }));
   const parts = { panel: new FakeElement(), facts: new FakeElement(), why: new FakeElement(), boxes };
   const connection = Object.assign(new EventTarget(), { welcome: welcomeOf({ real: null }) });
-  const checklist = attachChecklist(parts, connection);
+  const checklist = attachChecklist(parts, connection, () => {});
   assert.ok(checklist.done());
   connection.welcome = welcomeOf({ real: { facts: [{ name: "firmware", value: "2.1" }] } });
   assert.ok(!checklist.done());
@@ -41,6 +41,9 @@ test("a real arm is enabled once everything was confirmed, a simulated one at on
   assert.ok(checklist.done());
   assert.deepEqual(checklist.choices(), []);
   connection.state = stateOf({ lost: true });
+  connection.dispatchEvent(new Event("state"));
+  assert.ok(parts.panel.hidden, "an arm that is not connected is connected first");
+  connection.state = stateOf({ lost: false });
   connection.dispatchEvent(new Event("state"));
   assert.equal(checklist.choices().length, 3, "it may have been moved, or carry something else now");
   assert.ok(!parts.panel.hidden);

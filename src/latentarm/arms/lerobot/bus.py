@@ -1,6 +1,7 @@
 """A robot of LeRobot by its motors' bus. Nothing here imports LeRobot before a `MotorsBus` is made."""
 
 import math
+import re
 import select
 import statistics
 import time
@@ -34,8 +35,17 @@ RAMP_RAD_S2: Final = 100 * 2 * math.pi / 4096
 SLOWEST_RAMP_RAD_S2: Final = 10.0
 """A motor that speeds up and slows down by less, by its own registers, does not stop when it is told to."""
 
+_BEYOND_DEG: Final = 15.0
+"""A joint that says that it is farther outside its calibrated range cannot be there, degrees."""
+
+_ALIKE_STEPS: Final = 20
+"""Two readings of a motor that stands still differ by no more encoder steps."""
+
 _TRIES: Final = 3
 """A bus loses an answer now and then: what has time is asked so many times."""
+
+_MISSING: Final = re.compile(r"- (\d+) \(expected")
+"""Numbers of motors in LeRobot's list of those that do not answer."""
 
 _FAILURES: Final = (OSError, RuntimeError, ValueError)
 """What LeRobot raises where a bus or a motor does not answer as it should."""
@@ -79,11 +89,25 @@ class MotorsBus:
         Raises:
             UserError: the port or a motor does not answer.
         """
+        kind, port = self._options.kind, self._options.port
         try:
             _again(self._open_once)
         except _FAILURES as error:
-            why = " ".join(str(error.__cause__ or error).split())
-            raise UserError(f"{self._options.port} has no {self._options.kind}: {why[:300]}") from error
+            why = str(error.__cause__ or error)
+            missing = [int(number) for number in _MISSING.findall(why)]
+            if len(missing) == len(self.motors):
+                raise UserError(
+                    f"No motor of {kind} answers on {port}: check the cable and the supply."
+                ) from error
+            if missing:
+                names = [name for name in self.motors if self._bus.motors[name].id in missing]
+                raise UserError(
+                    f"The motors {', '.join(names)} of {kind} do not answer on {port}: check their cables."
+                ) from error
+            why = " ".join(why.split())[:300]
+            raise UserError(
+                f"{port} cannot be used for {kind}: see that the arm is connected ({why})."
+            ) from error
 
     def _open_once(self) -> None:
         try:
@@ -104,10 +128,17 @@ class MotorsBus:
             OSError: a motor does not answer.
         """
         found: list[str] = []
-        if not _again(lambda: self._bus.is_calibrated):
-            kind, port, name = self._options.kind, self._options.port, self._options.name
+        file = Path(self._robot.calibration_fpath)
+        kind, port, name = self._options.kind, self._options.port, self._options.name
+        if not file.is_file():
+            known = ", ".join(sorted(one.stem for one in file.parent.glob("*.json"))) or "none"
             found.append(
-                f"The motors do not have the calibration {self._robot.calibration_fpath}: run"
+                f"There is no calibration {file} (there: {known}): name another id, or run"
+                f" lerobot-calibrate --robot.type={kind} --robot.port={port} --robot.id={name}."
+            )
+        elif not _again(lambda: self._bus.is_calibrated):
+            found.append(
+                f"The motors do not have the calibration {file}: run"
                 f" lerobot-calibrate --robot.type={kind} --robot.port={port} --robot.id={name}."
             )
         for motor, celsius in self._read("Present_Temperature").items():
@@ -172,9 +203,16 @@ class MotorsBus:
         """Joints in degrees, the gripper from 0 to 100.
 
         Raises:
-            OSError: a motor does not answer.
+            OSError: a motor does not answer, or says what cannot be.
         """
-        return self._bus.sync_read("Present_Position", num_retry=1)
+        found = self._whole("Present_Position", normalize=True)
+        ranges = self.ranges()
+        for name in self.joints:
+            if abs(found[name]) > ranges[name] + _BEYOND_DEG:
+                raise ConnectionError(
+                    f"The motor {name} says that it is at {found[name]:.0f}°, outside its calibrated range."
+                )
+        return found
 
     def go(self, targets: Mapping[str, float]) -> None:
         """Tell the motors where to be; units as of `positions`."""
@@ -201,7 +239,7 @@ class MotorsBus:
         if not limp:
             return
         # A motor goes to its last goal as soon as torque is on.
-        self._bus.sync_write("Goal_Position", dict(self._read("Present_Position")), normalize=False)
+        self._bus.sync_write("Goal_Position", self._sure_positions(), normalize=False)
         if len(limp) == len(self.motors):
             _again(self._robot.configure)
         else:
@@ -220,8 +258,38 @@ class MotorsBus:
         models = {motor.model for motor in self._bus.motors.values()}
         return all(register in self._bus.model_ctrl_table[model] for model in models)
 
+    def _sure_positions(self) -> dict[str, int]:
+        """Where the motors are, encoder steps, as they say twice in a row: torque will hold them there.
+
+        Raises:
+            OSError: a motor does not answer, or says something else each time.
+        """
+        before = self._read("Present_Position")
+        for _ in range(_TRIES):
+            now = self._read("Present_Position")
+            if all(abs(now[name] - before[name]) <= _ALIKE_STEPS for name in self.motors):
+                return now
+            before = now
+        raise ConnectionError("The motors say that they are elsewhere each time: hold the arm still.")
+
     def _read(self, register: str) -> dict[str, int]:
-        return self._bus.sync_read(register, normalize=False, num_retry=1)
+        return self._whole(register, normalize=False)
+
+    def _whole(self, register: str, *, normalize: bool) -> dict[str, Any]:
+        """What all motors answer.
+
+        LeRobot takes an answer without enough bytes for a 0. A late answer to what was asked before can have
+        fewer bytes. As a position, 0 would let the arm go there.
+
+        Raises:
+            OSError: a motor does not answer, or not to this.
+        """
+        found: dict[str, Any] = self._bus.sync_read(register, normalize=normalize, num_retry=1)
+        reader = self._bus.sync_reader
+        for name in self.motors:
+            if len(reader.data_dict[self._bus.motors[name].id]) != reader.data_length:
+                raise ConnectionError(f"The motor {name} has answered something else than was asked.")
+        return found
 
 
 def _again(ask: Callable[[], _Answer]) -> _Answer:

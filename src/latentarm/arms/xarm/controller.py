@@ -176,14 +176,13 @@ class Controller:
             )
         if not self._socket.connected:
             raise LinkLostError(
-                "The arm's controller has ended the connection: check its power and the network cable, then"
-                " enable the arm again."
+                "The arm's controller has ended the connection: check its power and the network cable."
             )
         if code == _TIMEOUT:
             self.close()
             raise LinkLostError(
                 f"The arm's controller has not answered for {1000 * within_s:.0f} ms: check its power and the"
-                " network cable, then enable the arm again."
+                " network cable."
             )
         if code not in _ANSWERED or len(answer) <= figures:
             self.close()

@@ -228,7 +228,7 @@ class Driver(threading.Thread):
             silent_ms = 1000 * (now_s - report.arrived_s)
             self._lost(
                 f"The arm has reported no new joint angles for {silent_ms:.0f} ms: check its controller"
-                " and the network cable, then enable the arm again."
+                " and the network cable."
             )
         elif condition == "emergency_stop":
             self._await_release(now_s)

@@ -105,7 +105,7 @@ def begin(
 
 
 def begin_real(run: Run | None, task: str | None, choice: int, robot: RobotOptions) -> Begun:
-    """Begin with a real arm, wherever it is; the way back leads to the home of its robot.
+    """Begin with a real arm, wherever it is.
 
     Nobody sees what stands about a real arm. Of a task with things only the robot and what it must keep clear
     of count; goals are those of a run's demonstrations, or of a task that was named.

@@ -324,9 +324,6 @@ class Drive:
             else:
                 self._standing.end_guiding()
                 self._note_until_s = -math.inf
-                if self._standing.lost is not None:
-                    # Enabling connects it first, which takes seconds.
-                    self._say(Notice(code="reconnecting"))
                 self._reasons.clear()
                 self._loop.enable()
 

@@ -121,7 +121,8 @@ class DriveSetup:
         latent_dim: d, axes of the latent actions; 0 without a run.
         axes: names of the pairs of axes of end-effector control.
         help: how much the robot helps.
-        start: (n,), where a simulated arm starts, and where the way back leads, rad.
+        start: (n,), where a simulated arm starts, and where the way back leads, rad; of a real arm where it
+            stood when it was connected.
         todo: what is to be done.
         run_fingerprint: of the run's weights; "" without a run.
         scene: what stands about the arm, or None where things are of no account.

@@ -1,5 +1,7 @@
 """The arm that a control process drives: a simulated one is made anew for each start, a real one never."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from latentarm.arms.catalogue import make_arm, make_scene_arm
@@ -23,6 +25,17 @@ def first_arm(setup: DriveSetup, clock: Clock) -> Arm:
         arm = make_scene_arm(name, robot, setup.start, clock.now_s, setup.scene)
     arm.connect()
     return arm
+
+
+def from_where_it_stands(setup: DriveSetup, arm: Arm) -> DriveSetup:
+    """The setup whose way back leads to where a real arm stands now; a simulated arm has its own start.
+
+    Args:
+        setup: what is driven.
+        arm: connected.
+    """
+    q = arm.read().q
+    return replace(setup, start=q) if setup.real and np.isfinite(q).all() else setup
 
 
 def next_arm(setup: DriveSetup, before: DriveSetup, arm: Arm, clock: Clock) -> Arm:

@@ -26,7 +26,7 @@ from latentarm.errors import UserError
 from latentarm.untrusted.terminal import one_line
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
-from latentarm.web.arm_process.driven_arm import first_arm, next_arm
+from latentarm.web.arm_process.driven_arm import first_arm, from_where_it_stands, next_arm
 from latentarm.web.arm_process.help import USUAL_HELP
 from latentarm.web.arm_process.lost_arm import reconnect
 from latentarm.web.arm_process.recording import EpisodeWriter
@@ -83,6 +83,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
             # It may have gone since the server looked at it; pages hear that this process has ended.
             sys.stderr.write(f"latentarm: {one_line(str(error))}\n")
             raise SystemExit(2) from error
+        setup = from_where_it_stands(setup, arm)
         # Nothing loaded by now is ever garbage, so the collector need not scan it.
         gc.collect()
         gc.freeze()
@@ -153,6 +154,8 @@ def _begun_again(
 def _other_run(spec: Spec, before: DriveSetup, arm: Arm, clock: Clock) -> tuple[DriveSetup, Arm]:
     setup = load_setup(spec)
     setup.step()
+    if setup.real:
+        setup = replace(setup, start=before.start)
     return setup, next_arm(setup, before, arm, clock)
 
 

@@ -6,7 +6,7 @@ from typing import Literal, final
 from latentarm.arms.contract import Arm
 from latentarm.control.loop import stop_of
 from latentarm.control.step import Step
-from latentarm.types import GripperAsk, StepRecord
+from latentarm.types import GripperAsk, StepRecord, Stop
 from latentarm.web.arm_process.episodes import Episodes
 from latentarm.web.arm_process.hand_guiding import HandGuiding
 from latentarm.web.arm_process.lost_arm import LostArm
@@ -33,6 +33,7 @@ class Standing:
         self._say = say
         self._guiding = HandGuiding(arm, step.robot.gripper, step.safety)
         self._connection = LostArm(arm)
+        self._pressed = arm.status().phase == "emergency_stop"
 
     @property
     def guiding(self) -> Guiding | None:
@@ -100,6 +101,21 @@ class Standing:
                 self._step.refuse(stop_of(status))
         if self._episodes.by_hand and not self._guiding.recordable:
             self._episodes.end()
+        self._follow_emergency_stop()
         if self._connection.look() == "found" and self._step.stopped is not None:
             self._step.refuse(stop_of(self._arm.status()))
             self._say(Notice(code="reconnected"))
+
+    def _follow_emergency_stop(self) -> None:
+        """Tell that it was pressed or released, whatever the arm was stopped for before."""
+        status = self._arm.status()
+        pressed = status.phase == "emergency_stop"
+        if pressed == self._pressed or self._step.stopped is None:
+            return
+        self._pressed = pressed
+        if pressed:
+            self._step.refuse(stop_of(status))
+        else:
+            self._step.refuse(
+                Stop("The emergency stop on the arm is released.", code="emergency_stop_released")
+            )

@@ -90,6 +90,12 @@ def serve(
 
     for sentence in notices(setup.task.robot):
         say(sentence)
+    if setup.real:
+        speeds = config.spec.speeds
+        say(
+            f"No joint turns faster than {speeds.joint:g} rad/s, and no part of the arm moves faster than"
+            f" {100 * speeds.link:g} cm/s."
+        )
     if config.spec.zones:
         slow = ", ".join(f"{zone.name} ({100 * zone.speed:g} cm/s)" for zone in config.spec.zones)
         say(f"The arm is slow in these zones: {slow}.")

@@ -28,6 +28,7 @@ export function attachLostArm(connection, lease) {
   show();
 
   return {
+    again,
     /** Its place among the choices of a switch. @returns {Choice[]} */
     choices() {
       return connection.state?.lost && free() ? [{ id: "lost-again", label: say("connection.again"), act: again }] : [];

@@ -168,6 +168,11 @@ export function attachStatus(parts, connection) {
       refusedUntil = performance.now() + REFUSED_MS;
       show();
     },
+    /** What a press was refused for is so no longer. */
+    allowed() {
+      refusedUntil = -Infinity;
+      show();
+    },
     /** @param {() => boolean} isSlow whether this page itself was too slow a moment ago */
     watch(isSlow) {
       slow = isSlow;

@@ -9,19 +9,29 @@ import { say } from "../layout/words.js";
 /**
  * @param {{panel: HTMLElement, facts: HTMLElement, boxes: HTMLInputElement[], why: HTMLElement}} parts
  * @param {Connection} connection
+ * @param {() => void} confirmed is told when nothing is left to confirm
  */
-export function attachChecklist(parts, connection) {
+export function attachChecklist(parts, connection, confirmed) {
   const done = () => !connection.welcome?.real || parts.boxes.every((box) => box.checked);
+  let lost = false;
   const show = () => {
     const real = connection.welcome?.real ?? null;
-    parts.panel.hidden = done();
+    // An arm that is not connected is connected first.
+    parts.panel.hidden = done() || lost;
     parts.facts.replaceChildren(...(real?.facts ?? []).flatMap(({ name, value }) => [create("dt", { textContent: name }), create("dd", { textContent: value })]));
     if (done()) parts.why.hidden = true;
   };
-  for (const box of parts.boxes) box.addEventListener("change", show);
+  for (const box of parts.boxes) {
+    box.addEventListener("change", () => {
+      show();
+      if (done()) confirmed();
+    });
+  }
   connection.addEventListener("welcome", show);
   connection.addEventListener("state", () => {
-    if (!connection.state?.lost || !parts.boxes.some((box) => box.checked)) return;
+    const now = Boolean(connection.state?.lost);
+    if (now === lost) return;
+    lost = now;
     // It may have been switched off, moved, or given something else to carry.
     for (const box of parts.boxes) box.checked = false;
     show();

@@ -76,13 +76,14 @@ attachCard(connection, settings);
 const checklist = attachChecklist({
   panel: byId("checklist"), facts: byId("checklist-facts"), why: byId("checklist-why"),
   boxes: ["stop", "area", "payload"].map((id) => byId(`checklist-${id}`, HTMLInputElement)),
-}, connection);
+}, connection, status.allowed);
 
 /** This page drives first, if nobody else does, and then enables the arm: one press for both. */
 const enable = () => {
   // Behind a dialog nothing moves. A press that enables asks nobody for anything.
   if (dialogIsOpen()) return;
-  if (!checklist.done()) {
+  if (connection.state?.lost) lostArm.again();
+  else if (!checklist.done()) {
     checklist.refuse();
     status.refused("checklist.first");
   }

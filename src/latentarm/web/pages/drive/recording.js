@@ -15,8 +15,7 @@ export function recordingWords({ recording, you, phase, guiding }) {
   const episodes = recording?.episodes ?? 0;
   // An arm with a mode of its own for guiding by hand moves without being enabled.
   const still = (phase === "disengaged" || phase === "neutral_needed") && (guiding === null || guiding === "offered");
-  if (recording?.on && still) return say("recording.waiting", { episode: episodes + 1 });
-  if (recording?.on) return say("recording.on", { episode: episodes + 1, seconds: Math.floor(recording.samples / RATE_HZ) });
+  if (recording?.on) return say(still ? "recording.waiting" : "recording.on", { episode: episodes + 1, seconds: Math.floor(recording.samples / RATE_HZ) });
   if (!you) return say("recording.not_you");
   return episodes ? say("recording.kept", { count: episodes }) : say("recording.none");
 }
