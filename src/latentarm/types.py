@@ -133,7 +133,7 @@ class StatedGripper:
     """What somebody states of a gripper; see `latentarm.robots.gripper.Gripper`.
 
     Attributes:
-        joints: of the robot's model, that move its fingers or its jaw.
+        joints: of the robot's model, that move its fingers or its jaw; empty where the model has none.
         width: the largest opening, m.
         speed: the fastest change of the opening, m/s.
         force: the largest force between the fingers, N.

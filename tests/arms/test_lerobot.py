@@ -381,7 +381,7 @@ def test_what_looking_refuses_connecting_refuses(
 def test_a_missing_motor_or_port_is_one_sentence(arm: LerobotArm, bus: FeetechBus, ports: Path) -> None:
     bus.remove(4)
     for ask in (arm.look, arm.connect):
-        with pytest.raises(UserError, match="The motors wrist_flex of so101_follower do not answer on .*check their cables"):
+        with pytest.raises(UserError, match=r"^The motors wrist_flex of .* do not answer on .*cables\.$"):
             ask()
     ports.unlink()
     with pytest.raises(UserError, match="cannot be used for so101_follower: see that the arm is connected"):

@@ -54,12 +54,20 @@ def test_a_jaw_that_turns_closes_and_opens_in_physics(tmp_path: Path) -> None:
     np.testing.assert_allclose(arm.read().q, robot.home, atol=0.01)
 
 
+def test_a_gripper_that_the_model_lacks_can_be_stated_and_is_not_simulated(tmp_path: Path) -> None:
+    robot = _robot(tmp_path, joints=[])
+    assert robot.gripper is not None
+    assert robot.gripper.joints == ()
+    with pytest.raises(UserError, match="has no joints in the model"):
+        MujocoArm(robot, robot.home, SimulatedClock().now_s)
+
+
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
         ({"joints": ["thumb"]}, "thumb"),
         ({"joints": ["pan"]}, "driven as one of the arm's"),
-        ({"joints": []}, "list of names"),
+        ({"joints": [1]}, "list of names"),
         ({"joints": "gripper"}, "list of names"),
         ({"width_m": -0.1}, "above zero"),
         ({"width_mm": 100}, "width_mm"),

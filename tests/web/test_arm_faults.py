@@ -56,6 +56,7 @@ def test_an_emergency_stop_is_shown_and_enabling_waits_for_its_release(desk):
     assert moving(desk, 0.6, 1.0)
     assert PRESSED in said(reported(desk, 1.2))
     assert PRESSED in said(reported(desk, 1.7))
+    assert "is released" in said(reported(desk, 2.3))
     assert not moving(desk, 1.02, 2.5)
     assert moving(desk, 2.8, 3.4)
 

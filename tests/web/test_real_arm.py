@@ -12,10 +12,14 @@ from latentarm.errors import UserError
 from latentarm.robots.panda import panda
 from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
-from latentarm.web.arm_process.driven_arm import first_arm, next_arm
+from latentarm.web.arm_process.driven_arm import first_arm, from_where_it_stands, next_arm
 from latentarm.web.server.addresses import TeleopConfig
 from latentarm.web.server.app import serve
 from latentarm.web.server.loaded_run import LoadedRun
+
+ONE_JOINT = """<mujoco><compiler angle="radian"/><worldbody><body>
+<joint name="hinge" axis="0 1 0" range="-1 1"/><geom type="capsule" size="0.02 0.2" pos="0 0 0.2"/>
+<site name="tool" pos="0 0 0.4"/></body></worldbody>{keys}</mujoco>"""
 
 NOWHERE = "wooden://127.0.0.1:1"
 
@@ -97,6 +101,31 @@ def test_a_real_arm_is_connected_once_and_kept_for_the_same_robot(server, traine
             next_arm(other, before, arm, clock)
     finally:
         arm.close()
+
+
+def test_the_way_back_leads_to_where_a_real_arm_stood(server):
+    setup = load_setup(Spec(arm=server.address))
+    arm = first_arm(setup, MonotonicClock())
+    try:
+        np.testing.assert_allclose(from_where_it_stands(setup, arm).start, server.positions(), atol=1e-6)
+    finally:
+        arm.close()
+    simulated = load_setup(Spec())
+    assert from_where_it_stands(simulated, first_arm(simulated, MonotonicClock())) is simulated
+
+
+def test_home_is_offered_only_where_the_robot_states_one(tmp_path):
+    limits = tmp_path / "limits.toml"
+    limits.write_text(
+        "tool_speed_m_per_s = 1.0\n[joints.hinge]\nvelocity_rad_per_s = 2.0\nacceleration_rad_per_s2 = 10.0\n"
+        "jerk_rad_per_s3 = 1000.0\n"
+    )
+    key = '<keyframe><key name="home" qpos="0.3"/></keyframe>'
+    for named, keys in ((False, ""), (True, key)):
+        model = tmp_path / f"{named}.xml"
+        model.write_text(ONE_JOINT.format(keys=keys))
+        setup = load_setup(Spec(arm=NOWHERE, robot=RobotOptions(str(model), limits=limits)))
+        assert (LoadedRun(setup, None).built_in("home", "Home") is not None) == named
 
 
 @pytest.mark.clock

@@ -83,8 +83,8 @@ class MujocoArm(SimulatedArm, SceneArm):
         scene: what stands about the arm, in its base frame; None where there is nothing, not even a table.
 
     Raises:
-        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits; or the model
-            states no torque limit for a joint.
+        UserError: ``state`` has the wrong shape, is not finite, or lies outside the limits; the model
+            states no torque limit for a joint; or the gripper has no joints in it.
     """
 
     def __init__(
@@ -96,6 +96,11 @@ class MujocoArm(SimulatedArm, SceneArm):
         scene: Scene | None = None,
     ) -> None:
         check_start(robot, state)
+        if robot.gripper is not None and not robot.gripper.joints:
+            raise UserError(
+                f"The gripper of {robot.name} has no joints in the model, so physics cannot move it: choose"
+                " --arm kinematic, or leave [gripper] out of the limits file."
+            )
         self._imperfections = imperfections or Imperfections()
         self._model, found = _world(robot, state, self._imperfections.payload_kg, scene)
         self._positions = self._model.jnt_qposadr[found.joints]

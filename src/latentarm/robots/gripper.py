@@ -10,8 +10,8 @@ class Gripper:
     """Parallel fingers that move by the same amount, or one jaw that turns.
 
     Attributes:
-        joints: of its fingers in the robot's model. Where they slide, fingers meet at zero, and each moves by
-            its share of the opening.
+        joints: of its fingers in the robot's model; empty where the model does not contain it. Where they
+            slide, fingers meet at zero, and each moves by its share of the opening.
         width_m: the largest opening, m.
         speed_m_s: the fastest change of the opening, m/s.
         force_n: the largest force with which the fingers press together, N.

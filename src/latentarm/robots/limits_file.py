@@ -230,7 +230,10 @@ def _gripper(entry: object, where: str) -> StatedGripper:
     }
     if min(figures.values()) <= 0.0:
         raise UserError(f"{where}: the figures of {GRIPPER} must be above zero.")
-    joints = cast("list[object]", given["joints"]) if isinstance(given["joints"], list) else []
-    if not joints or not all(isinstance(joint, str) for joint in joints):
-        raise UserError(f'{where}: {GRIPPER}.joints must be a list of names, such as ["gripper"].')
+    joints = cast("list[object]", given["joints"]) if isinstance(given["joints"], list) else [None]
+    if not all(isinstance(joint, str) for joint in joints):
+        raise UserError(
+            f'{where}: {GRIPPER}.joints must be a list of names, such as ["gripper"], or [] where the model'
+            " has no gripper."
+        )
     return StatedGripper(joints=tuple(map(str, joints)), **figures)
