@@ -35,7 +35,7 @@ def from_where_it_stands(setup: DriveSetup, arm: Arm) -> DriveSetup:
         arm: connected.
     """
     q = arm.read().q
-    return replace(setup, start=q) if setup.real and np.isfinite(q).all() else setup
+    return replace(setup, start=np.array(q)) if setup.real and np.isfinite(q).all() else setup
 
 
 def next_arm(setup: DriveSetup, before: DriveSetup, arm: Arm, clock: Clock) -> Arm:
