@@ -11,8 +11,8 @@ import { freeName, isBusy, leftWords, progressShare, progressWords } from "./tra
 
 /** @import {ClientMessage, Lesson, Recorded, LearningState} from "../connection/messages.js" */
 
-/** How long a run that was asked for may take to be there, ms. */
-const LOADING_MS = 20_000;
+/** How long a run that was asked for may take to be there, ms: checking it may take a minute, and then it is loaded. */
+const LOADING_MS = 90_000;
 /** Episodes without which nothing can be trained. */
 const FEWEST = 3;
 
