@@ -77,7 +77,7 @@ def test_a_run_begins_with_the_first_enable_and_its_time_ends_with_its_outcome()
     assert seen(run, 20.0) == (2, "success", 3.5)
 
 
-def test_what_becomes_of_things_counts_whoever_moves_the_arm():
+def test_progress_with_things_counts_on_the_way_back_too():
     run = run_of(Table(0.3))
     assert seen(run, 10.0, steered=False) == (1, None, 0.0)
 
