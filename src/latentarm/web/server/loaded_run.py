@@ -95,7 +95,7 @@ class LoadedRun:
             id=page,
             dof=setup.task.robot.dof,
             latent_dim=self.latent_dim,
-            robot=setup.task.robot.name,
+            robot=Path(setup.task.robot.name).name,  # of a model file without its folder
             run=self.name,
             profiles=self.profiles,
             modes=setup.modes,
