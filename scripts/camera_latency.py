@@ -189,7 +189,7 @@ def measure(browser: Browser, address: str, seconds: float, loss: float, seed: i
         "deadlines_met": round(1.0 - watcher.state["late_share"], 5),
         "enabled_s": round(watcher.enabled_s, 1),
         "presses_of_enable": presses,
-        "stops": dict(watcher.stops),
+        "stops": watcher.stops,
         "load_average": os.getloadavg()[0],
     }
 

@@ -105,7 +105,7 @@ def endure(browser: Browser, address: str, clock: ArmClock, minutes: float, seed
         "arm_s": round(arm_s, 1),
         "enabled_s": round(watcher.enabled_s, 1),
         "presses_of_enable": presses,
-        "stops": dict(watcher.stops),
+        "stops": watcher.stops,
         "hand_mm": [round(1e3 * min(widths), 1), round(1e3 * max(widths), 1)],
         "deadlines_met": round(1.0 - watcher.state["late_share"], 5),
     }

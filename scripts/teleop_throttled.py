@@ -39,13 +39,13 @@ class Watcher:
     Attributes:
         state: the newest.
         enabled_s: how long it was enabled, s.
-        stops: how often it stopped, by the reason's code.
+        stops: when it stopped, s of the monotonic clock, and the code of the reason.
     """
 
     def __init__(self) -> None:
         self.state: dict[str, Any] = {}
         self.enabled_s = 0.0
-        self.stops: Counter[str] = Counter()
+        self.stops: list[tuple[float, str]] = []
 
     @property
     def enabled(self) -> bool:
@@ -65,7 +65,7 @@ class Watcher:
                 self.enabled_s += (now_s - since_s) if before else 0.0
                 since_s = now_s
                 if before and not self.enabled and message["reason"] is not None:
-                    self.stops[message["reason"]["code"]] += 1
+                    self.stops.append((round(now_s, 2), message["reason"]["code"]))
 
 
 def drive(browser: Browser, address: str, rate: float, minutes: float) -> dict[str, Any]:
@@ -99,7 +99,8 @@ def drive(browser: Browser, address: str, rate: float, minutes: float) -> dict[s
         drawn = page.evaluate("frames_drawn") - drawn
     listener.join()
     page.context.close()
-    late = watcher.stops["input_late"]
+    stops = Counter(code for _, code in watcher.stops)
+    late = stops["input_late"]
     return {
         "rate": rate,
         "enabled_s": round(watcher.enabled_s, 1),
@@ -107,7 +108,7 @@ def drive(browser: Browser, address: str, rate: float, minutes: float) -> dict[s
         "late_stops_per_minute": round(60.0 * late / watcher.enabled_s, 1) if watcher.enabled_s else None,
         "presses_of_enable": presses,
         "frames_per_second": round(drawn / took_s, 1),
-        "stops": dict(watcher.stops),
+        "stops": dict(stops),
     }
 
 
