@@ -30,6 +30,10 @@ def test_simulated_arms_and_schemes_of_real_ones_are_listed(capsys):
     listed = json.loads(capsys.readouterr().out)
     assert {"kinematic", "mujoco"} <= set(listed["simulated"])
     assert "wooden" in listed["real"]
+    assert main(["arms", "list"]) == 0
+    table = capsys.readouterr().out
+    assert "franka://HOST " in table
+    assert "lerobot://TYPE?port=/dev/ttyACM0&id=NAME" in table
 
 
 def test_an_arm_that_can_be_driven_is_described_and_does_not_move(server, capsys):

@@ -37,18 +37,12 @@ def replaced(name: str, make: Callable[[Path], None]) -> Callable[[Path], None]:
     return change
 
 
-def piped_dataset(run: Path) -> None:
-    os.mkfifo(run / "pipe")
-    config(demonstrations=str(run / "pipe"))(run)
-
-
 HOSTILE = {
     "a pipe": replaced("config.json", os.mkfifo),
     "endless": replaced("config.json", lambda path: path.symlink_to("/dev/zero")),
     "deep": content('{"a":' * 100_000),
     "infinite": config(held_out=[float("inf")]),
     "weights of a pipe": replaced("model.safetensors", os.mkfifo),
-    "a dataset that is a pipe": piped_dataset,
     "a long name": config(demonstrations="x" * 60_000),
     "an escape": config(demonstrations="\x1b]0;owned\x07"),
     "a name that no path has": config(demonstrations="a\0b"),
@@ -91,6 +85,18 @@ def test_a_hostile_run_is_refused_and_driving_goes_on(among_hostile, kinds):
         page.enable()
         page.u = [1.0, 0.0]
         page.wait(lambda state: np.linalg.norm(np.array(state["tool"]) - before) > 0.02, within_s=20.0)
+
+
+@pytest.mark.slow
+def test_a_run_whose_dataset_is_a_pipe_is_driven_without_it(serve, trained, tmp_path):
+    shutil.copytree(trained, tmp_path / "mine")
+    piped = Path(shutil.copytree(trained, tmp_path / "runs" / "piped"))
+    os.mkfifo(piped / "pipe")
+    config(demonstrations=str(piped / "pipe"))(piped)
+    with serve(Spec(tmp_path / "mine", out=tmp_path)) as site, site.page() as page:
+        page.send(type="run", run="piped")
+        page.wait(lambda _: page.welcome["run"] == "piped", within_s=60.0)
+        page.enable()
 
 
 def test_while_the_arm_moves_no_run_is_tried(among_hostile):

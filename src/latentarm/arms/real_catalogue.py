@@ -46,6 +46,16 @@ REAL_ARMS: Final = Catalogue(
     _factory,
 )
 
+_FORMS: Final = {
+    "lerobot": "lerobot://TYPE?port=/dev/ttyACM0&id=NAME",
+    "ros2": "ros2://HOST:PORT?controller=/NAME",
+}
+
+
+def address_form(scheme: str) -> str:
+    """How an address with this scheme is written; capitals stand for what it names."""
+    return _FORMS.get(scheme, f"{scheme}://HOST")
+
 
 def check_address(address: str) -> None:
     """Check that there is a driver for an address.

@@ -12,7 +12,7 @@ from latentarm.arms.address import is_address
 from latentarm.arms.catalogue import ARMS
 from latentarm.arms.checking import look_at
 from latentarm.arms.real import Findings
-from latentarm.arms.real_catalogue import REAL_ARMS, make_real_arm
+from latentarm.arms.real_catalogue import REAL_ARMS, address_form, make_real_arm
 from latentarm.commands.options import EndEffector, JointSpeed, Json, LimitsFile, LinkSpeed
 from latentarm.commands.output import print_renderables, refuse, say
 from latentarm.control.clock import MonotonicClock
@@ -107,6 +107,6 @@ def list_arms(json: Json = False) -> int:
     for name in ARMS:
         table.add_row(name, "simulated")
     for name in REAL_ARMS:
-        table.add_row(f"{name}://HOST", "real")
+        table.add_row(address_form(name), "real")
     print_renderables(table)
     return 0

@@ -230,10 +230,10 @@ def _gripper(entry: object, where: str) -> StatedGripper:
     }
     if min(figures.values()) <= 0.0:
         raise UserError(f"{where}: the figures of {GRIPPER} must be above zero.")
-    joints = cast("list[object]", given["joints"]) if isinstance(given["joints"], list) else [None]
-    if not all(isinstance(joint, str) for joint in joints):
+    joints = given["joints"]
+    if not isinstance(joints, list) or not all(isinstance(one, str) for one in cast("list[object]", joints)):
         raise UserError(
             f'{where}: {GRIPPER}.joints must be a list of names, such as ["gripper"], or [] where the model'
             " has no gripper."
         )
-    return StatedGripper(joints=tuple(map(str, joints)), **figures)
+    return StatedGripper(joints=tuple(cast("list[str]", joints)), **figures)

@@ -85,7 +85,7 @@ test("after a Stop, or what else ends it, nothing asks for it again", () => {
 
 test("an arm that is not connected is not said to need Enable", () => {
   const connection = { open: true, silenceMs: 0, engaged: false, drove: true, own: { has: () => false }, welcome: welcomeOf() };
-  const page = { halted: null, turnedAway: "", canEnable: true, refused: null, late: null };
+  const page = { halted: null, turnedAway: "", canEnable: true, unconfirmed: false, refused: null, late: null };
   const reason = { code: "arm_off", parameters: {} };
   const text = (fields) => statusOf({ ...connection, state: stateOf({ lost: true, phase: "disengaged", reason, ...fields }) }, page).text;
   for (const fields of [{ you: true }, { driver: null }]) assert.equal(text(fields), "The arm is not connected.");
@@ -93,7 +93,7 @@ test("an arm that is not connected is not said to need Enable", () => {
 
 test("what it does is said to the person and to those who watch", () => {
   const connection = { open: true, silenceMs: 0, engaged: false, drove: true, own: { has: () => false }, welcome: welcomeOf() };
-  const page = { halted: null, turnedAway: "", canEnable: false, refused: null, late: null };
+  const page = { halted: null, turnedAway: "", canEnable: false, unconfirmed: false, refused: null, late: null };
   const text = (fields) => statusOf({ ...connection, state: stateOf({ guiding: "on", phase: "disengaged", ...fields }) }, page).text;
   assert.match(text({ you: true }), /moved by hand/);
   assert.match(text({ you: false, driver: "x", driver_name: "Ada" }), /Ada is guiding/);

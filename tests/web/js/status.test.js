@@ -160,6 +160,10 @@ for (const [who, fields, words, page] of [
   [WATCHER, { phase: "ready", note: note("at_start") }, "The arm is back at the start."],
   [DRIVER, { reason: ADA }, "The arm is not enabled. Press Enable to continue.", { refused: "halted.not_enabled" }],
   [NOBODY, { reason: ADA }, "The arm is not enabled. Press Enable to continue.", { refused: "halted.not_enabled" }],
+  [DRIVER, { reason: ADA }, "Ada pressed Stop. Confirm the points under “Before a real arm moves”, then press Enable.", { unconfirmed: true }],
+  [NOBODY, { reason: ADA }, "Ada pressed Stop. Confirm the points under “Before a real arm moves”, then press Enable.", { unconfirmed: true }],
+  [WATCHER, { reason: ADA }, "Ada pressed Stop. Ada is driving; you are watching.", { unconfirmed: true }],
+  [DRIVER, { reason: ADA, lost: true }, "Ada pressed Stop.", { unconfirmed: true }],
   [WATCHER, { phase: "moving" }, "You are watching. Press “Ask to drive” first.", { refused: "halted.not_enabled" }],
 ]) {
   const about = who === DRIVER ? "the driver" : who === WATCHER ? "a watcher" : "a page while nobody drives";
@@ -170,7 +174,7 @@ for (const [who, fields, words, page] of [
     const connection = {
       open: true, silenceMs: 0, engaged: ["ready", "moving"].includes(state.phase), state, drove: who.you, own, welcome: welcomeOf(),
     };
-    const shown = { halted: null, turnedAway: "", canEnable: true, refused: null, late: "connection", ...page };
+    const shown = { halted: null, turnedAway: "", canEnable: true, unconfirmed: false, refused: null, late: "connection", ...page };
     assert.equal(statusOf(connection, shown).text, words);
   });
 }

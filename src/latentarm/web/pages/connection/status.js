@@ -24,6 +24,7 @@ const REFUSED_MS = 4000;
  * @property {HaltReason | null} halted why this page itself stopped the arm
  * @property {string} turnedAway why the server refused the page
  * @property {boolean} canEnable whether it has a button that enables
+ * @property {boolean} unconfirmed whether there are points to confirm before Enable does anything
  * @property {WordKey | null} refused why a press did nothing a moment ago
  * @property {Reader["late"]} late what was too slow, where an input of this page came late
  */
@@ -37,7 +38,8 @@ const REFUSED_MS = 4000;
  * @param {PageState} page
  * @returns {{phase: string, text: string}}
  */
-export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome }, { halted, turnedAway, canEnable, refused, late }) {
+export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome }, page) {
+  const { halted, turnedAway, refused, late } = page;
   if (turnedAway && state === null) return { phase: "lost", text: turnedAway };
   if (!open) return { phase: "lost", text: say(drove === null ? "status.unreached" : drove ? "status.lost" : "status.lost_watching") };
   if (state === null) return { phase: "connecting", text: say("status.connecting") };
@@ -47,7 +49,7 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
   if (refused && !engaged) return { phase: "disengaged", text: say(refused) };
   if (halted !== null && you && !engaged) return { phase: "disengaged", text: say(`halted.${halted}`) };
   const reader = { you, own, late };
-  const text = you ? driverWords(state, canEnable, reader) : watcherWords(state, canEnable, whoAsks(state, welcome?.id) === "you", reader);
+  const text = you ? driverWords(state, page, reader) : watcherWords(state, page, whoAsks(state, welcome?.id) === "you", reader);
   return { phase: state.phase, text };
 }
 
@@ -55,10 +57,10 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
  * What the arm does, and what its driver does next.
  *
  * @param {State} state
- * @param {boolean} canEnable
+ * @param {PageState} page
  * @param {Reader} reader
  */
-function driverWords({ phase, note, reason, held_back, zone, returning, bound_for, let_go_first, copilot, guiding, lost }, canEnable, reader) {
+function driverWords({ phase, note, reason, held_back, zone, returning, bound_for, let_go_first, copilot, guiding, lost }, { canEnable, unconfirmed }, reader) {
   if (guiding === "on") return say("status.guided");
   if (concerns(note, true)) return sayTo(note, reader);
   const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
@@ -73,7 +75,7 @@ function driverWords({ phase, note, reason, held_back, zone, returning, bound_fo
       return say(let_go_first ? "status.let_go" : "status.ready");
     case "moving": return cause === null ? say("status.moving") : say("status.held_back", { cause });
     case "stopping": return say("status.stopping", parameters);
-    default: return canEnable && !lost ? say(`status.${phase}`, parameters) : parameters.reason;
+    default: return canEnable && !lost ? say(unconfirmed ? "status.unconfirmed" : `status.${phase}`, parameters) : parameters.reason;
   }
 }
 
@@ -81,11 +83,11 @@ function driverWords({ phase, note, reason, held_back, zone, returning, bound_fo
  * What the arm does, for those who do not drive it.
  *
  * @param {State} state
- * @param {boolean} canEnable
+ * @param {PageState} page
  * @param {boolean} asked whether this page has asked to drive
  * @param {Reader} reader
  */
-function watcherWords({ phase, note, reason, held_back, zone, returning, bound_for, driver, driver_name, guiding, lost }, canEnable, asked, reader) {
+function watcherWords({ phase, note, reason, held_back, zone, returning, bound_for, driver, driver_name, guiding, lost }, { canEnable, unconfirmed }, asked, reader) {
   if (concerns(note, false)) return sayTo(note, reader);
   const name = driver_name === null ? say("driver.somebody_else") : sayName(driver_name);
   if (guiding === "on") return say("status.guided_watching", { name });
@@ -99,7 +101,10 @@ function watcherWords({ phase, note, reason, held_back, zone, returning, bound_f
     case "stopping": return say("status.stopping", parameters);
     default:
   }
-  if (driver === null) return canEnable && !lost ? say("status.disengaged_nobody", parameters) : parameters.reason;
+  if (driver === null) {
+    if (!canEnable || lost) return parameters.reason;
+    return say(unconfirmed ? "status.unconfirmed" : "status.disengaged_nobody", parameters);
+  }
   return say(asked ? "status.asked" : "status.watching", parameters);
 }
 
@@ -122,6 +127,8 @@ export function attachStatus(parts, connection) {
   let heard = false;
   /** Whether this page itself was too slow a moment ago. */
   let slow = () => false;
+  /** Whether there are points to confirm before Enable does anything. */
+  let unconfirmed = () => false;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   const canEnable = document.getElementById("enable") !== null;
@@ -136,7 +143,7 @@ export function attachStatus(parts, connection) {
     // What this page did counts for nothing once somebody else drives.
     if (state !== null && !state.you) halted = null;
     const refused = performance.now() < refusedUntil ? why : null;
-    const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, refused, late });
+    const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, unconfirmed: unconfirmed(), refused, late });
     if (parts.line.dataset.phase !== phase) parts.line.dataset.phase = phase;
     if (text === wanted) return;
     wanted = text;
@@ -176,6 +183,11 @@ export function attachStatus(parts, connection) {
     /** @param {() => boolean} isSlow whether this page itself was too slow a moment ago */
     watch(isSlow) {
       slow = isSlow;
+    },
+    /** @param {() => boolean} isUnconfirmed whether there are points to confirm before Enable does anything */
+    ask(isUnconfirmed) {
+      unconfirmed = isUnconfirmed;
+      show();
     },
   };
 }

@@ -77,6 +77,7 @@ const checklist = attachChecklist({
   panel: byId("checklist"), facts: byId("checklist-facts"), why: byId("checklist-why"),
   boxes: ["stop", "area", "payload"].map((id) => byId(`checklist-${id}`, HTMLInputElement)),
 }, connection, status.allowed);
+status.ask(() => !checklist.done());
 
 /** This page drives first, if nobody else does, and then enables the arm: one press for both. */
 const enable = () => {
