@@ -19,7 +19,6 @@ import sys
 import tempfile
 import threading
 import time
-from collections import Counter
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -114,13 +113,13 @@ class Seen:
     Attributes:
         ticks: of the loop.
         moving: ticks in which the arm was sent a motion.
-        stops: why the arm was stopped, and how often.
+        stops: when the arm was stopped, s of the monotonic clock, and why.
         widths: least and largest opening of the hand, m.
     """
 
     ticks: int = 0
     moving: int = 0
-    stops: Counter[str] = field(default_factory=Counter)
+    stops: list[tuple[float, str]] = field(default_factory=list)
     widths: list[float] = field(default_factory=lambda: [1.0, 0.0])
 
     def see(self, record: StepRecord) -> None:
@@ -146,7 +145,7 @@ def drive(clock_path: str, seed: int, told: Connection) -> None:
         stopped = step.stopped
         why = "" if stopped is None else stopped.reason
         if why and not last[0]:
-            seen.stops[why] += 1
+            seen.stops.append((round(time.monotonic(), 2), why))
         last[0] = why
 
     loop = ControlLoop(step, arm, stick, clock, [observe])
@@ -234,7 +233,7 @@ def endure(clock: ArmClock, clock_path: Path, minutes: float, seed: int) -> dict
         "wall_s": time.monotonic() - wall_s,
         "ticks": seen.ticks,
         "moving_ticks": seen.moving,
-        "stops": dict(seen.stops),
+        "stops": seen.stops,
         "enabled_again": enabled_again,
         "hand_mm": [1e3 * width for width in seen.widths],
         "deadlines_met": met,

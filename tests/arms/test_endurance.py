@@ -1,6 +1,7 @@
 """The scripts that break everything about an arm many times, each thing once here: they run to their end."""
 
 import json
+import shutil
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
+CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 ONCE = ("--minutes", "0.05", "--tries", "1")
 
 pytestmark = [pytest.mark.slow, pytest.mark.clock]
@@ -49,3 +51,21 @@ def test_of_the_franka():
     assert ran["ticks"] > 100
     assert len(faults) == 5
     assert all(one["jump_mm_max"] < 0.5 and one["moved_before_enabling"] == 0 for one in faults)
+
+
+@pytest.mark.browser
+@pytest.mark.skipif(not any(map(shutil.which, CHROMIUM)), reason="no Chromium is installed")
+@pytest.mark.parametrize(
+    "arm",
+    [
+        pytest.param("franka", marks=needs("franky", "franky_sim", "playwright")),
+        pytest.param("ros2", marks=needs("roslibpy", "playwright")),
+        pytest.param("xarm", marks=needs("xarm", "playwright")),
+    ],
+)
+def test_of_the_page(arm):
+    found = json.loads(run("arm_page.py", "--arm", arm))
+    assert found["driving"]["enabled_s"] > 0.0
+    closed = found["page closed"]
+    assert closed["moves_when_enabled"] == 1
+    assert closed["rest_ms_max"] < 400.0

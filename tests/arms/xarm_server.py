@@ -299,6 +299,11 @@ class XArmServer:
         }
         return f"xarm://127.0.0.1:{self.ports[CONTROL]}?" + "&".join(f"{k}={v}" for k, v in given.items())
 
+    @property
+    def pid(self) -> int:
+        """Of the process."""
+        return self._process.pid
+
     def do(self, what: str, **order: Any) -> Any:
         """Give an order; the server's time, s, or what was asked for."""
         assert self._process.stdin is not None

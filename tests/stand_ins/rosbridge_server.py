@@ -438,6 +438,12 @@ class ServerProcess:
         self._pipe.send(None)
         self._process.join(10.0)
 
+    @property
+    def pid(self) -> int:
+        """Of the process."""
+        assert self._process.pid is not None
+        return self._process.pid
+
     def ask(self, what: str, *arguments: object) -> Any:
         """Call a method of the server, or read an attribute, and bring back what it gives."""
         self._pipe.send((what, arguments))

@@ -43,9 +43,6 @@ HOSTILE = {
     "deep": content('{"a":' * 100_000),
     "infinite": config(held_out=[float("inf")]),
     "weights of a pipe": replaced("model.safetensors", os.mkfifo),
-    "a long name": config(demonstrations="x" * 60_000),
-    "an escape": config(demonstrations="\x1b]0;owned\x07"),
-    "a name that no path has": config(demonstrations="a\0b"),
     "endless weights": replaced("model.safetensors", lambda path: path.symlink_to("/dev/zero")),
 }
 
@@ -76,9 +73,7 @@ def test_a_hostile_run_is_refused_and_driving_goes_on(among_hostile, kinds):
             why = said(page.state)
             assert why.count("\n") == 0
             assert "\x1b" not in why
-            assert any(
-                word in why for word in ("config.json", "model.safetensors", "dataset", "info.json")
-            ), (name, why)
+            assert any(word in why for word in ("config.json", "model.safetensors")), (name, why)
         assert among_hostile.control.alive
         assert page.welcome["run"] == "mine"
         before = np.array(page.state["tool"])
@@ -88,14 +83,20 @@ def test_a_hostile_run_is_refused_and_driving_goes_on(among_hostile, kinds):
 
 
 @pytest.mark.slow
-def test_a_run_whose_dataset_is_a_pipe_is_driven_without_it(serve, trained, tmp_path):
+@pytest.mark.parametrize(
+    "dataset", ["a pipe", "x" * 60_000, "\x1b]0;owned\x07", "a\0b"], ids=["pipe", "long", "escape", "no path"]
+)
+def test_a_run_is_driven_without_its_dataset(serve, trained, tmp_path, dataset):
     shutil.copytree(trained, tmp_path / "mine")
-    piped = Path(shutil.copytree(trained, tmp_path / "runs" / "piped"))
-    os.mkfifo(piped / "pipe")
-    config(demonstrations=str(piped / "pipe"))(piped)
+    run = Path(shutil.copytree(trained, tmp_path / "runs" / "other"))
+    if dataset == "a pipe":
+        os.mkfifo(run / dataset)
+        dataset = str(run / dataset)
+    config(demonstrations=dataset)(run)
     with serve(Spec(tmp_path / "mine", out=tmp_path)) as site, site.page() as page:
-        page.send(type="run", run="piped")
-        page.wait(lambda _: page.welcome["run"] == "piped", within_s=60.0)
+        page.send(type="run", run="other")
+        page.wait(lambda _: page.welcome["run"] == "other", within_s=60.0)
+        assert "\x1b" not in said(page.state)
         page.enable()
 
 
