@@ -37,6 +37,7 @@ from latentarm.control.loop import ControlLoop
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.punctuality import ask_for_priority, short_collections
 from latentarm.robots.panda import fr3
 from latentarm.types import FloatArray, Input, StepRecord
 
@@ -133,6 +134,7 @@ class Seen:
 
 def drive(clock_path: str, seed: int, told: Connection) -> None:
     """Drive in a process of its own, and do what is told."""
+    ask_for_priority()
     clock = ArmClock(Path(clock_path))
     robot, stick, seen = fr3(), Stick(seed), Seen()
     step = Step(robot, EndEffectorController(robot), SafetyConfig(), dt_s=0.01)
@@ -150,25 +152,26 @@ def drive(clock_path: str, seed: int, told: Connection) -> None:
 
     loop = ControlLoop(step, arm, stick, clock, [observe])
     threading.Thread(target=loop.run, daemon=True).start()
-    while True:
-        match told.recv():
-            case "enable":
-                stick.lost_at_s = np.inf
-                stick.neutral_until_s = clock.now_s() + 0.3
-                clock.wait_until(clock.now_s() + 0.1)
-                loop.enable()
-                told.send(True)
-            case "lose input":
-                stick.lost_at_s = clock.now_s()
-                told.send(True)
-            case "report":
-                late = loop.statistics()
-                told.send((seen, last[0], step.stopped is None, str(arm.status()), late.met_share))
-            case _:
-                loop.finish()
-                arm.close()
-                told.send(True)
-                return
+    with short_collections():
+        while True:
+            match told.recv():
+                case "enable":
+                    stick.lost_at_s = np.inf
+                    stick.neutral_until_s = clock.now_s() + 0.3
+                    clock.wait_until(clock.now_s() + 0.1)
+                    loop.enable()
+                    told.send(True)
+                case "lose input":
+                    stick.lost_at_s = clock.now_s()
+                    told.send(True)
+                case "report":
+                    late = loop.statistics()
+                    told.send((seen, last[0], step.stopped is None, str(arm.status()), late.met_share))
+                case _:
+                    loop.finish()
+                    arm.close()
+                    told.send(True)
+                    return
 
 
 @final

@@ -34,6 +34,7 @@ from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.errors import UserError
 from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.punctuality import ask_for_priority, short_collections
 from latentarm.robots.panda import panda
 from latentarm.robots.planar import planar
 from latentarm.robots.robot import Robot
@@ -119,6 +120,7 @@ class Stick(InputSource):
 
 def drive(address: str, robot: Robot, pipe: Connection) -> None:
     """In a process of its own: connect, and do what the other end of the pipe says."""
+    ask_for_priority()
     clock, stick = MonotonicClock(), Stick()
     arm = make_real_arm(address, robot, clock.now_s)
     arm.connect()
@@ -163,7 +165,8 @@ def drive(address: str, robot: Robot, pipe: Connection) -> None:
 
     threading.Thread(target=obey, daemon=True).start()
     pipe.send("connected")
-    loop.run()
+    with short_collections():
+        loop.run()
     arm.close()
 
 

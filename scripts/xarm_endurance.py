@@ -39,6 +39,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.kinematics.stillness import STILL_RAD_S
+from latentarm.punctuality import ask_for_priority, short_collections
 from latentarm.robots.robot import Robot
 from latentarm.types import Input, StepRecord
 
@@ -90,6 +91,7 @@ class Hand(InputSource):
 
 def drive(address: str, robot: Robot, orders: Connection) -> None:
     """Drive until told to finish: what the second process does."""
+    ask_for_priority()
     clock, hand = MonotonicClock(), Hand()
     arm = XArm(robot, parse_address(address), clock.now_s)
     arm.connect()
@@ -126,7 +128,8 @@ def drive(address: str, robot: Robot, orders: Connection) -> None:
             orders.send((stop is None, arm.status().phase, "" if stop is None else stop.reason))
 
     threading.Thread(target=obey, daemon=True).start()
-    figures = loop.run()
+    with short_collections():
+        figures = loop.run()
     arm.close()
     orders.send(
         {

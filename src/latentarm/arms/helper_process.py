@@ -12,23 +12,12 @@ import socket
 import subprocess
 import sys
 from collections.abc import Mapping
-from contextlib import suppress
 from typing import Any, Final, Self, cast, final
 
 from latentarm.errors import UserError
 
 _LARGEST: Final = 1 << 16
 """Bytes of a message."""
-
-
-_PRIORITY: Final = 10
-"""Lowest real-time priority."""
-
-
-def ask_for_priority() -> None:
-    """Run before ordinary processes, if the system allows it: a busy computer makes a helper late."""
-    with suppress(OSError):
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
 @final

@@ -1,6 +1,5 @@
 """Drive until the other end is gone; then bring the arm to rest."""
 
-import gc
 import signal
 from collections.abc import Mapping
 from typing import Any, Final, final
@@ -10,11 +9,12 @@ from threadpoolctl import threadpool_limits
 
 from latentarm.arms.catalogue import make_arm
 from latentarm.arms.contract import Arm
-from latentarm.arms.helper_process import MessagePort, ask_for_priority
+from latentarm.arms.helper_process import MessagePort
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.loop import ControlLoop
 from latentarm.errors import UserError
 from latentarm.kinematics.rotations import quaternion
+from latentarm.punctuality import ask_for_priority, short_collections
 from latentarm.types import StepRecord, StopCode
 from latentarm_process.driven import INPUT_TIMEOUT_S, Driven, Wanted, load
 from latentarm_process.inputs import PortInputs
@@ -92,13 +92,9 @@ def main() -> None:
             with arm:
                 drive = Drive(port, driven, arm)
                 ask_for_priority()
-                gc.collect()
-                gc.freeze()
-                port.send({"ready": True})
-                try:
+                with short_collections():
+                    port.send({"ready": True})
                     drive.run()
-                finally:
-                    gc.unfreeze()
     except UserError as error:
         port.send({"refused": str(error)})
 

@@ -17,12 +17,13 @@ from typing import Any, Final, final
 import numpy as np
 
 from latentarm.arms.contract import ArmPhase
-from latentarm.arms.helper_process import MessagePort, ask_for_priority
+from latentarm.arms.helper_process import MessagePort
 from latentarm.arms.lerobot.bus import GRIPPER, MotorsBus
 from latentarm.arms.lerobot.jaw import Jaw
 from latentarm.arms.lerobot.options import Options
 from latentarm.arms.lerobot.targets import Targets
 from latentarm.errors import UserError
+from latentarm.punctuality import ask_for_priority, short_collections
 from latentarm.types import FloatArray
 
 PERIOD_S: Final = 0.01
@@ -308,7 +309,8 @@ def main() -> None:
         return
     port.send({"joints": list(bus.joints), "gripper": GRIPPER in bus.motors})
     ask_for_priority()
-    Keeper(port, bus, setup).run()
+    with short_collections():
+        Keeper(port, bus, setup).run()
 
 
 if __name__ == "__main__":

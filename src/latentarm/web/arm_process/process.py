@@ -4,25 +4,24 @@
 sees whether it lives.
 """
 
-import gc
 import multiprocessing
 import os
 import signal
 import sys
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from types import FrameType
-from typing import Final, TypeVar, final
+from typing import TypeVar, final
 
 from threadpoolctl import threadpool_limits
 
 from latentarm.arms.contract import Arm
 from latentarm.control.clock import Clock, MonotonicClock
 from latentarm.errors import UserError
+from latentarm.punctuality import ask_for_priority, short_collections
 from latentarm.untrusted.terminal import one_line
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
@@ -46,9 +45,6 @@ from latentarm.web.protocol.report import Report, parse_report
 
 T = TypeVar("T")
 
-_PRIORITY: Final = 10
-"""Lowest real-time priority."""
-
 
 def run_control(spec: Spec, channel: Channel, server: int) -> None:
     """Drive until the server says so or is gone; then bring the arm to rest and return.
@@ -71,7 +67,7 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
     # Ctrl-C in a terminal reaches both processes: the server then ends this one in good order.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, end)
-    _ask_for_priority()
+    ask_for_priority()
     with threadpool_limits(1):
         setup = load_setup(spec)
         clock = MonotonicClock()
@@ -84,49 +80,42 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
             sys.stderr.write(f"latentarm: {one_line(str(error))}\n")
             raise SystemExit(2) from error
         setup = from_where_it_stands(setup, arm)
-        # Nothing loaded by now is ever garbage, so the collector need not scan it.
-        gc.collect()
-        gc.freeze()
         note: Notice | None = None
         try:
-            while True:
-                drive = Drive(setup, arm, channel, clock, writer, orphaned, steering, note)
-                note = None
-                match drive.run():
-                    case None:
-                        break
-                    case Reconnect():
-                        _, failed = _loaded(partial(reconnect, arm), None)
-                        note = failed or Notice(code="reconnected")
-                    case Reset():
-                        setup, arm, note = _begun_again(setup, arm, BeginTask(choice=None, anew=False), clock)
-                        steering.run = None
-                    case BeginTask() as order:
-                        setup, arm, note = _begun_again(setup, arm, order, clock)
-                        steering.run = None
-                    case ChooseProfile(name=name):
-                        setup, note = _loaded(partial(_other_profile, setup, name), setup)
-                    case ChooseRun(run=run):
-                        spec = replace(setup.spec, run=Path(run), profile=None, choice=0)
-                        before = arm
-                        (setup, arm), note = _loaded(
-                            partial(_other_run, spec, setup, arm, clock), (setup, arm)
-                        )
-                        if note is None:
-                            if arm is not before:
-                                before.close()
+            with short_collections():
+                while True:
+                    drive = Drive(setup, arm, channel, clock, writer, orphaned, steering, note)
+                    note = None
+                    match drive.run():
+                        case None:
+                            break
+                        case Reconnect():
+                            _, failed = _loaded(partial(reconnect, arm), None)
+                            note = failed or Notice(code="reconnected")
+                        case Reset():
+                            setup, arm, note = _begun_again(
+                                setup, arm, BeginTask(choice=None, anew=False), clock
+                            )
                             steering.run = None
-                            steering.mode, steering.axes = setup.first_mode(steering.help), 0
+                        case BeginTask() as order:
+                            setup, arm, note = _begun_again(setup, arm, order, clock)
+                            steering.run = None
+                        case ChooseProfile(name=name):
+                            setup, note = _loaded(partial(_other_profile, setup, name), setup)
+                        case ChooseRun(run=run):
+                            spec = replace(setup.spec, run=Path(run), profile=None, choice=0)
+                            before = arm
+                            (setup, arm), note = _loaded(
+                                partial(_other_run, spec, setup, arm, clock), (setup, arm)
+                            )
+                            if note is None:
+                                if arm is not before:
+                                    before.close()
+                                steering.run = None
+                                steering.mode, steering.axes = setup.first_mode(steering.help), 0
         finally:
             arm.close()
             writer.close()
-            gc.unfreeze()
-
-
-def _ask_for_priority() -> None:
-    """Run before ordinary processes, if the system allows it: a busy computer makes us late."""
-    with suppress(OSError, AttributeError):  # not allowed, or not supported by the system
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
 
 
 def _other_profile(setup: DriveSetup, name: str | None) -> DriveSetup:

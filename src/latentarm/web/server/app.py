@@ -20,6 +20,7 @@ from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.recordings import JOURNAL_SUFFIX
 from latentarm.errors import UserError
+from latentarm.punctuality import short_collections
 from latentarm.robots.notices import notices
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup, load_setup
 from latentarm.web.arm_process.process import ControlProcess
@@ -121,7 +122,8 @@ def serve(
                 " makes one, and `latentarm teleop RUN` drives it."
             )
         server = uvicorn.Server(server_config(gate, config, LOGGING))
-        with asyncio.Runner(loop_factory=server.config.get_loop_factory()) as runner:
+        # Every input passes through here.
+        with short_collections(), asyncio.Runner(loop_factory=server.config.get_loop_factory()) as runner:
             runner.run(serve_on(listening, server, limits_here()))
     except KeyboardInterrupt:
         say("The page is closed.")
