@@ -19,6 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
+from latentarm.punctuality import short_collections
+
 START = (0.0, -0.785398, 0.0, -2.356194, 0.0, 1.570796, 0.785398)
 """Where the joints are at first, rad."""
 
@@ -310,7 +312,8 @@ def _serve(host: str, lost_cycles: int, clock_file: str | None) -> None:
     with MujocoSimulator() as simulator:
         robot = simulator.add_robot(initial_q=START, kp=_STIFFNESS, kv=_DAMPING)
         hand = _Hand(robot)
-        with simulation_server(simulator, hostname_candidates=[host]) as server:
+        # An arm's controller never stops to collect garbage.
+        with simulation_server(simulator, hostname_candidates=[host]) as server, short_collections():
             print(json.dumps({"ready": True}), flush=True)  # noqa: T201
             due_s = time.monotonic()
             while True:

@@ -25,6 +25,7 @@ from ros2_controllers import SimulatedController, SimulatedGripper
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 
+from latentarm.punctuality import short_collections
 from latentarm.robots.robot import Robot
 from latentarm.testing.real_arms import StandIn
 from latentarm.types import FloatArray
@@ -455,7 +456,7 @@ class ServerProcess:
 
 
 def _serve_process(robot: Robot, setup: Setup | None, pipe: Connection) -> None:
-    with RosbridgeServer(robot, setup) as server:
+    with RosbridgeServer(robot, setup) as server, short_collections():
         server.recording = True
         pipe.send(server.address)
         while (asked := pipe.recv()) is not None:
