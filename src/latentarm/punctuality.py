@@ -2,7 +2,7 @@
 
 import gc
 import os
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from typing import Final
 
@@ -17,7 +17,7 @@ def ask_for_priority() -> None:
 
 
 @contextmanager
-def short_collections() -> Iterator[None]:
+def short_collections() -> Generator[None]:
     """Keep the garbage collector away from what is loaded by now, as long as the block lasts.
 
     A full collection looks at every object of every library, which takes 0.1 s and more, and nothing else in
