@@ -119,5 +119,6 @@ def _tests(subject: FloatArray, against: FloatArray) -> bool:
 def _error(subject: FloatArray, against: FloatArray) -> tuple[float, float]:
     """Standard error of the difference, and its degrees of freedom."""
     one, other = (float(side.var(ddof=1)) / len(side) for side in (subject, against))
-    dof = (one + other) ** 2 / (one**2 / (len(subject) - 1) + other**2 / (len(against) - 1))
+    share = one / (one + other)  # squares of shares cannot underflow
+    dof = 1.0 / (share**2 / (len(subject) - 1) + (1.0 - share) ** 2 / (len(against) - 1))
     return float(np.sqrt(one + other)), dof
