@@ -94,6 +94,6 @@ def test_a_way_that_was_found_clear_keeps_clear(arm, seed):
     for share in np.linspace(0.0, 1.0, 200):
         contacts = judge.measured(Placement(body, arm.home + share * (goal - arm.home)), np.zeros(7))
         height = contacts.height.min(axis=1)
-        if share == 0.0:  # what is too near already may be left, but not approached
-            np.minimum.at(allowed, contacts.pair, height)
-        assert (height > allowed[contacts.pair] - 0.006).all()
+        if share == 0.0:  # what is too near already may be left, but come nearer by 1 mm at most
+            np.minimum.at(allowed, contacts.pair, height - 0.001)
+        assert (height > allowed[contacts.pair] - 0.005).all()
