@@ -3,8 +3,9 @@
 A stand-in from the tests stands for the arm: franky-sim, the xArm's server, or the server that speaks the
 rosbridge protocol. `latentarm teleop` drives it, and a Chromium has its page. A scripted person holds one
 arrow key after another, changes the pair of axes, opens and closes the hand, and presses Enable again after
-each stop. The stand-in has real-time priority, because an arm's controller is a computer of its own. Times at
-which the page is closed and the arm is at rest are those of the stand-in's clock. For example:
+each stop. The stand-in has real-time priority, and the Franka's catches up where this computer stood still,
+because an arm's controller is a computer of its own. Times at which the page is closed and the arm is at rest
+are those of the stand-in's clock. For example:
 
     python scripts/arm_page.py --arm franka --minutes 10 --tries 50
 
@@ -46,6 +47,10 @@ AGAIN_S: Final = 2.0
 MOVES_WITHIN_S: Final = 5.0
 PRIORITY: Final = 20
 """Of the stand-in, above that of the process which drives the arm."""
+
+CATCHES_UP_S: Final = 0.1
+"""How much the simulated Franka makes up for where this computer stood still. One that lost that time would
+not have made the motion that was commanded: to the driver it would lag behind."""
 
 XARM_FILES: Final = Path(__file__).parents[1] / "tests" / "arms"
 XARM_SPEED: Final = ("--joint-speed", "0.4")
@@ -226,9 +231,7 @@ def standing_in(arm: str, folder: Path) -> Iterator[SimulatedArm]:
     with ExitStack() as stack:
         match arm:
             case "franka":
-                clock = folder / "clock"
-                np.zeros(1, np.int64).tofile(clock)
-                stand_in = stack.enter_context(franka.FrankaStandIn(franka.HOST, clock_file=clock))
+                stand_in = stack.enter_context(franka.FrankaStandIn(franka.HOST, catches_up_s=CATCHES_UP_S))
                 found: SimulatedArm = FrankaArm(folder, stand_in)
             case "ros2":
                 robot = panda()
@@ -340,18 +343,6 @@ def moves(arm: SimulatedArm, before: FloatArray) -> bool:
     return False
 
 
-def summary(tries: list[dict[str, float]]) -> dict[str, float]:
-    """Median and largest figure of all tries; how often the arm moved again."""
-    names = [name for name in tries[0] if name != "moves_when_enabled"]
-    found = {name: np.array([one[name] for one in tries]) for name in names}
-    return {
-        "tries": len(tries),
-        "moves_when_enabled": sum(one["moves_when_enabled"] for one in tries),
-        **{f"{name}_median": round(float(np.median(one)), 3) for name, one in found.items()},
-        **{f"{name}_max": round(float(one.max()), 3) for name, one in found.items()},
-    }
-
-
 def main() -> None:
     """Print the figures, and write them where asked."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
@@ -372,7 +363,7 @@ def main() -> None:
         if chosen.tries:
             arrows = np.random.default_rng(chosen.seed).choice(ARROWS, chosen.tries)
             tries = [close_page(browser, site.address, arm, str(arrow)) for arrow in arrows]
-            figures["page closed"] = summary(tries)
+            figures["page closed"] = franka.summary(tries)
         tell(figures, chosen.out)
 
 

@@ -5,8 +5,8 @@ button, reflexes and how they are recovered from, the arm's stop after cycles wi
 asks for it, because a busy machine is late), and the hand's answer to a move that it was told to stop. No
 limits are enforced.
 
-As a program (``python franka_server.py HOST CYCLES [CLOCK]``) it takes orders by line on standard input and
-answers in JSON; `FrankaStandIn` is its other end.
+As a program (``python franka_server.py HOST CYCLES CATCHES_UP [CLOCK]``) it takes orders by line on standard
+input and answers in JSON; `FrankaStandIn` is its other end.
 """
 
 import json
@@ -44,17 +44,23 @@ class FrankaStandIn:
     Args:
         host: loopback address to listen on, one that nobody else uses.
         lost_cycles: stop after so many cycles without a message; 0 for never.
+        catches_up_s: how much lost time it makes up for, at most, by cycles without a pause between them. A
+            real arm's controller is a computer of its own, which goes on while ours stands still. Where the
+            driver goes by the arm's clock, nothing must be made up for.
         clock_file: where the arm's clock is kept for `ArmClock`, if anywhere.
     """
 
-    def __init__(self, host: str, lost_cycles: int = 0, clock_file: Path | None = None) -> None:
+    def __init__(
+        self, host: str, lost_cycles: int = 0, catches_up_s: float = 0.0, clock_file: Path | None = None
+    ) -> None:
         self.host = host
         self._lost_cycles = lost_cycles
+        self._catches_up_s = catches_up_s
         self._clock_file = clock_file
         self.start()
 
     def start(self) -> None:
-        command = [sys.executable, __file__, self.host, str(self._lost_cycles)]
+        command = [sys.executable, __file__, self.host, str(self._lost_cycles), str(self._catches_up_s)]
         if self._clock_file is not None:
             command.append(str(self._clock_file))
         self._process = subprocess.Popen(
@@ -292,7 +298,7 @@ def _obey(order, server, robot, log, hand, cycle) -> dict:
     return answer
 
 
-def _serve(host: str, lost_cycles: int, clock_file: str | None) -> None:
+def _serve(host: str, lost_cycles: int, catches_up_s: float, clock_file: str | None) -> None:
     cycles = np.zeros(1, np.int64)
     if clock_file is not None:
         # It goes on where an earlier process has left it.
@@ -331,11 +337,12 @@ def _serve(host: str, lost_cycles: int, clock_file: str | None) -> None:
                 cycle += 1
                 cycles[0] += 1
                 log.add(cycle, robot)
-                # Never catches up: a cycle that was late shifts those after it.
-                due_s = max(due_s + 1e-3, time.monotonic())
+                # What cannot be caught up on shifts all later cycles.
+                due_s = max(due_s + 1e-3, time.monotonic() - catches_up_s)
                 if (ahead_s := due_s - time.monotonic()) > 0.0:
                     time.sleep(ahead_s)
 
 
 if __name__ == "__main__":
-    _serve(sys.argv[1], int(sys.argv[2]), sys.argv[3] if len(sys.argv) > 3 else None)
+    host, lost_cycles, catches_up_s, *clock = sys.argv[1:]
+    _serve(host, int(lost_cycles), float(catches_up_s), clock[0] if clock else None)
