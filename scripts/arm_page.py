@@ -258,17 +258,17 @@ def opened(browser: Browser, address: str) -> Page:
 
 def hold_keys(
     page: Page, watcher: Watcher, until_s: float, rng: np.random.Generator
-) -> tuple[int, list[float]]:
+) -> tuple[list[dict[str, Any]], list[float]]:
     """Drive by the keyboard until a time of this computer's.
 
     Returns:
-        How often Enable was pressed, and the openings of the hand that were seen, m.
+        What stopped the arm and where its tool was then, and the openings of the hand that were seen, m.
     """
-    presses = 0
+    stops: list[dict[str, Any]] = []
     widths: list[float] = []
     while time.monotonic() < until_s:
         if not watcher.enabled:
-            presses += 1
+            stops.append({name: watcher.state.get(name) for name in ("reason", "tool")})
             page.keyboard.press(ENABLE)
             wait(page, lambda: watcher.enabled, AGAIN_S)
             continue
@@ -281,7 +281,7 @@ def hold_keys(
         wait(page, lambda: not watcher.enabled, float(rng.uniform(*HELD_S)))
         page.keyboard.up(arrow)
         widths.append(watcher.state["gripper"]["width_m"])
-    return presses, widths
+    return stops, widths
 
 
 def endure(browser: Browser, address: str, arm: SimulatedArm, minutes: float, seed: int) -> dict[str, Any]:
@@ -294,7 +294,7 @@ def endure(browser: Browser, address: str, arm: SimulatedArm, minutes: float, se
         states.send(json.dumps({"type": "hello", "version": 1, "name": "counts"}))
         began_s, arm_s = time.monotonic(), arm.now_s()
         until_s, rng = began_s + 60.0 * minutes, np.random.default_rng(seed)
-        presses, widths = hold_keys(page, watcher, until_s, rng)
+        found, widths = hold_keys(page, watcher, until_s, rng)
         took_s, arm_s = time.monotonic() - began_s, arm.now_s() - arm_s
     listener.join()
     page.close()
@@ -302,8 +302,8 @@ def endure(browser: Browser, address: str, arm: SimulatedArm, minutes: float, se
         "seconds": round(took_s, 1),
         "arm_s": round(arm_s, 1),
         "enabled_s": round(watcher.enabled_s, 1),
-        "presses_of_enable": presses,
         "stops": watcher.stops,
+        "presses_of_enable_after": found,
         "hand_mm": [round(1e3 * min(widths), 1), round(1e3 * max(widths), 1)],
         "deadlines_met": round(1.0 - watcher.state["late_share"], 5),
     }

@@ -105,7 +105,9 @@ def test_the_commands_of_the_page_about_your_arm_run(line, as_tried, workplace):
 
 @pytest.mark.parametrize("line", [line for line in LINES if line.startswith("latentarm teleop")])
 def test_the_page_is_served_as_the_page_about_your_arm_says(line, as_tried, workplace, monkeypatch):
-    shutil.copy(PAGE.parent / "your-arm" / "zones.toml", workplace)
+    zones = workplace / "docs" / "your-arm" / "zones.toml"
+    zones.parent.mkdir(parents=True)
+    shutil.copy(PAGE.parent / "your-arm" / zones.name, zones)
     stand_ins = ROOT / "tests" / "stand_ins"
     monkeypatch.setenv("PYTHONPATH", f"{stand_ins}:{os.environ.get('PYTHONPATH', '')}")
     serve(as_tried(line))

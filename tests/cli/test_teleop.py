@@ -1,6 +1,7 @@
 """What `latentarm teleop` says before it serves."""
 
 import socket
+from pathlib import Path
 
 import pytest
 
@@ -41,6 +42,15 @@ def test_what_the_user_can_fix_is_one_sentence(run, workplace, words, said):
     assert code == 2
     assert said in err
     assert err.count("\n") == 1
+
+
+def test_a_zone_may_not_be_faster_than_the_arm_anywhere(run, workplace):
+    Path("zones.toml").write_text(
+        '[zones.face]\nshape = "sphere"\ncentre_m = [1, 0, 1]\nradius_m = 0.1\nspeed_m_per_s = 0.3\n'
+    )
+    code, _, err = run("teleop", "--zones", "zones.toml")
+    assert code == 2
+    assert "zones.toml: the zone 'face' allows 0.3 m/s, and the arm may do 0.25 m/s anywhere" in err
 
 
 def test_cameras_need_their_extra(run, workplace, monkeypatch):

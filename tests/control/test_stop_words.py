@@ -73,4 +73,4 @@ def test_guests_are_named_by_number_and_a_notice_may_have_a_cause():
     assert Notice(code="stop_pressed_by", parameters={"name": 3, "page": "x"}).text == "Guest 3 pressed Stop."
     because = {"because": "reading_old", "age_ms": 60}
     said = Notice(code="recording_ended", parameters=because).text
-    assert said.startswith("The recording ended here. The newest report of the arm is 60 ms old")
+    assert said.startswith("The recording ended here. There was no report from the arm for 60 ms")

@@ -18,6 +18,12 @@ centre_m = [0.6, 0.0, 0.55]
 radius_m = 0.15
 speed_m_per_s = 0.05
 """
+OUT = """
+[keep_out.pillar]
+shape = "sphere"
+centre_m = [0.6, 0.5, 0.55]
+radius_m = 0.1
+"""
 
 
 @pytest.fixture
@@ -31,12 +37,16 @@ def written(tmp_path):
 
 
 def test_the_file_of_the_docs_holds_for_a_panda(arm):
-    zones = read_zones(EXAMPLE)
+    stated = read_zones(EXAMPLE)
+    zones = stated.slow
     assert [(zone.name, zone.speed) for zone in zones] == [("face", 0.05), ("table", 0.1), ("self", 0.08)]
     face, table, person = (zone.shape for zone in zones)
     assert (type(face), type(table), type(person)) == (Sphere, Box, Capsule)
     np.testing.assert_allclose(table.half_extents, [0.3, 0.6, 0.06])
     assert Bounds(SafetyConfig(zones=zones), arm, 0.01).config.zones == zones
+    (table_top,) = stated.keep_out
+    assert (table_top.name, type(table_top)) == ("table", HalfSpace)
+    assert SafetyConfig(obstacles=stated.keep_out).obstacles[0].normal.tolist() == [0.0, 0.0, 1.0]
 
 
 def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
@@ -54,7 +64,7 @@ def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
         normal = [-2, 0, 0]
         speed_m_per_s = 0.1
         """)
-    )
+    ).slow
     assert box.name == "Stuhl 1"
     turned = Rotation.from_euler("xyz", [90, 20, -70], degrees=True)
     np.testing.assert_allclose(box.shape.rotation, turned.as_matrix(), atol=1e-12)
@@ -65,11 +75,19 @@ def test_a_box_may_be_turned_and_a_half_space_needs_a_direction_only(written):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "states no zones: begin one with [zones.face]"),
+        ("", "states no zones: begin one with [zones.face] or [keep_out.table]"),
         ("[zones.face", "cannot be read as TOML"),
         (FACE + FACE, "cannot be read as TOML"),
         (FACE + FACE.replace("face", "Face"), "Two zones are called 'Face'"),
-        ("[zone.face]", "there is no key zone; use zones"),
+        ("[zone.face]", "there is no key zone; use zones, keep_out"),
+        (OUT + "speed_m_per_s = 0.1", "there is no key keep_out.pillar.speed_m_per_s; use shape, centre_m"),
+        (
+            OUT.replace("radius_m = 0.1", ""),
+            "keep_out.pillar lacks radius_m: a sphere needs centre_m, radius_m.",
+        ),
+        (OUT.replace("0.1", "-1"), "The obstacle 'pillar' has radius -1.0"),
+        (OUT.replace("pillar", '"a,b"'), "The obstacle 'a,b' needs another name"),
+        ("".join(OUT.replace("pillar", f"p{one}") for one in range(9)), "There are 9 solids to keep out of"),
         ("zones = 3", "zones must be a table of names"),
         (FACE.replace("sphere", "ball"), "zones.face.shape must be one of sphere, capsule, box, half_space"),
         (FACE.replace('"sphere"', "1"), "zones.face.shape must be one of"),

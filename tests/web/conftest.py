@@ -202,10 +202,11 @@ def desk_in_physics(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
 
 @dataclass
 class Client:
-    """A page without a browser: it keeps the newest state, and sends inputs at 50 Hz while `u` is set."""
+    """A page without a browser: it keeps the newest state, counts them, and sends inputs while `u` is set."""
 
     socket: ClientConnection
     state: dict[str, Any] = field(default_factory=dict)
+    heard: int = 0
     welcome: dict[str, Any] = field(default_factory=dict)
     learning: dict[str, Any] = field(default_factory=dict)
     poses: list[str] = field(default_factory=list)
@@ -252,6 +253,7 @@ class Client:
                     if message["ghosts"] is None:
                         message["ghosts"] = self.state.get("ghosts")
                     self.state = message
+                    self.heard += 1
                 elif message["type"] == "welcome":
                     self.welcome = message
                 elif message["type"] == "learning":

@@ -155,6 +155,10 @@ def test_a_control_process_that_dies_is_told_to_every_page(trained, tmp_path):
         os.kill(site.control.pid, signal.SIGKILL)
         page.wait(lambda state: (state["note"] or {}).get("code") == "arm_process_ended")
         assert page.state["phase"] == "disengaged"
+        # Told again and again: a page that hears nothing would take the server for dead.
+        told = page.heard
+        page.wait(lambda state: page.heard >= told + 3)
+        assert page.state["note"]["code"] == "arm_process_ended"
 
 
 def test_a_server_that_ends_in_good_order_takes_the_control_process_along(trained, tmp_path):

@@ -35,7 +35,7 @@ def test_without_a_run_a_real_arm_has_nothing_about_it_and_its_way_back_leads_ho
     assert setup.real
     assert (setup.task.goals, tuple(setup.task.obstacles), setup.scene) == ((), (), None)
     np.testing.assert_array_equal(setup.start, setup.task.robot.home)
-    assert LoadedRun(setup, None).welcome("me").real is not None
+    assert LoadedRun(setup, None).welcome("me", "server").real is not None
 
 
 def test_the_robot_of_a_real_arm_can_be_named_with_its_limits(tmp_path):

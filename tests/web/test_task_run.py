@@ -125,7 +125,7 @@ def test_food_is_drawn_where_the_tool_stabs_it():
     setup = load_setup(Spec())
     loaded = LoadedRun(setup, None)
     things = {thing["name"]: thing["pose"][:3] for thing in loaded.scene.description["things"]}
-    told = {thing.name: thing.position for thing in loaded.welcome("me").things}
+    told = {thing.name: thing.position for thing in loaded.welcome("me", "server").things}
     for name, place in ITEMS.items():
         assert things[name] == pytest.approx([*place, ITEM_HEIGHT])
         assert told[name] == pytest.approx(things[name])
@@ -209,6 +209,6 @@ def test_a_disengaged_arm_begins_what_there_is_to_choose(desk, choice, begins):
 
 
 def test_a_page_is_told_of_what_there_is_to_do(desk):
-    todo = LoadedRun(desk.setup, "run").welcome("me").task
+    todo = LoadedRun(desk.setup, "run").welcome("me", "server").task
     assert (todo.name, todo.choices, todo.choice) == ("table_top", tuple(ITEMS), 0)
     assert [step.kind for step in todo.steps] == ["approached", "reached"]

@@ -108,7 +108,7 @@ def test_a_page_is_sent_what_has_moved_since_it_was_last_sent_something():
 
 def test_the_fingers_of_a_gripper_open_away_from_each_other():
     robot = load_robot("panda")
-    scene = drawable(ScenePlace(robot, (), ()), None).description
+    scene = drawable(ScenePlace(robot, (), ()), (), None).description
     first, second = scene["fingers"]
     np.testing.assert_allclose(np.add(first["opens"], second["opens"]), 0.0, atol=1e-5)
     assert first["body"] == second["body"] == robot.dof

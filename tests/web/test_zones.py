@@ -52,7 +52,9 @@ def test_far_from_every_zone_it_is_as_quick_as_without_any(setup, desk_of):
 def test_pages_are_told_where_it_is_slow(setup):
     floor = HalfSpace("table", np.array([0.0, 0.0, 0.1]), np.array([0.0, 0.0, 1.0]))
     run = LoadedRun(slow(setup, floor), None)
-    assert [zone.model_dump() for zone in run.welcome("page").zones] == [{"name": "table", "speed": SPEED}]
+    assert [zone.model_dump() for zone in run.welcome("page", "server").zones] == [
+        {"name": "table", "speed": SPEED}
+    ]
     assert run.scene.description["zones"] == [
         {
             "name": "table",
@@ -62,6 +64,22 @@ def test_pages_are_told_where_it_is_slow(setup):
             "speed": SPEED,
         }
     ]
+
+
+def test_the_arm_keeps_out_of_what_a_person_says_and_pages_are_told(setup, desk_of):
+    wall = HalfSpace("wall", np.array([0.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]))
+    start = setup.task.robot.chain.forward(setup.start).position
+    raised = replace(wall, point=np.array([0.0, 0.0, start[2] - 0.1]))
+    kept = replace(setup, spec=replace(setup.spec, keep_out=(raised,)))
+    with desk_of(kept) as desk:
+        driven(desk, seconds=4.0)
+        obstacles = desk.setup.step().safety.obstacles
+    assert raised.name in [one.name for one in obstacles]
+    lowest = min(report.tool[2] for report in desk.reports)
+    assert lowest >= raised.point[2] + 0.02
+    run = LoadedRun(kept, None)
+    assert run.welcome("page", "server").keep_out == ("wall",)
+    assert [one["name"] for one in run.scene.description["obstacles"]][-1] == "wall"
 
 
 def test_a_zone_that_is_no_slower_is_refused_before_anything_is_served():

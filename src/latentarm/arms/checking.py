@@ -36,7 +36,9 @@ def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
         refusals.append(str(error))
     if found.limits is not None:
         refusals += _beyond(found.limits, robot)
-    stops = "not known" if spec.stops_after_s is None else f"after {1000 * spec.stops_after_s:.0f} ms"
+    stops = "not known"
+    if spec.stops_after_s is not None:
+        stops = f"begins to, within {1000 * spec.stops_after_s:.0f} ms of the last command's end"
     common = (
         Fact("robot", Path(robot.name).name),
         Fact("joints", ", ".join(spec.joint_names)),

@@ -48,7 +48,7 @@ REAL_ARMS: Final = Catalogue(
 
 _FORMS: Final = {
     "lerobot": "lerobot://TYPE?port=/dev/ttyACM0&id=NAME",
-    "ros2": "ros2://HOST:PORT?controller=/NAME",
+    "ros2": "ros2://HOST:PORT?controller=NAME",
 }
 
 

@@ -66,7 +66,8 @@ def check(
 ) -> int:
     """Look at a real arm without moving it: what it is, whether it can be driven, and if not, why.
 
-    Exits with 2 where it is refused. For example: latentarm arms check franka://172.16.0.2
+    Exits with 2 where it is refused. For example:
+    latentarm arms check franka://172.16.0.2 --robot fr3
     """
     speeds = Speeds.asked(joint_speed, link_speed)
     found = check_arm_at(address, run, RobotOptions(robot, end_effector, limits), speeds)

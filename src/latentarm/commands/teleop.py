@@ -12,6 +12,7 @@ from latentarm.commands.choices import TaskName
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import AnyArm, EndEffector, JointSpeed, Json, LimitsFile, LinkSpeed, Seed
 from latentarm.commands.output import draws_blocks, say
+from latentarm.errors import UserError
 
 
 def teleop(
@@ -39,7 +40,8 @@ def teleop(
         Path | None,
         arg(
             metavar="FILE",
-            help="TOML file of zones in which the arm is slow, such as about a face; see docs/your-arm.md.",
+            help="TOML file of zones in which the arm is slow, such as about a face, and of what it keeps out"
+            " of, such as a table; see docs/your-arm.md.",
         ),
     ] = None,
     joint_speed: JointSpeed = None,
@@ -72,7 +74,7 @@ def teleop(
     Prints the page's address; Ctrl-C ends it. For example: latentarm teleop runs/pour-cae
     """
     from latentarm.control.journal_limits import JournalLimits
-    from latentarm.control.safety.zones_file import read_zones
+    from latentarm.control.safety.zones_file import StatedZones, read_zones
     from latentarm.web.arm_process.beginning import RobotOptions
     from latentarm.web.arm_process.drive_setup import Spec
     from latentarm.web.arm_process.speeds import Speeds
@@ -90,12 +92,28 @@ def teleop(
     room = JournalLimits.of_gigabytes(most_gb, keep_free_gb)
     named = RobotOptions(robot, end_effector, limits)
     speeds = Speeds.asked(joint_speed, link_speed)
-    # Nowhere may the arm be faster than elsewhere.
-    slow = tuple(
-        replace(zone, speed=min(zone.speed, speeds.link))
-        for zone in (() if zones is None else read_zones(zones))
+    stated = StatedZones((), ()) if zones is None else read_zones(zones)
+    for zone in stated.slow:
+        if zone.speed > (most := Speeds().link):
+            raise UserError(
+                f"{zones}: the zone {zone.name!r} allows {zone.speed:g} m/s, and the arm may do {most:g} m/s"
+                " anywhere: state at most that."
+            )
+    # With a lower --link-speed, that holds in zones too.
+    slow = tuple(replace(zone, speed=min(zone.speed, speeds.link)) for zone in stated.slow)
+    spec = Spec(
+        run,
+        profile,
+        seed,
+        out,
+        room,
+        arm,
+        task,
+        robot=named,
+        zones=slow,
+        keep_out=stated.keep_out,
+        speeds=speeds,
     )
-    spec = Spec(run, profile, seed, out, room, arm, task, robot=named, zones=slow, speeds=speeds)
     config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())
     return 0

@@ -89,6 +89,11 @@ export class FakeElement extends EventTarget {
     this.attributes.delete(name);
   }
 
+  toggleAttribute(name, on) {
+    if (on) this.attributes.set(name, "");
+    else this.attributes.delete(name);
+  }
+
   matches(selector) {
     return this.kinds.some((kind) => selector.split(/,\s*/).some((part) => part.startsWith(kind)));
   }
@@ -170,9 +175,9 @@ export function stateOf(fields = {}) {
 /** A welcome as the server says it. @param {object} [fields] */
 export function welcomeOf(fields = {}) {
   return {
-    type: "welcome", version: 1, id: "me", dof: 7, latent_dim: 2, robot: "panda", run: "one", profiles: [],
+    type: "welcome", version: 1, id: "me", server: "first", dof: 7, latent_dim: 2, robot: "panda", run: "one", profiles: [],
     modes: ["latent", "assisted", "end_effector"], goals: [], end_effector_modes: ["x-y", "z-yaw", "roll-pitch"],
-    limits: { latch_max_s: 5 }, gripper_width_m: null, things: [], real: null, poses: [], zones: [],
+    limits: { latch_max_s: 5 }, gripper_width_m: null, things: [], real: null, poses: [], zones: [], keep_out: [],
     task: { name: "reach", seed: 0, choices: [], choice: 0, steps: [] }, ...fields,
   };
 }

@@ -52,6 +52,16 @@ test("no input goes out before a state has come, nor when the newest is stale", 
   assert.equal(socket.taken().length, 1);
 });
 
+test("a page is told that the server was started again, and that alone where another run came with it", () => {
+  const told = [];
+  connect().says(welcomeOf());
+  for (const type of ["run_changed", "server_changed"]) connection.addEventListener(type, () => told.push(type));
+  FakeSocket.newest.says(welcomeOf({ id: "again" }));
+  assert.deepEqual(told, []);
+  FakeSocket.newest.says(welcomeOf({ server: "second", run: "two" }));
+  assert.deepEqual(told, ["server_changed"]);
+});
+
 test("nothing is driving or enabled once the connection is lost", () => {
   const socket = connect();
   socket.says(stateOf({ you: true, phase: "moving" }));

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { Deflection } from "#pages/inputs/deflection.js";
-import { attachKeyboard } from "#pages/inputs/keyboard.js";
+import { attachKeyboard, unfocus } from "#pages/inputs/keyboard.js";
 import { Settings } from "#pages/settings/settings.js";
 import { FakeElement, key, newBrowser } from "./browser.js";
 
@@ -21,6 +21,19 @@ beforeEach(() => {
     axes: (index) => done.push(index),
     gripper: () => done.push("gripper"),
   });
+});
+
+test("a pointer leaves no focus on a button that it presses, and a key does", () => {
+  const blurred = [];
+  const button = Object.assign(new FakeElement("button"), { blur: () => blurred.push("button") });
+  document.activeElement = button;
+  unfocus({ detail: 0, target: button });
+  assert.deepEqual(blurred, []);
+  unfocus({ detail: 1, target: button });
+  assert.deepEqual(blurred, ["button"]);
+  document.activeElement = new FakeElement("input");
+  unfocus({ detail: 1, target: button });
+  assert.deepEqual(blurred, ["button"]);
 });
 
 const at = () => [input.x, input.y];

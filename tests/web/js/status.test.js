@@ -3,7 +3,7 @@ import { beforeEach, test } from "node:test";
 
 import { Connection } from "#pages/connection/connection.js";
 import { OwnPages } from "#pages/connection/own_pages.js";
-import { attachStatus, statusOf } from "#pages/connection/status.js";
+import { attachStatus, isTrouble, statusOf } from "#pages/connection/status.js";
 import { FakeElement, FakeSocket, newBrowser, pass, stateOf, welcomeOf } from "./browser.js";
 
 const ADA = { code: "stop_pressed_by", parameters: { name: "Ada", page: "ada" } };
@@ -112,6 +112,7 @@ const note = (code, parameters = {}) => ({ code, parameters });
 const DRIVER = { you: true, driver: "me", driver_name: "Bob" };
 const WATCHER = { you: false, driver: "ada", driver_name: "Ada" };
 const NOBODY = { you: false, driver: null, driver_name: null };
+const CABLE = note("arm_lost", { text: "Check its cable." });
 const MINE = { code: "stop_pressed_by", parameters: { name: "Guest 114", page: "me" } };
 
 for (const [who, fields, words, page] of [
@@ -145,7 +146,7 @@ for (const [who, fields, words, page] of [
   [WATCHER, { reason: note("driver_changed") }, "Somebody else drives now. Ada is driving; you are watching."],
   [WATCHER, { reason: note("page_stopped", { name: "Ada", page: "ada" }) },
     "Ada's page stopped the arm: the page was left, or a control was lost. Ada is driving; you are watching."],
-  [DRIVER, { reason: note("page_stopped", { name: "Bob", page: "me" }) }, "This page stopped the arm. Press Enable to move the arm."],
+  [DRIVER, { reason: note("page_stopped", { name: "Bob", page: "me" }) }, "This page stopped the arm: it was left, or a control was lost. Press Enable to move the arm."],
   [DRIVER, { reason: LATE }, "Your computer was too slow for a moment, so the arm stopped. Press Enable to move the arm.", { late: "page" }],
   [DRIVER, { reason: LATE }, "The arm did not hear from you in time, so it stopped. The connection may be slow. Press Enable to move the arm."],
   [WATCHER, { reason: LATE },
@@ -163,7 +164,9 @@ for (const [who, fields, words, page] of [
   [DRIVER, { reason: ADA }, "Ada pressed Stop. Confirm the points under “Before a real arm moves”, then press Enable.", { unconfirmed: true }],
   [NOBODY, { reason: ADA }, "Ada pressed Stop. Confirm the points under “Before a real arm moves”, then press Enable.", { unconfirmed: true }],
   [WATCHER, { reason: ADA }, "Ada pressed Stop. Ada is driving; you are watching.", { unconfirmed: true }],
-  [DRIVER, { reason: ADA, lost: true }, "Ada pressed Stop.", { unconfirmed: true }],
+  [DRIVER, { reason: CABLE, lost: true }, "The arm is not connected. Check its cable. Then press “Connect again”.", { unconfirmed: true }],
+  [NOBODY, { reason: CABLE, lost: true }, "The arm is not connected. Check its cable. Then press “Connect again”.", { canEnable: false }],
+  [DRIVER, { reason: CABLE, lost: true }, "The arm is not connected. Check its cable.", { canConnect: false }],
   [WATCHER, { phase: "moving" }, "You are watching. Press “Ask to drive” first.", { refused: "halted.not_enabled" }],
 ]) {
   const about = who === DRIVER ? "the driver" : who === WATCHER ? "a watcher" : "a page while nobody drives";
@@ -174,10 +177,18 @@ for (const [who, fields, words, page] of [
     const connection = {
       open: true, silenceMs: 0, engaged: ["ready", "moving"].includes(state.phase), state, drove: who.you, own, welcome: welcomeOf(),
     };
-    const shown = { halted: null, turnedAway: "", canEnable: true, unconfirmed: false, refused: null, late: "connection", ...page };
+    const shown = { halted: null, turnedAway: "", canEnable: true, canConnect: true, unconfirmed: false, refused: null, late: "connection", ...page };
     assert.equal(statusOf(connection, shown).text, words);
   });
 }
+
+test("what somebody must look at the arm for is marked, and an ordinary stop is not", () => {
+  assert.ok(isTrouble(stateOf({ reason: note("arm_emergency_stop") })));
+  assert.ok(isTrouble(stateOf({ reason: ADA, note: note("arm_process_ended") })));
+  assert.ok(!isTrouble(stateOf({ reason: ADA })));
+  assert.ok(!isTrouble(stateOf({ phase: "moving", reason: note("arm_fault") })));
+  assert.ok(!isTrouble(null));
+});
 
 test("a stop for a late input names what was too slow", () => {
   let slow = true;

@@ -19,3 +19,16 @@ test("zones are listed with their speeds, by the page's words or by their own na
   assert.ok(!text.hidden);
   assert.equal(text.textContent, "Slow zones: body (at most 8 cm/s) and Tray 2 (at most 10 cm/s).");
 });
+
+test("what the arm keeps out of is listed after them, or alone", () => {
+  const text = new FakeElement();
+  const zones = [{ name: "face", speed: 0.05 }];
+  const connection = Object.assign(new EventTarget(), { welcome: welcomeOf({ zones, keep_out: ["table", "Wand"] }) });
+  attachZones(text, connection);
+  connection.dispatchEvent(new Event("welcome"));
+  assert.equal(text.textContent, "Slow zones: face (at most 5 cm/s). The arm keeps out of: table and Wand.");
+  connection.welcome = welcomeOf({ zones: [], keep_out: ["table"] });
+  connection.dispatchEvent(new Event("welcome"));
+  assert.ok(!text.hidden);
+  assert.equal(text.textContent, "The arm keeps out of: table.");
+});

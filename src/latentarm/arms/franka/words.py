@@ -18,16 +18,16 @@ _ERRORS: Final = {
 
 
 def fault(errors: Sequence[str], said: str) -> str:
-    """Why the arm has stopped by itself.
+    """Why the arm has stopped by itself, for a person who knows that it has.
 
     Args:
         errors: names of the errors that the arm reports.
         said: what libfranka says of it.
     """
     if not errors:
-        return f"The arm has stopped by itself ({plain(said)})."
+        return f"{plain(said)}."
     reasons = ", and ".join(_ERRORS.get(name, name.replace("_", " ")) for name in errors)
-    return f"The arm has stopped by itself: {reasons}."
+    return f"{reasons[:1].upper()}{reasons[1:]}."
 
 
 def plain(error: object) -> str:

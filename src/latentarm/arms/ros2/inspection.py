@@ -98,8 +98,9 @@ def _rate(feed: JointFeed) -> tuple[float, int]:
 def _watchdog_refusals(state: WatchdogState | None, options: Ros2Options) -> Iterator[str]:
     if state is None:
         yield (
-            f"No watchdog answers on {options.watchdog}/state: start latentarm_watchdog.py on the arm's"
-            " computer; without it nothing would stop the arm when this computer fails."
+            f"No watchdog answers on {options.watchdog}/state: check the cable to the arm's computer, and"
+            " start latentarm_watchdog.py there; without it nothing would stop the arm when this computer"
+            " fails."
         )
         return
     if state.version != VERSION:

@@ -50,8 +50,9 @@ class Link:
             socket.create_connection((host, port), CONNECTING_S).close()
         except OSError as error:
             raise UserError(
-                f"Nothing answers at {host}:{port}: start rosbridge there"
-                " (ros2 launch rosbridge_server rosbridge_websocket_launch.xml)."
+                f"Nothing answers at {host}:{port}: check the cable and the address, and start"
+                " rosbridge there (ros2 launch rosbridge_server rosbridge_websocket_launch.xml"
+                " send_action_goals_in_new_thread:=true)."
             ) from error
         self._ros: Any = roslibpy.Ros(host, port, transport="asyncio")
         self._ros.factory.maxRetries = 0

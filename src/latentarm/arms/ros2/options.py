@@ -82,7 +82,7 @@ def read_options(address: ArmAddress, robot: Robot) -> Ros2Options:
     )
     if "controller" not in given:
         raise UserError(
-            "--arm ros2 needs the name of the arm's controller: ros2://HOST:PORT?controller=/NAME."
+            "--arm ros2 needs the name of the arm's controller: ros2://HOST:PORT?controller=NAME."
         )
     kind = given.get("kind", "velocity")
     if kind not in get_args(Kind):

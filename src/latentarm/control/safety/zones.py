@@ -43,8 +43,7 @@ class Zone:
         if not isinstance(self.shape, Obstacle):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise UserError(f"{self.shape!r} is not a zone's shape: use HalfSpace, Sphere, Capsule or Box.")
         what, speed = f"The zone {self.shape.name!r}", cast("object", self.speed)
-        if "," in self.shape.name or clean_name(self.shape.name) != self.shape.name:
-            raise UserError(f"{what} needs another name: without commas, and without spaces around it.")
+        check_name(self.shape.name, what)
         object.__setattr__(self, "shape", checked_shape(self.shape, what))
         if isinstance(speed, bool) or not isinstance(speed, int | float | np.integer | np.floating):
             raise UserError(f"{what} needs a number of m/s as its speed, not {speed!r}.")
@@ -59,6 +58,20 @@ class Zone:
     def name(self) -> str:
         """What a person would call it."""
         return self.shape.name
+
+
+def check_name(name: str, what: str) -> None:
+    """Refuse a name that a page could not list.
+
+    Args:
+        name: of a zone.
+        what: what messages call it, the subject of a sentence.
+
+    Raises:
+        UserError: it has commas, spaces around it, or what cannot be shown.
+    """
+    if "," in name or clean_name(name) != name:
+        raise UserError(f"{what} needs another name: without commas, and without spaces around it.")
 
 
 def checked_zones(value: object) -> tuple[Zone, ...]:

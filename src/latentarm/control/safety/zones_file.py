@@ -1,4 +1,4 @@
-"""A zones file: where the arm is slow, in TOML, with units in the keys.
+"""A zones file: where the arm is slow, and what it keeps out of, in TOML, with units in the keys.
 
 An example::
 
@@ -8,6 +8,11 @@ An example::
     radius_m = 0.15
     speed_m_per_s = 0.05
 
+    [keep_out.table]
+    shape = "half_space"
+    point_m = [0.0, 0.0, 0.0]
+    normal = [0.0, 0.0, 1.0]
+
 Shapes and their keys: ``sphere`` (``centre_m``, ``radius_m``), ``capsule`` (``start_m``, ``end_m``,
 ``radius_m``), ``box`` (``centre_m``, ``size_m``, and ``turned_deg`` about the base's x, y and z axes in this
 order, where it is turned) and ``half_space`` (``point_m`` and ``normal``, out of the solid).
@@ -15,12 +20,14 @@ order, where it is turned) and ``half_space`` (``point_m`` and ``normal``, out o
 
 import tomllib
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import Any, Final, cast, final
 
 import numpy as np
 
-from latentarm.control.safety.zones import Zone, checked_zones
+from latentarm.control.safety.obstacles import checked_obstacle
+from latentarm.control.safety.zones import MOST_ZONES, Zone, check_name, checked_zones
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Obstacle, Sphere
 from latentarm.types import FloatArray
@@ -30,10 +37,26 @@ from latentarm.untrusted.opening import read_bytes
 MOST_BYTES: Final = 100_000
 """A longer file is refused: a zone takes some 200 bytes."""
 
+_SLOW: Final = "zones"
+_KEEP_OUT: Final = "keep_out"
 _SPEED: Final = "speed_m_per_s"
 
 
-def read_zones(path: Path) -> tuple[Zone, ...]:
+@final
+@dataclass(frozen=True, eq=False)
+class StatedZones:
+    """What a zones file states.
+
+    Attributes:
+        slow: where the arm is slow.
+        keep_out: what the arm must keep clear of.
+    """
+
+    slow: tuple[Zone, ...]
+    keep_out: tuple[Obstacle, ...]
+
+
+def read_zones(path: Path) -> StatedZones:
     """Read a zones file.
 
     Args:
@@ -51,7 +74,7 @@ def read_zones(path: Path) -> tuple[Zone, ...]:
     return parse_zones(document, str(path))
 
 
-def parse_zones(document: object, where: str) -> tuple[Zone, ...]:
+def parse_zones(document: object, where: str) -> StatedZones:
     """Validate the zones of a zones file.
 
     Args:
@@ -59,41 +82,63 @@ def parse_zones(document: object, where: str) -> tuple[Zone, ...]:
         where: the file, for messages.
 
     Raises:
-        UserError: a key is missing or unknown, a value cannot be used, or two zones have the same name.
+        UserError: a key is missing or unknown, a value cannot be used, two zones have the same name, or there
+            are too many.
     """
     top = table_of(document, where, "")
-    check_keys(top, ("zones",), where, "")
-    given = table_of(top.get("zones", {}), where, "zones")
-    if not given:
-        raise UserError(f"{where} states no zones: begin one with [zones.face].")
-    zones = [_zone(name, entry, where) for name, entry in given.items()]
+    check_keys(top, (_SLOW, _KEEP_OUT), where, "")
+    slow, keep_out = (table_of(top.get(key, {}), where, key) for key in (_SLOW, _KEEP_OUT))
+    if not slow and not keep_out:
+        raise UserError(f"{where} states no zones: begin one with [{_SLOW}.face] or [{_KEEP_OUT}.table].")
+    found = [_entry(f"{_SLOW}.{name}", entry, where, (_SPEED,)) for name, entry in slow.items()]
+    solid = [_entry(f"{_KEEP_OUT}.{name}", entry, where) for name, entry in keep_out.items()]
     try:
-        return checked_zones(zones)
+        return StatedZones(
+            checked_zones([Zone(make(name), speed) for name, (make, speed) in zip(slow, found, strict=True)]),
+            _kept_out([make(name) for name, (make, _) in zip(keep_out, solid, strict=True)]),
+        )
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
 
 
-def _zone(name: str, entry: object, where: str) -> Zone:
-    key = f"zones.{name}"
+def _kept_out(solids: list[Obstacle]) -> tuple[Obstacle, ...]:
+    if len(solids) > MOST_ZONES:
+        raise UserError(
+            f"There are {len(solids)} solids to keep out of: {MOST_ZONES} at most are kept in time."
+        )
+    for solid in solids:
+        check_name(solid.name, f"The obstacle {solid.name!r}")
+    return tuple(checked_obstacle(solid) for solid in solids)
+
+
+def _entry(
+    key: str, entry: object, where: str, besides: tuple[str, ...] = ()
+) -> tuple[Callable[[str], Obstacle], float]:
+    """An entry's keys, checked.
+
+    Args:
+        key: of the entry.
+        entry: its table.
+        where: the file, for messages.
+        besides: keys that it needs besides those of its shape: its speed, or nothing.
+
+    Returns:
+        What makes its solid from a name, and its speed, m/s; 0 where it needs none.
+    """
     given = table_of(entry, where, key)
     shape = given.get("shape")
     if not isinstance(shape, str) or shape not in _SHAPES:
         raise UserError(f"{where}: {key}.shape must be one of {', '.join(_SHAPES)}, not {str(shape)[:40]!r}.")
     needed, optional, make = _SHAPES[shape]
-    check_keys(given, ("shape", *needed, *optional, _SPEED), where, f"{key}.")
-    for one in (*needed, _SPEED):
+    check_keys(given, ("shape", *needed, *optional, *besides), where, f"{key}.")
+    for one in (*needed, *besides):
         if one not in given:
-            raise UserError(f"{where}: {key} lacks {one}: a {shape} needs {', '.join((*needed, _SPEED))}.")
+            raise UserError(f"{where}: {key} lacks {one}: a {shape} needs {', '.join((*needed, *besides))}.")
     figures = {
-        one: _figure(value, where, f"{key}.{one}")
-        for one, value in given.items()
-        if one not in ("shape", _SPEED)
+        one: _figure(given[one], where, f"{key}.{one}") for one in (*needed, *optional) if one in given
     }
-    speed = number_of(given[_SPEED], where, f"{key}.{_SPEED}")
-    try:
-        return Zone(make(name, figures), speed)
-    except UserError as error:
-        raise UserError(f"{where}: {error}") from error
+    speed = number_of(given[_SPEED], where, f"{key}.{_SPEED}") if besides else 0.0
+    return lambda name: make(name, figures), speed
 
 
 def _figure(value: object, where: str, key: str) -> Any:

@@ -23,6 +23,7 @@ from latentarm.controllers.latent import latent_controller
 from latentarm.controllers.to_pose import ToPose
 from latentarm.demonstrations.provenance import provenance_now
 from latentarm.errors import UserError
+from latentarm.kinematics.obstacles import Obstacle
 from latentarm.runs.folder import Run, read_run, weights_fingerprint
 from latentarm.runs.tasks import usual_arm
 from latentarm.scene.scene import Scene
@@ -79,6 +80,7 @@ class Spec:
         robot: which robot, where the run or the task is not to say.
         found: what was found out about a real arm, names and values.
         zones: where the arm is slow.
+        keep_out: what it must keep clear of, besides what the task says.
         speeds: how fast it may move anywhere.
 
     Raises:
@@ -96,6 +98,7 @@ class Spec:
     robot: RobotOptions = field(default_factory=RobotOptions)
     found: tuple[tuple[str, str], ...] = ()
     zones: tuple[Zone, ...] = ()
+    keep_out: tuple[Obstacle, ...] = ()
     speeds: Speeds = field(default_factory=Speeds)
 
     def __post_init__(self) -> None:
@@ -144,6 +147,11 @@ class DriveSetup:
     def real(self) -> bool:
         """Whether the arm exists: it is where it is, and nobody sees what stands about it."""
         return is_address(self.arm)
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """What the arm must keep clear of."""
+        return (*self.task.obstacles, *self.spec.keep_out)
 
     @property
     def modes(self) -> tuple[ModeName, ...]:
@@ -241,7 +249,7 @@ class DriveSetup:
                 input_grace_s=INPUT_GRACE_S,
                 release_fraction=RELEASE_FRACTION,
                 command_periods=COMMAND_PERIODS,
-                obstacles=tuple(self.task.obstacles),
+                obstacles=self.obstacles,
                 zones=self.spec.zones,
             ),
             goals=self.task.goals,

@@ -33,10 +33,10 @@ class GhostPaths:
     It is for display only; the safety filters decide.
 
     Args:
-        task: the robot, its goals and what it must keep clear of.
+        task: the robot and its goals.
         controller: what a deflection asks for.
         help_: how much the robot helps.
-        limits: of the drive.
+        limits: of the drive, and what it must keep clear of.
     """
 
     def __init__(self, task: Place, controller: Controller, help_: Help, limits: SafetyConfig) -> None:
@@ -50,7 +50,7 @@ class GhostPaths:
         self._joint_speed = np.where(robot.chain.slide, limits.link_speed, limits.joint_speed)
         self._tool_speed = limits.link_speed
         self._clearance = limits.clearance
-        planes = [one for one in task.obstacles if isinstance(one, HalfSpace)]
+        planes = [one for one in limits.obstacles if isinstance(one, HalfSpace)]
         self._normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
         self._offsets = np.array([plane.normal @ plane.point for plane in planes])
         self._no_heights = np.zeros((0, 0))

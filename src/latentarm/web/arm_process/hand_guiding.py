@@ -6,13 +6,14 @@ from typing import Final, Literal, final
 
 from latentarm.arms.contract import Arm
 from latentarm.arms.guiding import GuidableArm
-from latentarm.control.loop import ENABLING_S, stop_of
+from latentarm.control.loop import ENABLING_S
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.gripper import GripperFilter
 from latentarm.errors import UserError
 from latentarm.robots.gripper import Gripper
 from latentarm.types import GripperAsk, StepRecord
-from latentarm.web.protocol.notice import Notice, notice_of, notice_of_stop
+from latentarm.web.arm_process.lost_arm import why_not
+from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Guiding
 
 PAGE_S: Final = 1.0
@@ -112,7 +113,7 @@ class HandGuiding:
         if self._doing == "asking" and time_s - self._since_s <= ENABLING_S:
             return self._ask_for_it(self._arm)
         self.end()
-        return Notice(code="guiding_ended") if status.phase == "disabled" else notice_of_stop(stop_of(status))
+        return Notice(code="guiding_ended") if status.phase == "disabled" else why_not(status)
 
     def seen(self, record: StepRecord) -> StepRecord:
         """A step with what the gripper is told while the arm is guided, which is sent here.
@@ -149,5 +150,5 @@ class HandGuiding:
                 return notice_of(error)
         elif status.phase != "guided":  # from before: it comes to rest first
             self._doing = "nothing"
-            return notice_of_stop(stop_of(status))
+            return why_not(status)
         return None

@@ -33,10 +33,7 @@ class LostArm:
     @property
     def reason(self) -> Notice:
         """Why it is lost, or why the last try failed."""
-        status = self._arm.status()
-        if status.lost:
-            return Notice(code="arm_lost", parameters={"text": one_line(status.reason)})
-        return notice_of_stop(stop_of(status))
+        return why_not(self._arm.status())
 
     def connect_again(self) -> Literal["under way", "anew"]:
         """Ask the driver for a new connection; the arm is disabled afterwards.
@@ -58,6 +55,13 @@ def reconnect(arm: Arm) -> None:
     """
     arm.close()
     arm.connect()
+
+
+def why_not(status: ArmStatus) -> Notice:
+    """Why an arm takes no commands: its connection is lost, or what its driver says."""
+    if status.lost:
+        return Notice(code="arm_lost", parameters={"text": one_line(status.reason)})
+    return notice_of_stop(stop_of(status))
 
 
 def _lost(status: ArmStatus) -> bool:

@@ -55,11 +55,14 @@ class Drawable:
     meshes: dict[int, bytes]
 
 
-def drawable(place: Place, scene: Scene | None, zones: Sequence[Zone] = ()) -> Drawable:
+def drawable(
+    place: Place, obstacles: Sequence[Obstacle], scene: Scene | None, zones: Sequence[Zone] = ()
+) -> Drawable:
     """What a page draws: the robot, its goals, its obstacles, what stands about it, and from where to look.
 
     Args:
         place: where the robot is driven.
+        obstacles: what it must keep clear of.
         scene: what stands about it; None where nothing does.
         zones: where the arm is slow.
     """
@@ -89,7 +92,7 @@ def drawable(place: Place, scene: Scene | None, zones: Sequence[Zone] = ()) -> D
                 _finger(model, reading, joint, geoms, fingers) for joint in sorted(set(fingers.values()))
             ],
             "goals": [{"name": goal.name, "position": _rounded(goal.pose.position)} for goal in place.goals],
-            "obstacles": [_obstacle(one) for one in place.obstacles],
+            "obstacles": [_obstacle(one) for one in obstacles],
             "zones": [{**_obstacle(zone.shape), "speed": zone.speed} for zone in zones],
             **described(scene or Scene()),
             "cameras": _cameras(robot.chain.link_transforms(robot.home)[:, :3, 3], positions),

@@ -101,6 +101,7 @@ class Welcome(Message):
 
     Attributes:
         id: of this page.
+        server: of the running `latentarm teleop`: each start has another one.
         dof: joints of the arm.
         latent_dim: axes of the latent actions; 0 without a run.
         robot: its name.
@@ -110,6 +111,7 @@ class Welcome(Message):
         goals: in the order of the belief.
         things: what stands about the arm, in the order of `State.things`.
         zones: where the arm is slow.
+        keep_out: names of what it keeps clear of because a person said so.
         end_effector_modes: names of the pairs of axes.
         limits: see `Limits`.
         gripper_width_m: how wide its gripper opens, m, or null where it has none that can be driven.
@@ -121,6 +123,7 @@ class Welcome(Message):
     type: Literal["welcome"] = "welcome"
     version: Literal[1] = 1
     id: str
+    server: str
     dof: int
     latent_dim: int
     robot: str
@@ -130,6 +133,7 @@ class Welcome(Message):
     goals: tuple[NamedGoal, ...]
     things: tuple[NamedThing, ...]
     zones: tuple[NamedZone, ...]
+    keep_out: tuple[str, ...]
     end_effector_modes: tuple[str, ...]
     limits: Limits
     gripper_width_m: float | None

@@ -1,11 +1,13 @@
 """`latentarm teleop`: the page, its server, and the control process behind it."""
 
 import asyncio
+import logging
 import shlex
 import socket
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Any, Final
 
 import uvicorn
@@ -52,6 +54,11 @@ from latentarm.web.server.record_routes import RecordRoutes
 from latentarm.web.server.security import DRIVE, Gate, Keys
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
+
+_LOG: Final = logging.getLogger(__name__)
+
+_LOOK_S: Final = 1.0
+"""How often to look whether the control process has ended, s."""
 
 _STARTED_S: Final = 0.01
 """How often to check whether uvicorn has started, s."""
@@ -100,6 +107,8 @@ def serve(
     if config.spec.zones:
         slow = ", ".join(f"{zone.name} ({100 * zone.speed:g} cm/s)" for zone in config.spec.zones)
         say(f"The arm is slow in these zones: {slow}.")
+    if config.spec.keep_out:
+        say(f"The arm keeps out of: {', '.join(one.name for one in config.spec.keep_out)}.")
     out = config.spec.out
     before = set(out.glob(f"*{JOURNAL_SUFFIX}"))
     control = ControlProcess(config.spec)
@@ -170,6 +179,17 @@ def _cameras(config: TeleopConfig, listening: socket.socket) -> CameraProcess | 
         raise
 
 
+async def tell_end(control: ControlProcess) -> None:
+    """Log that the control process has ended, where it does before the server does.
+
+    Args:
+        control: what is watched.
+    """
+    while control.alive:
+        await asyncio.sleep(_LOOK_S)
+    _LOG.error("The program that moves the arm has ended. Start latentarm teleop again.")
+
+
 def build_app(
     setup: DriveSetup,
     control: ControlProcess,
@@ -217,7 +237,7 @@ def build_app(
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
-        follow = [states.follow, learning.follow, history.follow]
+        follow = [states.follow, learning.follow, history.follow, partial(tell_end, control)]
         if camera_routes is not None:
             follow.append(camera_routes.follow)
         following = [asyncio.create_task(one()) for one in follow]

@@ -1,6 +1,7 @@
 """The socket that pages drive through, and what they all see."""
 
 import asyncio
+import secrets
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final, Literal, final
 
@@ -121,6 +122,7 @@ class DriveSocket:
         self._pins = pins
         self._history = history
         self._poses = poses
+        self._server = secrets.token_hex(8)
         self._open = 0
         self._asked: AskedGripper | None = None
 
@@ -201,7 +203,7 @@ class DriveSocket:
                     loaded = self._states.loaded
                     shown = PageMemory()
                     poses = -1
-                    await socket.send_text(loaded.welcome(page.id).model_dump_json())
+                    await socket.send_text(loaded.welcome(page.id, self._server).model_dump_json())
                 if learning != self._learning.number:
                     learning = self._learning.number
                     await socket.send_text(self._learning.text)

@@ -46,7 +46,7 @@ class LoadedRun:
     def __init__(self, setup: DriveSetup, name: str | None) -> None:
         self.name = name
         self.spec = setup.spec
-        self.scene = drawable(setup.task, setup.shown, setup.spec.zones)
+        self.scene = drawable(setup.task, setup.obstacles, setup.shown, setup.spec.zones)
         self.chain = setup.task.robot.chain
         self.robot_name = setup.task.robot.name
         self.real = setup.real
@@ -83,16 +83,18 @@ class LoadedRun:
         run = None if self.spec.run is None else str(self.spec.run)
         return beginning_of(report) == (run, self.spec.seed, self.spec.choice)
 
-    def welcome(self, page: str) -> Welcome:
+    def welcome(self, page: str, server: str) -> Welcome:
         """What a page is told first.
 
         Args:
             page: its id.
+            server: the server's.
         """
         setup = self._setup
         gripper = setup.task.robot.gripper
         return Welcome(
             id=page,
+            server=server,
             dof=setup.task.robot.dof,
             latent_dim=self.latent_dim,
             robot=Path(setup.task.robot.name).name,  # of a model file without its folder
@@ -108,6 +110,7 @@ class LoadedRun:
                 for thing in (() if setup.shown is None else setup.shown.things)
             ),
             zones=tuple(NamedZone(name=zone.name, speed=zone.speed) for zone in setup.spec.zones),
+            keep_out=tuple(one.name for one in setup.spec.keep_out),
             end_effector_modes=setup.axes,
             limits=Limits(latch_max_s=LATCH_MAX_S),
             real=_found(setup) if self.real else None,

@@ -40,8 +40,8 @@ SILENT_S: Final = 0.5
 NOTE_S: Final = 6.0
 """How long a refusal is shown, s."""
 
-LOADING_S: Final = 0.2
-"""How often pages hear that something is still being loaded, s."""
+AWAY_PERIOD_S: Final = 0.2
+"""How often pages hear why there is nothing new of the arm, s."""
 
 _SAME_M: Final = 1e-3
 
@@ -109,7 +109,6 @@ class States:
 
     async def follow(self) -> None:
         """Read new reports until cancelled, and wake the callers of `after`."""
-        told_silence = False
         told_s = -math.inf
         while True:
             report = self._control.newest()
@@ -117,15 +116,12 @@ class States:
             if report is not None:
                 self._heard_s = now_s
                 self._take(report)
-                told_silence = False
-            if self._loading and self._control.alive:
-                if now_s - told_s > LOADING_S:
+            # Pages that hear nothing would take the server for dead: the reason is told again and again.
+            if self._away(now_s):
+                if now_s - told_s > AWAY_PERIOD_S:
                     told_s = now_s
                     self._wake()
             elif report is not None:
-                self._wake()
-            elif now_s - self._heard_s > SILENT_S and not told_silence:
-                told_silence = True
                 self._wake()
             await asyncio.sleep(POLL_S)
 
@@ -234,7 +230,7 @@ class States:
         driver, asking = self._sessions.driver, self._sessions.asking
         would = self._sessions.named(self._sessions.copilot.asking)
         recording = report.recording
-        away = self._loading or time.monotonic() - self._heard_s > SILENT_S
+        away = self._away(time.monotonic())
         return State(
             nonce=report.nonce,
             tick=report.tick,
@@ -294,6 +290,10 @@ class States:
             return self._note
         disengaged = report.phase in ("disengaged", "neutral_needed")
         return self.standstill if disengaged and self.standstill is not None else report.note
+
+    def _away(self, now_s: float) -> bool:
+        """Whether the newest report is out of date."""
+        return self._loading or now_s - self._heard_s > SILENT_S
 
     def _why_away(self) -> Notice:
         """Why the newest report is out of date."""

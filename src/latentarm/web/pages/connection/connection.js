@@ -2,7 +2,8 @@
  * The page's connection to the server: one WebSocket, JSON both ways, opened again when it breaks.
  *
  * Events: "open" when it has opened or closed; "welcome", "state", "learning", "poses" and "refused" when such a message has
- * come; "run_changed" when another run is driven from now on. What they carry is in `detail`.
+ * come; "run_changed" when another run is driven from now on; "server_changed" when the server was started again. What they
+ * carry is in `detail`.
  */
 
 import { OwnPages } from "./own_pages.js";
@@ -110,7 +111,8 @@ export class Connection extends EventTarget {
         const before = this.welcome;
         this.welcome = message;
         this.own.add(message.id);
-        if (before !== null && before.run !== message.run) this._tell("run_changed", message.run);
+        if (before !== null && before.server !== message.server) this._tell("server_changed", message.server);
+        else if (before !== null && before.run !== message.run) this._tell("run_changed", message.run);
         break;
       }
       case "poses":

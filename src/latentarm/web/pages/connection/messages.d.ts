@@ -409,6 +409,7 @@ export interface Welcome {
   type: "welcome";
   version: 1;
   id: string;
+  server: string;
   dof: number;
   latent_dim: number;
   robot: string;
@@ -418,6 +419,7 @@ export interface Welcome {
   goals: NamedGoal[];
   things: NamedThing[];
   zones: NamedZone[];
+  keep_out: string[];
   end_effector_modes: string[];
   limits: Limits;
   gripper_width_m: number | null;

@@ -24,12 +24,21 @@ const REFUSED_MS = 4000;
  * @property {HaltReason | null} halted why this page itself stopped the arm
  * @property {string} turnedAway why the server refused the page
  * @property {boolean} canEnable whether it has a button that enables
+ * @property {boolean} canConnect whether it has a button that connects a lost arm again
  * @property {boolean} unconfirmed whether there are points to confirm before Enable does anything
  * @property {WordKey | null} refused why a press did nothing a moment ago
  * @property {Reader["late"]} late what was too slow, where an input of this page came late
  */
 
 /** @typedef {Pick<Connection, "open" | "state" | "silenceMs" | "engaged" | "drove" | "own" | "welcome">} Heard */
+
+/** Reasons for which somebody must look at the arm, or at the computer that drives it. */
+const TROUBLE = ["arm_emergency_stop", "arm_fault", "arm_lost", "arm_off", "arm_process_ended", "arm_process_silent"];
+
+/** Whether the arm is stopped for such a reason. @param {Pick<State, "phase" | "note" | "reason"> | null} state */
+export function isTrouble(state) {
+  return state?.phase === "disengaged" && [state.note, state.reason].some((why) => why && TROUBLE.includes(why.code));
+}
 
 /**
  * What to say, and the phase that gives it its colour.
@@ -60,7 +69,7 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
  * @param {PageState} page
  * @param {Reader} reader
  */
-function driverWords({ phase, note, reason, held_back, zone, returning, bound_for, let_go_first, copilot, guiding, lost }, { canEnable, unconfirmed }, reader) {
+function driverWords({ phase, note, reason, held_back, zone, returning, bound_for, let_go_first, copilot, guiding, lost }, { canEnable, canConnect, unconfirmed }, reader) {
   if (guiding === "on") return say("status.guided");
   if (concerns(note, true)) return sayTo(note, reader);
   const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
@@ -75,7 +84,9 @@ function driverWords({ phase, note, reason, held_back, zone, returning, bound_fo
       return say(let_go_first ? "status.let_go" : "status.ready");
     case "moving": return cause === null ? say("status.moving") : say("status.held_back", { cause });
     case "stopping": return say("status.stopping", parameters);
-    default: return canEnable && !lost ? say(unconfirmed ? "status.unconfirmed" : `status.${phase}`, parameters) : parameters.reason;
+    default:
+      if (lost) return canConnect ? say("status.not_connected", parameters) : parameters.reason;
+      return canEnable ? say(unconfirmed ? "status.unconfirmed" : `status.${phase}`, parameters) : parameters.reason;
   }
 }
 
@@ -87,7 +98,7 @@ function driverWords({ phase, note, reason, held_back, zone, returning, bound_fo
  * @param {boolean} asked whether this page has asked to drive
  * @param {Reader} reader
  */
-function watcherWords({ phase, note, reason, held_back, zone, returning, bound_for, driver, driver_name, guiding, lost }, { canEnable, unconfirmed }, asked, reader) {
+function watcherWords({ phase, note, reason, held_back, zone, returning, bound_for, driver, driver_name, guiding, lost }, { canEnable, canConnect, unconfirmed }, asked, reader) {
   if (concerns(note, false)) return sayTo(note, reader);
   const name = driver_name === null ? say("driver.somebody_else") : sayName(driver_name);
   if (guiding === "on") return say("status.guided_watching", { name });
@@ -102,6 +113,7 @@ function watcherWords({ phase, note, reason, held_back, zone, returning, bound_f
     default:
   }
   if (driver === null) {
+    if (lost && canConnect) return say("status.not_connected", parameters);
     if (!canEnable || lost) return parameters.reason;
     return say(unconfirmed ? "status.unconfirmed" : "status.disengaged_nobody", parameters);
   }
@@ -132,6 +144,7 @@ export function attachStatus(parts, connection) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   const canEnable = document.getElementById("enable") !== null;
+  const canConnect = document.getElementById("lost") !== null;
 
   const show = () => {
     const { state } = connection;
@@ -143,7 +156,8 @@ export function attachStatus(parts, connection) {
     // What this page did counts for nothing once somebody else drives.
     if (state !== null && !state.you) halted = null;
     const refused = performance.now() < refusedUntil ? why : null;
-    const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, unconfirmed: unconfirmed(), refused, late });
+    const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, canConnect, unconfirmed: unconfirmed(), refused, late });
+    parts.line.toggleAttribute("data-trouble", isTrouble(state));
     if (parts.line.dataset.phase !== phase) parts.line.dataset.phase = phase;
     if (text === wanted) return;
     wanted = text;

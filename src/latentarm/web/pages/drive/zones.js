@@ -1,4 +1,4 @@
-/** Where the arm is slow, in words: what is written in the views is no text for a screen reader. */
+/** Where the arm is slow, and what it keeps out of, in words: what is written in the views is no text for a screen reader. */
 
 import { setHidden, setText } from "../layout/dom.js";
 import { zoneWords } from "../layout/thing_words.js";
@@ -12,9 +12,11 @@ import { say, sayList, sayNumber } from "../layout/words.js";
  */
 export function attachZones(text, connection) {
   connection.addEventListener("welcome", () => {
-    const zones = connection.welcome?.zones ?? [];
-    setHidden(text, zones.length === 0);
+    const { zones, keep_out: solids } = connection.welcome ?? { zones: [], keep_out: [] };
+    setHidden(text, zones.length + solids.length === 0);
     const entries = zones.map(({ name, speed }) => say("zone.entry", { zone: zoneWords(name), centimetres: sayNumber(100 * speed) }));
-    setText(text, say("zone.list", { zones: sayList(entries) }));
+    const slow = zones.length ? [say("zone.list", { zones: sayList(entries) })] : [];
+    const out = solids.length ? [say("zone.keep_out", { zones: sayList(solids.map(zoneWords)) })] : [];
+    setText(text, [...slow, ...out].join(" "));
   });
 }

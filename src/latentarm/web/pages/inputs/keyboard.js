@@ -58,10 +58,22 @@ export function attachKeyboard(input, settings, actions) {
     const digit = /^Digit([1-9])$/.exec(event.code);
     if (digit) actions.axes(Number(digit[1]) - 1);
   };
+  window.addEventListener("click", unfocus);
   window.addEventListener("keyup", (event) => {
     if (held.delete(event.code)) push();
   });
   input.addEventListener("dropped", () => held.clear());
+}
+
+/**
+ * A pointer leaves no focus on the button that it presses: Enter would press that again, when it is to enable. Keys that
+ * press a button leave it where it is.
+ *
+ * @param {MouseEvent} event a click
+ */
+export function unfocus({ detail, target }) {
+  const button = detail > 0 && target instanceof Element ? target.closest("button") : null;
+  if (button && button === document.activeElement) button.blur();
 }
 
 /** Whether the focused control wants this key for itself. @param {EventTarget | null} target @param {string} code @param {boolean} driving */

@@ -60,6 +60,8 @@ export function attachPage({ drop = () => {}, repaint = () => {}, runChanged = (
     dialog.offer(profiles);
   });
   connection.addEventListener("run_changed", runChanged);
+  // It may be another arm, with other limits: nothing that was drawn, confirmed or chosen before counts.
+  connection.addEventListener("server_changed", () => location.reload());
   connection.addEventListener("learning", () => {
     const { welcome, learning } = connection;
     if (!welcome || !learning || learning.profiles.join() === welcome.profiles.join()) return;

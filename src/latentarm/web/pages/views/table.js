@@ -2,7 +2,7 @@
 
 import { THREE } from "../three/index.js";
 import { colour } from "./colours.js";
-import { solidOf } from "./shapes.js";
+import { sheetOf, solidOf } from "./shapes.js";
 
 /** @import {Obstacle} from "./scene_description.js" */
 
@@ -11,11 +11,14 @@ const MIDDLE_M = 0.35;
 const CELL_M = 0.1;
 
 export class Table {
-  /** @param {Obstacle[]} obstacles level planes are drawn as the table */
+  /** @param {Obstacle[]} obstacles a level plane is drawn as the table, others as sheets */
   constructor(obstacles) {
     const look = { transparent: true, opacity: 0.6 };
-    this._solids = obstacles.flatMap((one) => (one.type === "plane" ? [] : [solidOf(one, new THREE.MeshLambertMaterial(look))]));
     const level = obstacles.find((one) => one.type === "plane" && one.normal[2] > 0.99);
+    this._solids = obstacles.filter((one) => one !== level).map((one) => {
+      const material = new THREE.MeshLambertMaterial({ ...look, side: one.type === "plane" ? THREE.DoubleSide : THREE.FrontSide });
+      return one.type === "plane" ? sheetOf(one, SIZE_M, material) : solidOf(one, material);
+    });
     /** m */
     this.height = level?.type === "plane" ? level.point[2] : 0;
     this._floor = new THREE.Mesh(new THREE.PlaneGeometry(SIZE_M, SIZE_M), new THREE.MeshBasicMaterial());
