@@ -52,6 +52,14 @@ CATCHES_UP_S: Final = 0.1
 """How much the simulated Franka makes up for where this computer stood still. One that lost that time would
 not have made the motion that was commanded: to the driver it would lag behind."""
 
+FLOOR: Final = """
+[keep_out.floor]
+shape = "half_space"
+point_m = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+"""
+"""franky-sim has one, and random keys would press the hand onto it."""
+
 XARM_FILES: Final = Path(__file__).parents[1] / "tests" / "arms"
 XARM_SPEED: Final = ("--joint-speed", "0.4")
 XARM_GRIPPER: Final = """
@@ -96,13 +104,14 @@ class FrankaArm:
     """franky-sim.
 
     Args:
-        folder: for its clock and its log.
+        folder: for its floor and its log.
         stand_in: its process.
     """
 
-    options = ("--arm", franka.ADDRESS, "--robot", "fr3")
-
     def __init__(self, folder: Path, stand_in: franka.FrankaStandIn) -> None:
+        zones = folder / "zones.toml"
+        zones.write_text(FLOOR)
+        self.options = ("--arm", franka.ADDRESS, "--robot", "fr3", "--zones", str(zones))
         self._log = folder / "log.npy"
         self._stand_in = stand_in
         self.pid: int = stand_in.pid

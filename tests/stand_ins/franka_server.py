@@ -2,8 +2,8 @@
 
 franky-sim 1.0.4 speaks the arm's protocol over MuJoCo, gripper included. Added here, in its own terms: a stop
 button, reflexes and how they are recovered from, the arm's stop after cycles without a message (where a test
-asks for it, because a busy machine is late), and the hand's answer to a move that it was told to stop. No
-limits are enforced.
+asks for it, because a busy machine is late), and the hand's answer to a move that it was told to stop. Left
+out are contacts that the real arm does not have. No limits are enforced.
 
 As a program (``python franka_server.py HOST CYCLES CATCHES_UP [CLOCK]``) it takes orders by line on standard
 input and answers in JSON; `FrankaStandIn` is its other end.
@@ -33,6 +33,9 @@ _DAMPING = (450.0, 450.0, 350.0, 350.0, 200.0, 200.0, 100.0)
 
 _PULL, _HELD_BACK, _STRENGTH = 60.0, 10.0, 5.0
 """Of a person's hand: N m/rad, N m s/rad, N m."""
+
+_FOREARM = 2
+"""The bit of a kind of contact that MuJoCo's models leave free."""
 
 _JOINT_REFLEX = 6
 _COMMUNICATION = 25
@@ -238,6 +241,22 @@ def _servers(lost_cycles: int):
     return simulation_server.SimulationServer
 
 
+def _part_forearm(model) -> None:
+    """Let the flange and the hand pass through the forearm's convex hull, which is what MuJoCo takes.
+
+    The hull fills the bend of the forearm, so both touch it near the lower end of joint 6. The manufacturer's own
+    meshes stay 22 mm (flange) and 34 mm (hand) apart there, however joint 7 is turned.
+    """
+    forearm, apart = model.body("robot0_fr3_link5").id, ("robot0_fr3_link7", "robot0_hand")
+    for bodies, kinds, others in (
+        (model.geom_bodyid, model.geom_contype, model.geom_conaffinity),
+        (np.arange(model.nbody), model.body_contype, model.body_conaffinity),
+    ):
+        solid = kinds != 0
+        others[solid & ~np.isin(bodies, [model.body(name).id for name in apart])] |= _FOREARM
+        kinds[solid & (bodies == forearm)] = others[solid & (bodies == forearm)] = _FOREARM
+
+
 class _Log:
     """Where the joints, the tool and the clock were in each cycle, while it is on."""
 
@@ -320,6 +339,7 @@ def _serve(host: str, lost_cycles: int, catches_up_s: float, clock_file: str | N
         hand = _Hand(robot)
         # An arm's controller never stops to collect garbage.
         with simulation_server(simulator, hostname_candidates=[host]) as server, short_collections():
+            _part_forearm(robot._model)
             print(json.dumps({"ready": True}), flush=True)  # noqa: T201
             due_s = time.monotonic()
             while True:
