@@ -244,8 +244,8 @@ def _servers(lost_cycles: int):
 def _part_forearm(model) -> None:
     """Let the flange and the hand pass through the forearm's convex hull, which is what MuJoCo takes.
 
-    The hull fills the bend of the forearm, so both touch it near the lower end of joint 6. The manufacturer's own
-    meshes stay 22 mm (flange) and 34 mm (hand) apart there, however joint 7 is turned.
+    The hull fills the bend of the forearm, so both touch it near the lower end of joint 6. The manufacturer's
+    own meshes stay 22 mm (flange) and 34 mm (hand) apart there, however joint 7 is turned.
     """
     forearm, apart = model.body("robot0_fr3_link5").id, ("robot0_fr3_link7", "robot0_hand")
     for bodies, kinds, others in (
