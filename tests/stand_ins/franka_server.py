@@ -27,8 +27,8 @@ START = (0.0, -0.785398, 0.0, -2.356194, 0.0, 1.570796, 0.785398)
 LOST_CYCLES = 20
 """The real arm stops after so many cycles of 1 ms without a message."""
 
-_STIFFNESS = (4500.0, 4500.0, 3500.0, 3500.0, 2000.0, 2000.0, 1000.0)
-_DAMPING = (450.0, 450.0, 350.0, 350.0, 200.0, 200.0, 100.0)
+STIFFNESS = (4500.0, 4500.0, 3500.0, 3500.0, 2000.0, 2000.0, 1000.0)
+DAMPING = (450.0, 450.0, 350.0, 350.0, 200.0, 200.0, 100.0)
 """Those of franky-sim, but for the last joint, which trembles by 0.1 rad/s with its own."""
 
 _PULL, _HELD_BACK, _STRENGTH = 60.0, 10.0, 5.0
@@ -241,7 +241,7 @@ def _servers(lost_cycles: int):
     return simulation_server.SimulationServer
 
 
-def _part_forearm(model) -> None:
+def part_forearm(model) -> None:
     """Let the flange and the hand pass through the forearm's convex hull, which is what MuJoCo takes.
 
     The hull fills the bend of the forearm, so both touch it near the lower end of joint 6. The manufacturer's
@@ -335,11 +335,11 @@ def _serve(host: str, lost_cycles: int, catches_up_s: float, clock_file: str | N
     threading.Thread(target=listen, daemon=True).start()
     log, cycle = _Log(), 0
     with MujocoSimulator() as simulator:
-        robot = simulator.add_robot(initial_q=START, kp=_STIFFNESS, kv=_DAMPING)
+        robot = simulator.add_robot(initial_q=START, kp=STIFFNESS, kv=DAMPING)
         hand = _Hand(robot)
         # An arm's controller never stops to collect garbage.
         with simulation_server(simulator, hostname_candidates=[host]) as server, short_collections():
-            _part_forearm(robot._model)
+            part_forearm(robot._model)
             print(json.dumps({"ready": True}), flush=True)  # noqa: T201
             due_s = time.monotonic()
             while True:
