@@ -1,10 +1,10 @@
 """What of a simulated Franka touches itself where the safety filters let the arm be, and how far apart it is.
 
 Random postures of an FR3 that keep the clearance from the arm itself and from the floor are put into
-franky-sim (see `tests/stand_ins/franka_server.py`). MuJoCo takes convex hulls for the shapes of the links. This counts
-postures in which two hulls overlap, as franky-sim has them and as the stand-in does, and gives the least
-distance of the meshes that the manufacturer draws, for each pair that touched and each turn of joint 7. It
-needs trimesh, scipy and python-fcl besides the development environment:
+franky-sim (see `tests/stand_ins/franka_server.py`). MuJoCo takes convex hulls for the shapes of the links.
+This counts postures in which two hulls overlap, as franky-sim has them and as the stand-in does, and gives
+the least distance of the meshes that the manufacturer draws, for each pair that touched and each turn of
+joint 7. It needs trimesh, scipy and python-fcl besides the development environment:
 
     python scripts/franka_contacts.py --postures 40000
 """

@@ -38,13 +38,13 @@ def look_at(arm: RealArm, robot: Robot, dt_s: float) -> Findings:
         refusals += _beyond(found.limits, robot)
     stops = "not known"
     if spec.stops_after_s is not None:
-        stops = f"begins to, within {1000 * spec.stops_after_s:.0f} ms of the last command's end"
+        stops = f"begins to stop within {1000 * spec.stops_after_s:.0f} ms"
     common = (
         Fact("robot", Path(robot.name).name),
         Fact("joints", ", ".join(spec.joint_names)),
         Fact("gripper", "none" if spec.gripper is None else f"opens {1000 * spec.gripper.width_m:.0f} mm"),
         Fact("commands", f"up to {spec.rate_hz:g} per second"),
-        Fact("stops by itself", stops),
+        Fact("without commands", stops),
     )
     told = {fact.name for fact in found.facts}
     facts = (*(fact for fact in common if fact.name not in told), *found.facts)

@@ -3,7 +3,7 @@
 import json as json_format
 from pathlib import Path
 from shlex import join
-from typing import Annotated
+from typing import Annotated, Final
 
 from rich.table import Table
 from tyro.conf import Positional, arg
@@ -20,6 +20,10 @@ from latentarm.errors import UserError
 from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive_setup import PERIOD_S, Spec, load_setup
 from latentarm.web.arm_process.speeds import Speeds
+
+FIRST_RAD_S: Final = 0.2
+FIRST_M_PER_S: Final = 0.05
+"""Limits for a first drive."""
 
 
 def check_arm_at(address: str, run: Path | None, robot: RobotOptions, speeds: Speeds) -> Findings:
@@ -82,17 +86,19 @@ def check(
     if found.refusals:
         refuse(found.refusals)
         return 2
+    slowly = speeds == Speeds.asked(None, None)
     options = {
         "--arm": address,
         "--robot": robot,
         "--end-effector": end_effector,
         "--limits": limits,
-        "--joint-speed": joint_speed,
-        "--link-speed": link_speed,
+        "--joint-speed": FIRST_RAD_S if slowly else joint_speed,
+        "--link-speed": FIRST_M_PER_S if slowly else link_speed,
     }
     given = [word for name, value in options.items() if value is not None for word in (name, str(value))]
     words = join(["latentarm", "teleop", *([] if run is None else [str(run)]), *given])
-    say(f"It can be driven. Nothing was moved. To drive it: {words}", json)
+    first = " slowly, as is right for a first drive" if slowly else ""
+    say(f"It can be driven. Nothing was moved. To drive it{first}: {words}", json)
     return 0
 
 

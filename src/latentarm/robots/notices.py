@@ -38,6 +38,11 @@ def notices(robot: Robot) -> list[str]:
             f"The model of {robot.name} has no shape: neither collisions with itself nor with obstacles are"
             " watched for."
         )
+    if robot.gripper is not None and not robot.gripper.joints:
+        said.append(
+            f"The model of {robot.name} lacks the gripper, so the safety filters do not know of it: make"
+            " obstacles and zones larger by its length."
+        )
     return said
 
 

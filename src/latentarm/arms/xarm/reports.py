@@ -124,8 +124,8 @@ class ReportStream:
             self._socket = socket.create_connection((host, port), 2.0)
         except OSError as error:
             raise LinkLostError(
-                f"The controller at {host} does not report on port {port}: check that no firewall is in"
-                f" between, and that its firmware is not older than stated ({error})."
+                f"The controller at {host} does not report on port {port}: check the port in the"
+                f" address, firewalls, and whether its firmware is as old as it says ({error})."
             ) from error
         self._socket.settimeout(0.2)
         self._thread = threading.Thread(target=self._run, name=f"xarm reports {kind}", daemon=True)

@@ -160,7 +160,11 @@ def _looked_at(
     say(f"A real arm is at {setup.arm}. It says of itself:")
     for fact in found.facts:
         say(f"  {fact.name}: {fact.value}")
-    spec = replace(setup.spec, found=tuple((fact.name, fact.value) for fact in found.facts))
+    if not setup.obstacles:
+        say("Nothing keeps the arm off a table: state where it is with --zones FILE (see docs/your-arm.md).")
+    kept_off = ", ".join(one.name for one in setup.obstacles) or "nothing, as nothing is stated"
+    facts = [(fact.name, fact.value) for fact in found.facts]
+    spec = replace(setup.spec, found=(*facts, ("keeps out of", kept_off)))
     return replace(config, spec=spec), replace(setup, spec=spec)
 
 

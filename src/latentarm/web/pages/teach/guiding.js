@@ -59,9 +59,14 @@ export function attachGuiding(parts, connection, lease) {
   let askedAt = -Infinity;
   const now = () => guidingOf(connection.state, { waiting: asked && !begun, confirmed: parts.confirmed.checked });
 
+  // What was confirmed holds for one time: whoever held the arm may have let go.
+  const over = () => {
+    if (begun) parts.confirmed.checked = false;
+    asked = begun = false;
+  };
   const end = () => {
     const tell = asked || connection.state?.guiding === "on";
-    asked = begun = false;
+    over();
     if (tell && connection.driving) connection.send({ type: "guide", on: false });
     show();
   };
@@ -106,7 +111,7 @@ export function attachGuiding(parts, connection, lease) {
   const look = () => {
     const on = connection.state?.guiding === "on";
     // What the arm, Stop or the server has ended is asked for again by a press alone.
-    if (asked && ((begun && !on) || (!begun && performance.now() - askedAt > BEGINS_MS) || connection.state?.guiding === "own")) asked = begun = false;
+    if (asked && ((begun && !on) || (!begun && performance.now() - askedAt > BEGINS_MS) || connection.state?.guiding === "own")) over();
     else if (asked && on) begun = true;
     show();
   };
@@ -118,7 +123,7 @@ export function attachGuiding(parts, connection, lease) {
   parts.confirmed.addEventListener("change", show);
   connection.addEventListener("state", look);
   connection.addEventListener("open", () => {
-    asked = begun = false;
+    over();
     show();
   });
   window.addEventListener("pagehide", end);
