@@ -66,6 +66,7 @@ class _Bus:
         self.places: deque[tuple[float, list[int]]] = deque(maxlen=4000)
         self.silent = False
         self.late = 0
+        self.powerless: set[int] = set()
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
         self.port = os.ttyname(self._slave)
@@ -108,6 +109,8 @@ class _Bus:
                 self.servos[order["number"]].registers[slice(*register)] = bytes(order["data"])
             case "remove":
                 del self.servos[order["number"]]
+            case "powerless":
+                self.powerless.add(order["number"])
             case "silent":
                 self.silent = order["silent"]
             case "late":
@@ -154,6 +157,8 @@ class _Bus:
 
     def _write(self, number: int, address: int, data: bytes) -> None:
         self.servos[number].registers[address : address + len(data)] = data
+        if number in self.powerless:
+            self.servos[number].registers[TORQUE] = 0
         self.written.append((time.monotonic(), number, address, list(data)))
 
     def _status(self, number: int, data: bytes) -> None:
@@ -210,6 +215,10 @@ class FeetechBus:
     def remove(self, number: int) -> None:
         """Pull a servo off the bus."""
         self._do("remove", number=number)
+
+    def cut_power(self, number: int) -> None:
+        """From now on a servo answers, and takes no torque."""
+        self._do("powerless", number=number)
 
     def silence(self, silent: bool) -> None:
         """Let the bus answer nothing any more, or answer again."""

@@ -221,6 +221,17 @@ def test_late_answers_to_another_question_are_no_positions(
 
 
 @needs_lerobot
+def test_an_arm_is_not_ready_while_a_motor_has_no_torque(arm: LerobotArm, bus: FeetechBus) -> None:
+    bus.cut_power(3)
+    arm.connect()
+    arm.enable()
+    time.sleep(1.0)
+    status = arm.status()
+    assert status.phase == "fault"
+    assert "elbow_flex stays without torque" in status.reason
+
+
+@needs_lerobot
 def test_stop_stops_it_and_it_goes_on_afterwards(arm: LerobotArm, bus: FeetechBus) -> None:
     _enabled(arm)
     _drive(arm, 30)

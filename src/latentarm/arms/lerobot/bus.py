@@ -233,10 +233,11 @@ class MotorsBus:
         that would let it drop for a moment.
 
         Raises:
-            OSError: a motor does not answer.
+            OSError: a motor does not answer, or has no torque even so.
         """
         limp = self.limp()
-        if not limp:
+        # That all have torque must be no late answer to another question.
+        if not limp and not (limp := self.limp()):
             return
         # A motor goes to its last goal as soon as torque is on.
         self._bus.sync_write("Goal_Position", self._sure_positions(), normalize=False)
@@ -244,6 +245,8 @@ class MotorsBus:
             _again(self._robot.configure)
         else:
             self._bus.enable_torque(list(limp), num_retry=_TRIES)
+        if still := self.limp():
+            raise ConnectionError(f"{', '.join(still)} stays without torque: check its supply and its cable.")
 
     def release(self, motors: Sequence[str]) -> None:
         """Switch torque off at some motors.
