@@ -9,22 +9,15 @@ from typing import Final, final
 
 import numpy as np
 
-from latentarm.arms.contract import Arm, ArmPhase, ArmStatus, check_arm, check_rate
+from latentarm.arms.contract import Arm, ArmStatus, check_arm, check_rate
+from latentarm.control.arm_stops import stop_of
 from latentarm.control.clock import Clock
 from latentarm.control.input_port import InputSource
 from latentarm.control.step import Step
-from latentarm.types import StepRecord, Stop, StopCode
+from latentarm.types import StepRecord, Stop
 
 ENABLING_S: Final = 5.0
 """An arm that has not become ready for so long after it was asked to is left disabled, s."""
-
-_CODES: Final[dict[ArmPhase, StopCode]] = {
-    "off": "arm_off",
-    "disabled": "not_enabled",
-    "fault": "arm_fault",
-    "emergency_stop": "arm_emergency_stop",
-}
-"""Why an arm takes no commands."""
 
 
 @final
@@ -298,9 +291,3 @@ class ControlLoop:
         # The next tick whose due time lies ahead.
         elapsed_s = self._clock.now_s() - self._start_s
         self._next = max(self._next, math.ceil(elapsed_s / self._period_s - 1e-9))
-
-
-def stop_of(status: ArmStatus) -> Stop:
-    """Why an arm that takes no commands may not move."""
-    said = {"text": status.reason} if status.phase == "fault" else {}
-    return Stop(status.reason, code=_CODES.get(status.phase), parameters=said)
