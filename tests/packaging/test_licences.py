@@ -16,6 +16,9 @@ LOOKED_INTO = {
     "docutils": "public domain and BSD; what is under the GPL is an Emacs mode that is not installed",
 }
 
+OF_CUDA = re.compile(r"cuda-|nvidia-")
+"""What torch's default build for Linux brings besides: the CPU build does without, and so does our code."""
+
 
 def needed_by(name: str, found: dict[str, set[str]], extras: frozenset[str] = frozenset()) -> None:
     """All distributions that installing one brings, with the extras that were asked for."""
@@ -33,7 +36,7 @@ def needed_by(name: str, found: dict[str, set[str]], extras: frozenset[str] = fr
 def runtime_distributions() -> list[str]:
     found: dict[str, set[str]] = {}
     needed_by("latentarm", found)
-    return sorted(found)
+    return sorted(name for name in found if not OF_CUDA.match(name))
 
 
 def licence_of(name: str) -> str:

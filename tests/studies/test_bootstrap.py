@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy import stats
@@ -11,6 +11,7 @@ probabilities = arrays(float, st.integers(1, 12), elements=st.floats(0, 1))
 
 
 @given(probabilities)
+@example(np.full(9, 0.875))
 def test_the_interval_stays_within_the_values_and_around_their_mean(values):
     low, high = bootstrap_interval(values)
     assert values.min() <= low <= high <= values.max()

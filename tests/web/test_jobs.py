@@ -33,8 +33,8 @@ def refuse(wire: Wire) -> None:
 
 
 def sleep_on(wire: Wire, left_behind: str) -> None:
-    wire.say(Number(value=os.getpid()))
     try:
+        wire.say(Number(value=os.getpid()))  # it may be ended as soon as this is heard
         time.sleep(60.0)
     finally:
         Path(left_behind).write_text("tidied up")

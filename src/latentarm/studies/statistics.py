@@ -147,7 +147,8 @@ def bootstrap_interval(values: FloatArray) -> tuple[FloatArray, FloatArray]:
     tail = (1.0 - CONFIDENCE) / 2.0
     low, high = np.quantile(means, (tail, 1.0 - tail), axis=0)
     # A mean of equal values differs from them by rounding.
-    return np.clip(low, values.min(axis=0), None), np.clip(high, None, values.max(axis=0))
+    lowest, highest = values.min(axis=0), values.max(axis=0)
+    return np.clip(low, lowest, highest), np.clip(high, lowest, highest)
 
 
 def reach_of_interval(values: FloatArray) -> tuple[float, float]:
