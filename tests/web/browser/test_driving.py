@@ -16,6 +16,9 @@ PATIENCE_S = 60.0
 NOTICED_S = 1.0
 """A person sees that nothing moves within this."""
 
+SCANNED_MS = 8000.0
+"""All choices have been lit within this."""
+
 KEYS = {"up": "ArrowUp", "down": "ArrowDown", "left": "ArrowLeft", "right": "ArrowRight"}
 PUSH = {"up": (0, 1), "down": (0, -1), "left": (-1, 0), "right": (1, 0)}
 GAMEPAD = """
@@ -95,7 +98,7 @@ class OneSwitch:
         # The choices change when the arm stops by itself: then there is nothing to wait for.
         with suppress(Error):
             lit = self.page.locator(f"#scan li[data-choice={choice}][aria-current=true]")
-            lit.wait_for(timeout=4000)
+            lit.wait_for(timeout=SCANNED_MS)
             self.page.keyboard.press("Enter")
 
     def enable(self):
@@ -128,9 +131,15 @@ class Gamepad:
         self.page.evaluate("pad.axes = [0.02, -0.01]")
 
 
-def best_direction(arm, goal):
-    """Whose way over the next half second ends nearest to the goal."""
-    return min(arm.ghosts, key=lambda name: np.linalg.norm(np.array(arm.ghosts[name][2]) - goal))
+def best_direction(arm, goal, pushed):
+    """What is pushed, as long as it comes nearer; else whose next half second ends nearest to the goal."""
+
+    def left_m(name):
+        return np.linalg.norm(np.array(arm.ghosts[name][2]) - goal)
+
+    if pushed is not None and left_m(pushed) < np.linalg.norm(arm.tool - goal):
+        return pushed
+    return min(arm.ghosts, key=left_m)
 
 
 def drive(hand, arm, goal):
@@ -148,7 +157,7 @@ def drive(hand, arm, goal):
             hand.enable()
             time.sleep(0.3)
             continue
-        best = best_direction(arm, goal)
+        best = best_direction(arm, goal, pushed)
         if best != pushed:
             hand.let_go()
             hand.push(best)
