@@ -12,6 +12,7 @@ from latentarm.models.pca.training import PCA
 from latentarm.tasks.table_top import TableTop
 from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.steering import Steering
+from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import Enable
 
 from .conftest import said
@@ -71,6 +72,30 @@ def test_after_a_collision_enable_recovers_the_arm(desk):
     assert "The arm has hit something." in said(reported(desk, 1.2))
     assert not moving(desk, 1.02, 1.5)
     assert moving(desk, 1.8, 2.4)
+
+
+def test_a_collision_is_said_of_an_arm_that_something_else_had_stopped(desk):
+    def collide(what):
+        return lambda: desk.arm.break_down(what, recoverable=True)
+
+    def stop():
+        desk.channel.stop.write(Notice(code="stop_pressed").model_dump_json().encode())
+
+    drive(
+        desk,
+        {
+            0.9: stop,
+            1.0: collide("The arm has hit something."),
+            1.9: stop,
+            2.0: collide("It has hit it again."),
+        },
+        enabled_at_s=(0.1, 1.5, 2.5),
+    )
+    desk.run(3.0)
+    assert "Somebody pressed Stop." in said(reported(desk, 0.95))
+    assert "The arm has hit something." in said(reported(desk, 1.2))
+    assert "It has hit it again." in said(reported(desk, 2.2))
+    assert moving(desk, 2.8, 2.9)
 
 
 def test_a_lost_connection_to_the_arm_is_said_in_a_sentence(desk):

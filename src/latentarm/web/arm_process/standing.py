@@ -33,7 +33,7 @@ class Standing:
         self._say = say
         self._guiding = HandGuiding(arm, step.robot.gripper, step.safety)
         self._connection = LostArm(arm)
-        self._pressed = arm.status().phase == "emergency_stop"
+        self._phase = arm.status().phase
 
     @property
     def guiding(self) -> Guiding | None:
@@ -101,21 +101,23 @@ class Standing:
                 self._step.refuse(stop_of(status))
         if self._episodes.by_hand and not self._guiding.recordable:
             self._episodes.end()
-        self._follow_emergency_stop()
+        self._follow_faults()
         if self._connection.look() == "found" and self._step.stopped is not None:
             self._step.refuse(stop_of(self._arm.status()))
             self._say(Notice(code="reconnected"))
 
-    def _follow_emergency_stop(self) -> None:
-        """Tell that it was pressed or released, whatever the arm was stopped for before."""
-        status = self._arm.status()
-        pressed = status.phase == "emergency_stop"
-        if pressed == self._pressed or self._step.stopped is None:
+    def _follow_faults(self) -> None:
+        """Tell what stops the arm itself, whatever it was stopped for before, and that it may be enabled."""
+        if self._step.stopped is None:
+            self._phase = "ready"
             return
-        self._pressed = pressed
-        if pressed:
+        status = self._arm.status()
+        before, self._phase = self._phase, status.phase
+        if status.phase == before:
+            return
+        if status.phase in ("fault", "emergency_stop"):
             self._step.refuse(stop_of(status))
-        else:
+        elif before == "emergency_stop":
             self._step.refuse(
                 Stop("The emergency stop on the arm is released.", code="emergency_stop_released")
             )
