@@ -37,7 +37,13 @@ from teleop_page import NO_GL, VIEWPORT, chromium, enable, served, tell
 from teleop_throttled import Watcher, wait
 from xarm_endurance import XArmServer, serving, xarm7
 
-ARROWS: Final = ("ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight")
+BACK: Final = {
+    "ArrowUp": "ArrowDown",
+    "ArrowDown": "ArrowUp",
+    "ArrowLeft": "ArrowRight",
+    "ArrowRight": "ArrowLeft",
+}
+ARROWS: Final = tuple(BACK)
 OTHER_AXES, HAND, ENABLE = "m", "g", "Enter"
 OTHER_AXES_SHARE, HAND_SHARE = 0.3, 0.15
 """How often a new arrow key comes with another pair of axes, and with the hand."""
@@ -319,7 +325,7 @@ def endure(browser: Browser, address: str, arm: SimulatedArm, minutes: float, se
 
 
 def close_page(browser: Browser, address: str, arm: SimulatedArm, arrow: str) -> dict[str, float]:
-    """Close the page while a key is held; a new page then enables the arm."""
+    """Close the page while a key is held; a new page then enables the arm, and drives it back."""
     page = opened(browser, address)
     enable(page)
     page.keyboard.down(arrow)
@@ -335,9 +341,9 @@ def close_page(browser: Browser, address: str, arm: SimulatedArm, arrow: str) ->
     page = opened(browser, address)
     before = arm.positions()
     enable(page)
-    page.keyboard.down(arrow)
+    page.keyboard.down(BACK[arrow])
     found["moves_when_enabled"] = float(moves(arm, before))
-    page.keyboard.up(arrow)
+    page.keyboard.up(BACK[arrow])
     page.close()
     return found
 
@@ -367,12 +373,13 @@ def main() -> None:
         site = stack.enter_context(served(None, options=arm.options))
         browser = stack.enter_context(chromium(NO_GL))
         figures: dict[str, object] = {"arm": chosen.arm, "seed": chosen.seed}
-        if chosen.minutes:
-            figures["driving"] = endure(browser, site.address, arm, chosen.minutes, chosen.seed)
+        # First, because random keys leave the arm where not every arrow moves it.
         if chosen.tries:
             arrows = np.random.default_rng(chosen.seed).choice(ARROWS, chosen.tries)
             tries = [close_page(browser, site.address, arm, str(arrow)) for arrow in arrows]
             figures["page closed"] = franka.summary(tries)
+        if chosen.minutes:
+            figures["driving"] = endure(browser, site.address, arm, chosen.minutes, chosen.seed)
         tell(figures, chosen.out)
 
 
