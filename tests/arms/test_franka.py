@@ -90,7 +90,7 @@ def test_it_says_what_it_found_and_moves_nothing(new_arm, stand_in):
     names = {fact.name: fact.value for fact in found.facts}
     assert names["arm"] == "Franka Research 3"
     assert names["mode"] == "Idle"
-    assert {"largest speed", "payload", "clock", "round trip", "stop", "hand"} <= set(names)
+    assert {"largest speed", "payload", "clock", "round trip", "hand"} <= set(names)
     np.testing.assert_allclose(stand_in.positions(), before, atol=TREMBLE_RAD)
     assert new_arm.status().phase == "off"
 

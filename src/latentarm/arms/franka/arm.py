@@ -77,7 +77,7 @@ class FrankaArm(GuidableArm):
             raise RuntimeError("the arm is connected; look before that")
         link = self._open()
         try:
-            return findings(link, self._options, self._robot, STOPS_AFTER_S)
+            return findings(link, self._options, self._robot)
         finally:
             link.close()
 

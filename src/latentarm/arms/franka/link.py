@@ -199,7 +199,7 @@ def refusals(link: Link, options: FrankaOptions, robot: Robot) -> tuple[str, ...
     return tuple(found)
 
 
-def findings(link: Link, options: FrankaOptions, robot: Robot, stops_after_s: float) -> Findings:
+def findings(link: Link, options: FrankaOptions, robot: Robot) -> Findings:
     """What the arm says of itself, and why it is not driven, if so."""
     state = link.arm.state
     limits = link.limits
@@ -230,7 +230,6 @@ def findings(link: Link, options: FrankaOptions, robot: Robot, stops_after_s: fl
         )
     facts.append(Fact("clock", _clock(link)))
     facts.append(Fact("round trip", _round_trip(link, options)))
-    facts.append(Fact("stop", f"begins at most {1000 * stops_after_s:.0f} ms after a command has run out"))
     return Findings(tuple(facts), refusals(link, options, robot))
 
 
