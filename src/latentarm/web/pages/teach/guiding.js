@@ -59,7 +59,7 @@ export function attachGuiding(parts, connection, lease) {
   let askedAt = -Infinity;
   const now = () => guidingOf(connection.state, { waiting: asked && !begun, confirmed: parts.confirmed.checked });
 
-  // What was confirmed holds for one time: whoever held the arm may have let go.
+  // A confirmation counts once: the person who held the arm may have let go.
   const over = () => {
     if (begun) parts.confirmed.checked = false;
     asked = begun = false;
