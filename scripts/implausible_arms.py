@@ -33,7 +33,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, Context, FloatArray, Input, Reading, StepRecord
+from latentarm.types import Command, GripperCommand, Context, FloatArray, Input, Reading, StepRecord
 
 PERIOD_S = 0.01
 ENCODER_NOISE_RAD = 1e-5
@@ -153,6 +153,10 @@ class ImplausibleArm(Arm):
         if faulty and self._fault == "drifting":
             velocity[self._joint] += 0.2 * self._sign
         self.plant.send(Command(velocity, command.duration_s))
+
+    def move_gripper(self, command: GripperCommand) -> None:
+        """See the base class."""
+        self.plant.move_gripper(command)
 
     def stop(self) -> None:
         """See the base class."""

@@ -250,14 +250,16 @@ class Input:
         switch_mode: the person asks for the controller's next mode.
         gripper: what the person asks of the gripper; None asks nothing. Like a mode switch it counts once,
             however long it is held.
-        pace: share of the asked-for speed, in [0, 1], that a second person leaves the first. It counts before
-            the safety filters, and for the robot's help too.
+        pace: share of the speed, in [0, 1], that a second person leaves the first. It counts after all limits,
+            for everything that moves: what the robot adds, a way back, the gripper.
+        opens: whether the person holds down what opens the gripper of an arm that is not enabled.
     """
 
     u: FloatArray
     switch_mode: bool = False
     gripper: GripperAsk | None = None
     pace: float = 1.0
+    opens: bool = False
 
 
 @dataclass(frozen=True)
@@ -345,7 +347,8 @@ class GripperCommand:
 
     Attributes:
         width_m: opening to reach, m.
-        speed_m_s: how fast the opening may change, m/s.
+        speed_m_s: how fast the opening may change, m/s. At 0 the fingers stay where they are, whatever the
+            width says, and hold what they hold as hard as they do now, and no harder.
         force_n: how hard the fingers may press together, N; a gripper that holds something keeps this force.
     """
 
@@ -395,9 +398,9 @@ class StepRecord:
         gripper: what the gripper measured, or None without one.
         things: (K, 7), where the things about the arm stand, in the order of the episode's header: position,
             m, and quaternion (w, x, y, z), in the base frame; empty where nobody looks. `Step` does not.
-        pace: share of the asked-for speed that a second person left, see `Input.pace`.
+        pace: share of the speed that a second person left, see `Input.pace`.
         added: how much of the assistive action was added to the person's: what the filters were asked for is
-            ``pace ((1 - alpha) a_h + (alpha + added) a_r)``. 0 where help takes the place of the person's
+            ``(1 - alpha) a_h + (alpha + added) a_r``. 0 where help takes the place of the person's
             action, as in equation 2.
     """
 

@@ -105,7 +105,7 @@ class WoodenArm(GuidableArm):
         self._ask_for("guide")
 
     def move_gripper(self, command: GripperCommand) -> None:
-        if self._status.phase == "guided":
+        if not self._status.takes_commands:
             self._ask_for("grip", gripper=_figures(command))
 
     def recover(self) -> None:

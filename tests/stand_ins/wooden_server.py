@@ -125,8 +125,8 @@ class WoodenServer(StandIn):
                 arm.stop()
             case "guide":
                 self.guiding = arm.status().phase == "disabled"
-            case "grip" if self.guiding:
-                arm.arm._gripper.send(GripperCommand(*request["gripper"]))
+            case "grip":
+                arm.move_gripper(GripperCommand(*request["gripper"]))
             case "send":
                 gripper = request["gripper"]
                 arm.send(

@@ -11,7 +11,7 @@ from latentarm.robots.gripper import Gripper
 from latentarm.robots.notices import assumed_limits
 from latentarm.robots.robot import Robot
 from latentarm.scene.scene import SceneState
-from latentarm.types import Command, Reading
+from latentarm.types import Command, GripperCommand, Reading
 
 ArmPhase = Literal["off", "disabled", "guided", "ready", "moving", "fault", "emergency_stop"]
 """What state an arm is in."""
@@ -73,8 +73,8 @@ class Arm(ABC):
 
     Once a command's ``duration_s`` has passed without another one, the arm comes to rest by itself, however
     the process that drives it may have ended. It moves for no other reason than a command that it was sent
-    while it was enabled: connecting, reconnecting, enabling, recovering and closing never move it, and what
-    it was sent before does not count afterwards.
+    while it was enabled (its gripper also by `move_gripper`): connecting, reconnecting, enabling, recovering
+    and closing never move it, and what it was sent before does not count afterwards.
 
     No method waits for the arm, except `connect` and `close`. As a context manager it is connected, and
     closed at the end.
@@ -124,6 +124,16 @@ class Arm(ABC):
     @abstractmethod
     def send(self, command: Command) -> None:
         """Take a command; it replaces the one before. An arm that is not enabled ignores it."""
+
+    @abstractmethod
+    def move_gripper(self, command: GripperCommand) -> None:
+        """Move the gripper of an arm that takes no commands, as far as it can be reached then.
+
+        So it is told to stop, and may be opened, while the arm is disabled, guided by hand, or has a fault.
+
+        Args:
+            command: where to, how fast and how hard; it replaces the one before.
+        """
 
     @abstractmethod
     def stop(self) -> None:

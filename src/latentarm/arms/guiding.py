@@ -3,7 +3,6 @@
 from abc import ABC, abstractmethod
 
 from latentarm.arms.real import RealArm
-from latentarm.types import GripperCommand
 
 
 class GuidableArm(RealArm, ABC):
@@ -23,12 +22,4 @@ class GuidableArm(RealArm, ABC):
 
         Raises:
             UserError: it cannot be asked for from here; the sentence says what to do at the arm.
-        """
-
-    @abstractmethod
-    def move_gripper(self, command: GripperCommand) -> None:
-        """Move the gripper of an arm that is guided; in any other phase nothing happens.
-
-        Args:
-            command: where to, how fast and how hard; it replaces the one before.
         """

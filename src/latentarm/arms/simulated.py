@@ -12,7 +12,7 @@ from latentarm.arms.simulated_gripper import SimulatedGripper
 from latentarm.errors import UserError
 from latentarm.kinematics.stillness import STILL_RAD_S
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, FloatArray, Reading
+from latentarm.types import Command, FloatArray, GripperCommand, Reading
 
 _CLOCK_DIGITS: Final = 9
 """Time passes in whole nanoseconds, so that equal periods of a clock are equally long for the arm."""
@@ -167,6 +167,13 @@ class SimulatedArm(Arm):
             self._left_s = max(float(command.duration_s), 0.0)
             if self._gripper is not None and command.gripper is not None:
                 self._gripper.send(command.gripper)
+
+    @final
+    def move_gripper(self, command: GripperCommand) -> None:
+        """See the base class."""
+        self._elapse()
+        if self._gripper is not None and self._phase == "disabled":
+            self._gripper.send(command)
 
     @final
     def stop(self) -> None:

@@ -29,6 +29,9 @@ class SimulatedGripper(ABC):
         figures = (command.width_m, command.speed_m_s, command.force_n)
         if not np.isfinite(figures).all():
             raise ValueError("a command to a gripper needs a finite width, speed and force")
+        if command.speed_m_s <= 0.0:
+            self.halt()
+            return
         most = self.gripper.width_m, self.gripper.speed_m_s, self.gripper.force_n
         self._aim(*(float(np.clip(figure, 0.0, top)) for figure, top in zip(figures, most, strict=True)))
 

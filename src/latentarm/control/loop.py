@@ -267,7 +267,8 @@ class ControlLoop:
             self._step.stop(self._stop_reasons.get())
             stopped = True
         given, age_s = self._source.latest(now_s)
-        self._heed(self._arm.status())
+        status = self._arm.status()
+        self._heed(status)
         record = self._step(given, age_s, self._arm.read(), now_s)
         ready_s = self._clock.now_s()
         if not overrun and self._ran_out(ready_s):
@@ -279,6 +280,8 @@ class ControlLoop:
         self._sent_s = ready_s
         self._step.sent(ready_s)
         self._arm.send(record.command)
+        if record.command.gripper is not None and not status.takes_commands:
+            self._arm.move_gripper(record.command.gripper)
         self._log.add(now_s - due_s, self._clock.now_s() - due_s, overrun=overrun)
         # Nobody is enabled in the tick of a stop, or while the loop is ending.
         if self._enable_asked.is_set() and (stopped or self._ending or self._try_to_enable(now_s)):

@@ -27,6 +27,7 @@ from latentarm.types import (
     Context,
     FloatArray,
     Goal,
+    GripperAsk,
     Input,
     Reading,
     StepRecord,
@@ -67,8 +68,12 @@ class Step:
         step(neutral, 0.0, arm.read(), now)
         step.enable()
 
-    What an input asks of the gripper passes a filter of its own (see `GripperFilter`); an arm that stops
-    drops nothing.
+    What is asked of the gripper passes a filter of its own (see `GripperFilter`), whoever asks: the person
+    who drives, one who guides the arm by hand, one who holds down what opens it. An arm that stops drops
+    nothing, and what was asked or believed before a stop counts for nothing after it.
+
+    A second person's pace scales what the limits leave, of the arm and the gripper alike; a stop is as fast
+    as ever.
 
     An input within the dead zone means no motion, whatever the decoder returns for zero, and no help, unless
     the assistance acts at rest. An enabled arm then moves by itself while inputs are fresh.
@@ -133,7 +138,7 @@ class Step:
         self._no_input = _sealed(np.zeros(controller.input_dim))
         self._engagement = Engagement()
         self._gripper = GripperFilter(robot.gripper, safety)
-        self._faltering = False
+        self._faltering = self._opens = False
         self._pace = 1.0
         self._mode = 0
         self._switch_held = False
@@ -281,6 +286,16 @@ class Step:
         """Believe again what was believed at first: a motion that nobody steered says nothing of a goal."""
         self._shared.reset()
 
+    def guided(self, ask: GripperAsk | None) -> None:
+        """In the next step the gripper goes where somebody asks who guides the disengaged arm by hand.
+
+        Said before each step as long as the arm is guided; fingers in motion stop when it no longer is.
+
+        Args:
+            ask: what is asked of the gripper; None asks nothing new.
+        """
+        self._gripper.guided(ask)
+
     def __call__(self, given: Input, input_age_s: float, reading: Reading, time_s: float) -> StepRecord:
         """One pass through Algorithm 1.
 
@@ -297,7 +312,7 @@ class Step:
             self._plausibility.reset()
             self.halted(lost)
         self._time_s = time_s
-        self._faltering, self._pace = False, 1.0
+        self._faltering, self._opens, self._pace = False, False, 1.0
         self._stack.tick(time_s)
         self._gripper.tick()
         q = self._positions_now(reading, time_s)
@@ -314,6 +329,8 @@ class Step:
             self._engagement.stop(u)
             return self._record(time_s, q, Passed(self._stack.stop()))
         self._pace = float(given.pace)
+        # After a jump of the clock nobody knows for how long it has been held.
+        self._opens = bool(given.opens) and lost is None
         neutral = u is self._no_input
         self._engagement.saw(neutral)
         self._switch(bool(given.switch_mode))
@@ -360,7 +377,7 @@ class Step:
                     return self._record(time_s, q, self._refused(_MISSHAPEN), u)
                 help_ = shared.help(u, a_h, context)
                 bound_rad = shared.bound(help_, context, self._mode)
-                wanted = self._pace * help_.with_person(a_h)
+                wanted = help_.with_person(a_h)
         except Exception as error:  # noqa: BLE001 - whatever a controller does wrong, the arm stops
             said = _said(error)
             stop = Stop(
@@ -388,7 +405,7 @@ class Step:
 
     def _passed(self, wanted: FloatArray, q: FloatArray, input_age_s: float) -> Passed:
         """Through the safety stack; a refusal disengages."""
-        passed = self._stack.command(wanted, self._plausibility.estimate(q), input_age_s)
+        passed = self._stack.command(wanted, self._plausibility.estimate(q), input_age_s, self._pace)
         if passed.stop is not None:
             self._engagement.stop(passed.stop)
         return passed
@@ -404,7 +421,7 @@ class Step:
             if stale is not None:
                 return stale
             u = np.asarray(given.u)
-            bool(given.switch_mode)
+            bool(given.switch_mode), bool(given.opens)
             if not 0.0 <= float(given.pace) <= 1.0:
                 return _invalid("The input's pace is outside [0, 1].")
             if not self._gripper.known(given.gripper):
@@ -461,7 +478,8 @@ class Step:
 
     def _command(self, passed: Passed) -> Command:
         stopped = self._engagement.stopped
-        gripper = self._gripper.command(engaged=stopped is None, falters=self._faltering)
+        pace = 0.0 if self._faltering else self._pace
+        gripper = self._gripper.command(self._time_s, pace, engaged=stopped is None, opens=self._opens)
         return Command(passed.velocity, self._hold_s, stopped, passed.limited_by, gripper)
 
     def _record(
@@ -469,6 +487,9 @@ class Step:
     ) -> StepRecord:
         """A step without motion wanted."""
         self._shared.rest()
+        if self._engagement.stopped is not None:
+            # What somebody wanted before a stop says nothing of the first push after it.
+            self._shared.reset()
         return StepRecord(
             time_s=time_s,
             state=q,

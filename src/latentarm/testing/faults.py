@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import final
 
 from latentarm.arms.contract import Arm, ArmSpec, ArmStatus
-from latentarm.types import Command, Reading
+from latentarm.types import Command, GripperCommand, Reading
 
 
 @final
@@ -121,6 +121,11 @@ class FaultyArm(Arm):
         """See the base class."""
         if not self._cut:
             self.arm.send(command)
+
+    def move_gripper(self, command: GripperCommand) -> None:
+        """See the base class."""
+        if not self._cut:
+            self.arm.move_gripper(command)
 
     def stop(self) -> None:
         """See the base class."""

@@ -155,7 +155,7 @@ class FrankaArm(GuidableArm):
 
     def move_gripper(self, command: GripperCommand) -> None:
         """See the base class."""
-        if self._worker is not None and self._hand is not None and self._worker.guided:
+        if self._worker is not None and self._hand is not None and not self.status().takes_commands:
             self._hand.ask(command)
 
     def recover(self) -> None:

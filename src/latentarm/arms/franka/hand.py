@@ -37,7 +37,7 @@ class Hand:
     """Drives a connected hand.
 
     A command to close grasps, and keeps the force; any other moves to a width. A new command stops the one
-    before. Nothing is let go of because commands end, nor by `close`.
+    before, and one with speed 0 does no more than that: what has been grasped stays grasped. Nothing is let go of because commands end, nor by `close`.
 
     Args:
         hand: what franky has connected.
@@ -54,6 +54,8 @@ class Hand:
         self._asked: GripperCommand | None = None
         self._carried_out: GripperCommand | None = None
         self._motion: franky.BoolFuture | None = None
+        self._told: tuple[float, float] | None = None
+        self._reached: tuple[float, float] | None = None
         self._lost = ""
         self._closing = threading.Event()
         self._wake = threading.Event()
@@ -107,7 +109,13 @@ class Hand:
             _ABANDONED.append(self._hand)
 
     def _carry_out(self, command: GripperCommand) -> None:
-        self._end_motion()
+        if self._end_motion():
+            self._reached = self._told
+        self._carried_out = command
+        told = command.width_m, command.force_n
+        if command.speed_m_s <= 0.0 or told == self._reached:
+            return
+        self._told, self._reached = told, None
         speed = min(max(command.speed_m_s, _LEAST_SPEED), self._gripper.speed_m_s)
         force = min(max(command.force_n, _LEAST_FORCE), self._gripper.force_n)
         width = min(max(command.width_m, 0.0), self._gripper.width_m)
@@ -115,17 +123,21 @@ class Hand:
             self._motion = self._hand.grasp_async(0.0, speed, force, 0.0, self._gripper.width_m)
         else:
             self._motion = self._hand.move_async(width, speed)
-        self._carried_out = command
 
-    def _end_motion(self) -> None:
-        """Stop the fingers, where they are under way, and wait for the hand's answer."""
+    def _end_motion(self) -> bool:
+        """Stop the fingers, where they are under way, and wait for the hand's answer.
+
+        Returns:
+            Whether a motion had come to its end by itself.
+        """
         if self._motion is None or self._motion.wait(0.0):
-            self._motion = None
-            return
+            ended, self._motion = self._motion is not None, None
+            return ended
         self._hand.stop()
         if not self._motion.wait(_ANSWER_S):
             raise TimeoutError("the hand did not say that it has stopped")
         self._motion = None
+        return False
 
     def _measure(self) -> GripperReading:
         state = self._hand.state

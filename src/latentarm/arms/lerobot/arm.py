@@ -146,7 +146,7 @@ class LerobotArm(GuidableArm):
         self._tell("guide")
 
     def move_gripper(self, command: GripperCommand) -> None:
-        """See the base class."""
+        """See the base class. A jaw without torque is open to any hand, and is told nothing."""
         self._tell("grip", gripper=[command.width_m, command.speed_m_s])
 
     def recover(self) -> None:

@@ -68,7 +68,7 @@ class Keeper:
         self._phase: ArmPhase = "off"
         self._reason = ""
         self._failures = self._rounds = 0
-        self._released = False
+        self._released = self._grips = False
         self._targets: Targets | None = None
         self._q = np.zeros(len(self._joints))
         self._seen: deque[tuple[float, FloatArray]] = deque(maxlen=_VELOCITY_ROUNDS + 1)
@@ -116,8 +116,9 @@ class Keeper:
                     self._phase, self._reason = "disabled", ""
             case "guide":
                 self._let_go()
-            case "grip" if self._phase == "guided" and self._jaw is not None:
+            case "grip" if self._phase in ("guided", "disabled", "fault") and self._jaw is not None:
                 self._jaw.command(*message["gripper"])
+                self._grips = message["gripper"][1] > 0.0 and (self._grips or self._jaw_has_torque())
             case "stop":
                 self._halt()
             case "recover" if self._phase == "fault" and not self._failures:
@@ -230,7 +231,7 @@ class Keeper:
                 if self._jaw is not None:
                     goals[GRIPPER] = self._jaw.advance(min(self._read_s - before_s, 2 * PERIOD_S), opening)
                 self._bus.go(goals)
-            elif self._phase == "guided" and self._jaw is not None:
+            elif (self._phase == "guided" or self._grips) and self._jaw is not None:
                 width = self._jaw.advance(min(self._read_s - before_s, 2 * PERIOD_S), opening)
                 self._bus.go({GRIPPER: width})
             self._check_torque()
@@ -260,9 +261,15 @@ class Keeper:
         self._q = np.deg2rad([positions[joint] for joint in self._joints])
         self._seen.append((self._read_s, self._q))
         opening = float(positions.get(GRIPPER, 0.0))
-        if self._jaw is not None and self._phase not in ("ready", "guided"):
+        if self._jaw is not None and self._phase not in ("ready", "guided") and not self._grips:
             self._jaw.begin(opening)
         return opening
+
+    def _jaw_has_torque(self) -> bool:
+        """Whether the jaw can be driven; one without torque would get it from a new goal, and leap."""
+        with suppress(OSError):
+            return GRIPPER not in self._bus.limp()
+        return False
 
     def _fail(self, reason: str) -> None:
         if self._phase != "fault":

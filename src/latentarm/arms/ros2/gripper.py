@@ -41,13 +41,16 @@ class Ros2Gripper:
         self.failure = ""
 
     def command(self, command: GripperCommand) -> None:
-        """Go somewhere, unless that was the last goal already. The action knows no speed.
+        """Go somewhere, unless that was the last goal already. The action knows no speed but 0, which halts.
 
         Raises:
             ValueError: a figure is not finite: no safety filter sends that.
         """
         if not np.isfinite((command.width_m, command.speed_m_s, command.force_n)).all():
             raise ValueError("a command to a gripper needs a finite width, speed and force")
+        if command.speed_m_s <= 0.0:
+            self.halt()
+            return
         width_m = float(np.clip(command.width_m, 0.0, self._gripper.width_m))
         force_n = float(np.clip(command.force_n, 0.0, self._gripper.force_n))
         told = self._told

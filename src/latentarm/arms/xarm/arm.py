@@ -156,7 +156,8 @@ class XArm(GuidableArm):
     def move_gripper(self, command: GripperCommand) -> None:
         """See the base class."""
         driver = self._driver
-        if driver is not None and driver.session.gripper is not None and self._shared.condition == "guided":
+        takes_commands = self._shared.condition in TAKES_COMMANDS
+        if driver is not None and driver.session.gripper is not None and not takes_commands:
             driver.session.gripper.send(command)
 
     def recover(self) -> None:

@@ -72,7 +72,7 @@ class GripperLink:
         self._commands.set_timeout(_ANSWER_S)
         self._lock = threading.Condition()
         self._target: tuple[int, int] | None = None
-        self._enable = False
+        self._enable = self._on = False
         self._ended = False
         self.fault = ""
         try:
@@ -91,9 +91,10 @@ class GripperLink:
             self._lock.notify()
 
     def send(self, command: GripperCommand) -> None:
-        """Go to an opening; the same again changes nothing."""
+        """Go to an opening, no slower than it can; the same again changes nothing."""
         speed = round(FASTEST_UNITS * command.speed_m_s / self._gripper.speed_m_s)
-        target = units_of(command.width_m, self._gripper), min(max(speed, _SLOWEST_UNITS), FASTEST_UNITS)
+        speed = min(max(speed, _SLOWEST_UNITS), FASTEST_UNITS) if command.speed_m_s > 0.0 else 0
+        target = units_of(command.width_m, self._gripper), speed
         with self._lock:
             if target != self._target:
                 self._target = target
@@ -117,11 +118,13 @@ class GripperLink:
                     if self._ended:
                         return
                     target, enable, self._enable = self._target, self._enable, False
-                if enable:
+                # What opens it may come before the arm was ever enabled.
+                if enable or (target is not None and target[1] > 0 and not self._on):
+                    self._on = True
                     self._ask(lambda: self._commands.gripper_modbus_set_en(1))
                     self._ask(lambda: self._commands.gripper_modbus_set_mode(0))
                     sent = None
-                if target is not None and target != sent:
+                if target is not None and target != sent and self._on:
                     self._move(*target)
                     sent = target
                 self.reading = self._read()
@@ -133,6 +136,13 @@ class GripperLink:
             self.fault = str(error)
 
     def _move(self, units: int, speed: int) -> None:
+        if speed == 0:
+            # Read anew: the newest reading may be so old that the fingers would go back to it.
+            at = self._read()
+            if not at.holding:
+                units = units_of(at.width_m, self._gripper)
+                self._ask(lambda: self._commands.gripper_modbus_set_pos(units))
+            return
         self._ask(lambda: self._commands.gripper_modbus_set_posspd(speed))
         self._ask(lambda: self._commands.gripper_modbus_set_pos(units))
 

@@ -1,11 +1,14 @@
-"""What leaves the loop for the gripper: asked by a fresh input, within limits, still when the arm stops."""
+"""What leaves the loop for the gripper: asked by somebody who may, within limits, still when the arm stops."""
 
 import math
-from typing import Final, final, get_args
+from typing import Final, Literal, final, get_args
 
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.robots.gripper import Gripper
 from latentarm.types import GripperAsk, GripperCommand, GripperReading, Stop
+
+OPENS_AFTER_S: Final = 1.0
+"""The gripper of an arm that is not enabled opens where this was held down for so long without a break, s."""
 
 _ASKS: Final = (None, *get_args(GripperAsk))
 
@@ -15,12 +18,18 @@ _ASTRAY: Final = 0.01
 
 @final
 class GripperFilter:
-    """Turns what a person asks of the gripper into commands, and takes nothing back that holds something.
+    """Turns what people ask of the gripper into commands, and takes nothing back that holds something.
 
-    An ask counts once, when it appears, and only while the arm may move. Then the fingers go where it says,
-    no faster and no harder than the limits allow. When the arm is stopped, fingers in motion stop where they
-    are, and what they hold stays held with the same force; an ask from before does not go on afterwards.
-    While inputs falter they wait, and go on when inputs come back.
+    Three may ask, and the fingers move only while the one who asked still may:
+
+    - the person who drives, while the arm is enabled. An ask counts once, when it appears;
+    - a person who guides the disengaged arm by hand, as long as they do;
+    - whoever holds down what opens the gripper of a disengaged arm: after `OPENS_AFTER_S` without a break it
+      opens as long as that is held. Nothing closes it then.
+
+    Otherwise the fingers stay where they are, and what they hold stays held as hard as at that moment, and no
+    harder: when the arm is stopped, when guiding ends, and after the arm is enabled until something new is
+    asked. While inputs falter they wait, and go on when inputs come back.
 
     Args:
         gripper: what is driven, or None where there is nothing: then there are no commands.
@@ -39,9 +48,12 @@ class GripperFilter:
         """Begin a new episode: the gripper stays as it is until it is asked."""
         self._held: GripperAsk | None = None
         self._target_m: float | None = None
+        self._asker: Literal["driver", "guide", "opener"] | None = None
+        self._guided = False
+        self._guide_asks: GripperAsk | None = None
+        self._opens_since_s = math.inf
         self._reading: GripperReading | None = None
         self._fresh = False
-        self._still_at_m: float | None = None
 
     @property
     def reading(self) -> GripperReading | None:
@@ -60,14 +72,14 @@ class GripperFilter:
         return 0.0 if reading.holding else max(reading.width_m, 0.0)
 
     def tick(self) -> None:
-        """A new period begins: what was read before counts only for where to stand still."""
+        """A new tick: the reading of the one before is old."""
         self._fresh = False
 
     def saw(self, reading: GripperReading | None) -> Stop | None:
         """Take a reading.
 
         Args:
-            reading: of the gripper, whatever a driver gives.
+            reading: of this tick.
 
         Returns:
             Why it cannot be used, or None.
@@ -97,37 +109,61 @@ class GripperFilter:
             engaged: whether the arm may move.
         """
         new, self._held = asked != self._held, asked
-        if not (new and engaged) or self._gripper is None or not self._fresh or asked is None:
-            return
-        opens = self._closed() if asked == "toggle" else asked == "open"
-        self._target_m = self._gripper.width_m if opens else 0.0
+        if new and engaged and asked is not None and self._fresh:
+            self._aim(asked)
+            self._asker = "driver"
 
-    def command(self, *, engaged: bool, falters: bool) -> GripperCommand | None:
-        """Where the gripper is to go now.
+    def guided(self, asked: GripperAsk | None) -> None:
+        """The arm is guided by hand until the next command.
 
         Args:
-            engaged: whether the arm may move; if not, what was asked is forgotten.
-            falters: whether fresh inputs are missing for a moment.
+            asked: what the person who guides it asks; None asks nothing new.
+        """
+        self._guided, self._guide_asks = True, asked
+
+    def command(
+        self, time_s: float, pace: float, *, engaged: bool, opens: bool = False
+    ) -> GripperCommand | None:
+        """Where the gripper is to go now; called once in every tick.
+
+        Args:
+            time_s: the loop's clock, s.
+            pace: share of its speed that it may move with, in [0, 1]; 0 while inputs falter.
+            engaged: whether the arm may move.
+            opens: whether a fresh input says that what opens the gripper is held down.
 
         Returns:
-            The command, or None where the gripper is to stay as it is.
+            The command, or None where the gripper was never told anything and is to stay as it is.
         """
+        guided, asked = self._guided and not engaged, self._guide_asks
+        self._guided, self._guide_asks = False, None
+        self._opens_since_s = min(self._opens_since_s, time_s) if opens and not engaged else math.inf
+        frees = time_s - self._opens_since_s >= OPENS_AFTER_S
+        may = {"driver": engaged, "guide": guided, "opener": frees}
+        if self._asker is not None and not may[self._asker]:
+            # Where it is now, and not at each later reading: noise would let it creep.
+            self._target_m, self._asker = self._here(), None
+        if guided and asked is not None and self._fresh:
+            self._aim(asked)
+            self._asker = "guide"
+        elif frees and self._asker is None:
+            self._aim("open")
+            self._asker = "opener"
         if self._target_m is None:
             return None
-        if engaged and not falters:
-            self._still_at_m = None
-            return GripperCommand(self._target_m, self._speed, self._force)
-        if self._still_at_m is None:
-            # Where it is now, and not at each later reading: noise would let it creep.
-            self._still_at_m = self._here(self._target_m)
-        if not engaged:
-            self._target_m = self._still_at_m
-        return GripperCommand(self._still_at_m, self._speed, self._force)
+        return GripperCommand(
+            self._target_m, 0.0 if self._asker is None else pace * self._speed, self._force
+        )
 
-    def _here(self, target_m: float) -> float:
+    def _aim(self, asked: GripperAsk) -> None:
+        if self._gripper is not None:
+            opens = self._closed() if asked == "toggle" else asked == "open"
+            self._target_m = self._gripper.width_m if opens else 0.0
+
+    def _here(self) -> float | None:
         """The opening at which it stands still; where something is held, what it was closing towards, m."""
         if self._reading is None or self._reading.holding:
-            return target_m
+            return self._target_m
         return min(max(self._reading.width_m, 0.0), self._width)
 
     @property
@@ -136,7 +172,7 @@ class GripperFilter:
 
     def _closed(self) -> bool:
         """Whether it is closed, or on its way."""
-        if self._target_m is not None:
+        if self._asker is not None and self._target_m is not None:
             return self._target_m < 0.5 * self._width
         reading = self._reading
         return reading is not None and (reading.holding or reading.width_m < 0.5 * self._width)

@@ -111,13 +111,16 @@ class SafetyStack:
         """
         self._now_s = time_s
 
-    def command(self, wanted: FloatArray, state: FloatArray, input_age_s: float) -> Passed:
+    def command(
+        self, wanted: FloatArray, state: FloatArray, input_age_s: float, pace: float = 1.0
+    ) -> Passed:
         """The next command.
 
         Args:
             wanted: (n,), rad/s, any floats.
             state: (n,), measured joint positions, rad, finite.
             input_age_s: age of the newest input, s.
+            pace: share of what the limits leave of it that the arm moves with, in [0, 1].
 
         Returns:
             A velocity that keeps all limits, or a stop that is under way.
@@ -127,10 +130,11 @@ class SafetyStack:
         shaped = self._shaped(wanted, situation, limited_by)
         if isinstance(shaped, Stop):
             return Passed(self.stop(), tuple(limited_by), shaped)
+        shaped = pace * shaped
         if not some(shaped) and self.at_rest:
             self._brake = None
             return Passed(self._rest, tuple(limited_by))
-        first = self._ramp if some(wanted) else self._release
+        first = self._ramp if some(wanted) and pace > 0.0 else self._release
         for ramp, target in ((first, shaped), (self._ramp, self._rest)):
             ramped = ramp.ramped(target, self._velocity, self._acceleration)
             if isinstance(ramped, Stop):

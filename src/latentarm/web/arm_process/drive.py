@@ -156,7 +156,6 @@ class Drive:
 
     def _observe(self, record: StepRecord) -> None:
         """Called by the loop after every command."""
-        record = self._standing.seen(record)
         self._steering.tick += 1
         self._observed.see(record)
         enabled, steered = self._step.stopped is None, not self._way_back.on

@@ -1,17 +1,14 @@
 """Guiding an arm by hand, as long as the page of the person who asked for it is there."""
 
 import math
-from dataclasses import replace
 from typing import Final, Literal, final
 
 from latentarm.arms.contract import Arm
 from latentarm.arms.guiding import GuidableArm
 from latentarm.control.loop import ENABLING_S
-from latentarm.control.safety.config import SafetyConfig
-from latentarm.control.safety.gripper import GripperFilter
+from latentarm.control.step import Step
 from latentarm.errors import UserError
-from latentarm.robots.gripper import Gripper
-from latentarm.types import GripperAsk, StepRecord
+from latentarm.types import GripperAsk
 from latentarm.web.arm_process.lost_arm import why_not
 from latentarm.web.protocol.notice import Notice, notice_of
 from latentarm.web.protocol.report import Guiding
@@ -22,17 +19,16 @@ PAGE_S: Final = 1.0
 
 @final
 class HandGuiding:
-    """Begins and ends guiding, and moves the gripper meanwhile. The arm's loop goes on, disengaged.
+    """Begins and ends guiding. The arm's loop goes on, disengaged, and moves the gripper as is asked here.
 
     Args:
         arm: what is driven; guiding is offered where it is a `GuidableArm`.
-        gripper: of the robot, or None.
-        safety: limits of the gripper.
+        step: gets what is asked of the gripper.
     """
 
-    def __init__(self, arm: Arm, gripper: Gripper | None, safety: SafetyConfig) -> None:
+    def __init__(self, arm: Arm, step: Step) -> None:
         self._arm = arm if isinstance(arm, GuidableArm) else None
-        self._filter = GripperFilter(gripper, safety)
+        self._step = step
         self._doing: Literal["nothing", "asking", "guiding"] = "nothing"
         self._told = False
         self._own_mode = False
@@ -88,7 +84,6 @@ class HandGuiding:
         if self._arm is None or self._doing == "nothing":
             return False
         self._doing, self._ask = "nothing", None
-        self._filter.reset()
         self._arm.disable()
         return True
 
@@ -109,30 +104,13 @@ class HandGuiding:
         status = self._arm.status()
         if status.phase == "guided" and self._told:
             self._doing = "guiding"
+            self._step.guided(self._ask)
+            self._ask = None
             return None
         if self._doing == "asking" and time_s - self._since_s <= ENABLING_S:
             return self._ask_for_it(self._arm)
         self.end()
         return Notice(code="guiding_ended") if status.phase == "disabled" else why_not(status)
-
-    def seen(self, record: StepRecord) -> StepRecord:
-        """A step with what the gripper is told while the arm is guided, which is sent here.
-
-        Args:
-            record: as the loop made it.
-        """
-        if self._arm is None or self._doing != "guiding":
-            return record
-        self._filter.tick()
-        self._filter.saw(record.gripper)
-        self._filter.ask(None, engaged=True)
-        self._filter.ask(self._ask, engaged=True)
-        self._ask = None
-        command = self._filter.command(engaged=True, falters=False)
-        if command is None:
-            return record
-        self._arm.move_gripper(command)
-        return replace(record, command=replace(record.command, gripper=command))
 
     def _ask_for_it(self, arm: GuidableArm) -> Notice | None:
         """Take the arm where it can be asked, and ask."""

@@ -6,7 +6,7 @@ from typing import Literal, final
 from latentarm.arms.contract import Arm
 from latentarm.control.arm_stops import stop_of
 from latentarm.control.step import Step
-from latentarm.types import GripperAsk, StepRecord, Stop
+from latentarm.types import GripperAsk, Stop
 from latentarm.web.arm_process.episodes import Episodes
 from latentarm.web.arm_process.hand_guiding import HandGuiding
 from latentarm.web.arm_process.lost_arm import LostArm
@@ -31,7 +31,7 @@ class Standing:
         self._arm = arm
         self._episodes = episodes
         self._say = say
-        self._guiding = HandGuiding(arm, step.robot.gripper, step.safety)
+        self._guiding = HandGuiding(arm, step)
         self._connection = LostArm(arm)
         self._phase = arm.status().phase
 
@@ -49,10 +49,6 @@ class Standing:
     def lost(self) -> Notice | None:
         """Why the arm is not connected, or None where it is."""
         return self._connection.reason if self._connection.lost else None
-
-    def seen(self, record: StepRecord) -> StepRecord:
-        """A step with what the gripper is told meanwhile, which is sent here."""
-        return self._guiding.seen(record)
 
     def begin_guiding(self, time_s: float) -> None:
         """Let the arm be guided, if it is disengaged; an episode under way ends.

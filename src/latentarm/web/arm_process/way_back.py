@@ -1,6 +1,7 @@
 """The arm on its way to its start or a saved pose, while the driver's page lives and nobody pushes."""
 
 import math
+from dataclasses import replace
 from typing import Final, Literal, final
 
 import numpy as np
@@ -109,7 +110,7 @@ class WayBack(InputSource):
             self._pushed = True
         elif self._straight.clear:
             u[0] = 1.0
-        return Input(u), age_s
+        return replace(given, u=u, gripper=None), age_s
 
     def away(self, q: FloatArray) -> float:
         """How far the farthest joint is from the start, rad.
