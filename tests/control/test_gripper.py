@@ -46,7 +46,7 @@ class Driven:
     def __init__(self) -> None:
         robot = replace(load_robot("panda"), gripper=HAND)
         self.q = robot.home
-        self.step = Step(robot, EndEffectorController(robot), SafetyConfig())
+        self.step = Step(robot, EndEffectorController(robot), SafetyConfig(input_grace_s=0.05))
         self.step.reset(self.q)
         self._tick = itertools.count()
         self.tick()
@@ -58,10 +58,17 @@ class Driven:
         hand: GripperReading | None = OPEN,
         age_s: float = 0.0,
         u: float = 0.0,
+        pace: float = 1.0,
+        opens: bool = False,
     ) -> StepRecord:
         number = next(self._tick)
         reading = Reading(self.q, np.zeros(7), 0.01 * number, number, hand)
-        return self.step(Input(np.array([u, 0.0]), gripper=asked), age_s, reading, 0.01 * number)
+        given = Input(np.array([u, 0.0]), gripper=asked, pace=pace, opens=opens)
+        return self.step(given, age_s, reading, 0.01 * number)
+
+    def hold(self, seconds: float, hand: GripperReading | None = OPEN) -> list[GripperCommand | None]:
+        """Hold down what opens the gripper."""
+        return [self.tick(hand=hand, opens=True).command.gripper for _ in range(round(100 * seconds))]
 
 
 def test_close_sends_width_speed_and_force_within_the_limits_until_it_is_asked_again() -> None:
@@ -133,7 +140,7 @@ def test_a_stop_freezes_fingers_in_motion_where_they_are() -> None:
     driven.step.stop("Stop.")
     halfway = driven.tick(hand=GripperReading(0.051)).command.gripper
     assert halfway is not None
-    assert halfway.width_m == 0.051
+    assert (halfway.width_m, halfway.speed_m_s) == (0.051, 0.0)
     later = driven.tick(hand=GripperReading(0.049)).command.gripper
     assert later == halfway
     driven.step.enable()
@@ -144,8 +151,13 @@ def test_a_stop_drops_nothing() -> None:
     driven = Driven()
     driven.tick("close")
     held = driven.tick(hand=GripperReading(0.06, holding=True)).command.gripper
+    assert held is not None
     driven.step.stop("Stop.")
-    assert driven.tick(hand=GripperReading(0.06, holding=True)).command.gripper == held
+    stopped = driven.tick(hand=GripperReading(0.06, holding=True)).command.gripper
+    assert stopped == replace(held, speed_m_s=0.0)
+    driven.step.enable()
+    assert driven.tick(hand=GripperReading(0.06, holding=True)).command.gripper == stopped
+    assert driven.tick("close", hand=GripperReading(0.06, holding=True)).command.gripper == held
 
 
 def test_what_was_held_before_the_first_ask_is_opened_by_a_toggle() -> None:
@@ -175,19 +187,118 @@ def test_without_a_gripper_nothing_is_asked_of_it() -> None:
     gripper = GripperFilter(None, SafetyConfig())
     assert gripper.saw(None) is None
     gripper.ask("close", engaged=True)
-    assert gripper.command(engaged=True, falters=False) is None
+    gripper.guided("close")
+    assert gripper.command(0.0, 1.0, engaged=True) is None
+    gripper.guided("close")
+    assert gripper.command(0.01, 1.0, engaged=False, opens=True) is None
+    assert gripper.command(1.01, 1.0, engaged=False, opens=True) is None
 
 
 def test_fingers_wait_while_inputs_falter_and_then_go_on() -> None:
     gripper = made()
     gripper.ask("close", engaged=True)
     gripper.saw(GripperReading(0.05))
-    waiting = gripper.command(engaged=True, falters=True)
+    waiting = gripper.command(0.0, 0.0, engaged=True)
     assert waiting is not None
-    assert waiting.width_m == 0.05
-    going = gripper.command(engaged=True, falters=False)
+    assert waiting.speed_m_s == 0.0
+    going = gripper.command(0.01, 1.0, engaged=True)
     assert going is not None
-    assert going.width_m == 0.0
+    assert (going.width_m, going.speed_m_s) == (0.0, 0.05)
+
+
+def test_inputs_that_falter_let_fingers_wait() -> None:
+    driven = Driven()
+    driven.tick("close")
+    waiting = driven.tick(age_s=0.08).command.gripper
+    assert waiting is not None
+    assert waiting.speed_m_s == 0.0
+    assert driven.step.stopped is None
+    going = driven.tick().command.gripper
+    assert going is not None
+    assert going.speed_m_s == 0.05
+
+
+@pytest.mark.parametrize("pace", [0.0, 0.3])
+def test_pace_slows_the_gripper(pace: float) -> None:
+    driven = Driven()
+    closing = driven.tick("close", pace=pace).command.gripper
+    assert closing is not None
+    assert closing.speed_m_s == pytest.approx(0.05 * pace)
+
+
+@pytest.mark.parametrize(("before", "by_hand"), [("open", "close"), ("close", "open")])
+def test_what_guiding_did_with_the_gripper_stands_when_the_arm_is_enabled(
+    before: GripperAsk, by_hand: GripperAsk
+) -> None:
+    driven = Driven()
+    driven.tick(before)
+    driven.step.stop("Stop.")
+    driven.tick()
+    driven.step.guided(by_hand)
+    moved = driven.tick().command.gripper
+    assert moved is not None
+    assert (moved.width_m, moved.speed_m_s) == (WIDE if by_hand == "open" else 0.0, 0.05)
+    held = GripperReading(0.06, holding=True) if by_hand == "close" else OPEN
+    driven.step.guided(None)
+    assert driven.tick(hand=held).command.gripper == moved
+    driven.step.enable()
+    for _ in range(20):
+        after = driven.tick(hand=held).command.gripper
+        assert after == replace(moved, speed_m_s=0.0)
+    assert driven.step.context(driven.q).gripper_target[0] == moved.width_m
+
+
+def test_fingers_stop_where_guiding_ends() -> None:
+    driven = Driven()
+    driven.step.stop("Stop.")
+    driven.step.guided("close")
+    driven.tick()
+    ended = driven.tick(hand=GripperReading(0.05)).command.gripper
+    assert ended is not None
+    assert (ended.width_m, ended.speed_m_s) == (0.05, 0.0)
+
+
+def test_held_for_a_second_it_opens_a_disengaged_gripper_as_long_as_it_is_held() -> None:
+    held = GripperReading(0.012, holding=True)
+    driven = Driven()
+    driven.tick("close")
+    driven.step.stop("Stop.")
+    asked = driven.hold(1.0, held)
+    assert all(one is not None and one.speed_m_s == 0.0 for one in asked)
+    opening = driven.hold(0.2, held)[-1]
+    assert opening == GripperCommand(WIDE, 0.05, 20.0)
+    let_go = driven.tick(hand=GripperReading(0.03)).command.gripper
+    assert let_go is not None
+    assert (let_go.width_m, let_go.speed_m_s) == (0.03, 0.0)
+    assert driven.step.stopped is not None
+
+
+@pytest.mark.parametrize("interruption", ["let go", "stale", "closed", "enabled"])
+def test_what_opens_a_gripper_must_be_held_without_a_break(interruption: str) -> None:
+    driven = Driven()
+    driven.tick("close")
+    driven.step.stop("Stop.")
+    driven.hold(0.9)
+    if interruption == "enabled":
+        driven.step.enable()
+    elif interruption == "let go":
+        driven.tick()
+    elif interruption == "stale":
+        driven.tick(age_s=1.0, opens=True)
+    else:
+        driven.tick("close", opens=False)
+    asked = driven.hold(0.9)
+    assert all(one is not None and one.speed_m_s == 0.0 for one in asked)
+
+
+def test_a_clock_that_jumps_is_no_second_of_holding() -> None:
+    driven = Driven()
+    driven.tick("close")
+    driven.step.stop("Stop.")
+    driven.hold(0.5)
+    for _ in range(60):
+        next(driven._tick)
+    assert all(one is not None and one.speed_m_s == 0.0 for one in driven.hold(0.9))
 
 
 @given(
@@ -203,17 +314,20 @@ def test_fingers_wait_while_inputs_falter_and_then_go_on() -> None:
     ),
     speed=st.floats(0.001, 1.0),
     force=st.floats(0.1, 500.0),
+    pace=st.floats(0.0, 1.0),
 )
 def test_every_command_is_finite_and_within_the_limits(
-    ticks: list[tuple[GripperAsk | None, float, bool, bool, bool]], speed: float, force: float
+    ticks: list[tuple[GripperAsk | None, float, bool, bool, bool]], speed: float, force: float, pace: float
 ) -> None:
     gripper = GripperFilter(HAND, SafetyConfig(gripper_speed=speed, gripper_force=force))
-    for asked, width, holding, engaged, falters in ticks:
+    for number, (asked, width, holding, engaged, other) in enumerate(ticks):
         gripper.tick()
         gripper.saw(GripperReading(width, holding))
         gripper.ask(asked, engaged=engaged)
-        command = gripper.command(engaged=engaged, falters=falters)
+        if other:
+            gripper.guided(asked)
+        command = gripper.command(0.2 * number, pace, engaged=engaged, opens=other)
         if command is not None:
             assert 0.0 <= command.width_m <= WIDE
-            assert 0.0 < command.speed_m_s <= min(speed, HAND.speed_m_s)
+            assert 0.0 <= command.speed_m_s <= pace * min(speed, HAND.speed_m_s)
             assert 0.0 < command.force_n <= min(force, HAND.force_n)

@@ -101,8 +101,13 @@ class FingerServo(SimulatedGripper):
         return self._measured[0][1]
 
     def halt(self) -> None:
-        """See the base class."""
-        self._goal = self._target
+        """See the base class. Fingers that do not hold anything yet press no more."""
+        where = self._shares()
+        if self._per_step > 0.0 and not self._holds(where):
+            self._target = sum(where) / len(where)
+            self._data.ctrl[self._servos] = self._closed + self._per_m * self._target
+        # Once: where fingers give way later, they press back.
+        self._goal, self._per_step = self._target, 0.0
 
     def _aim(self, width_m: float, speed_m_s: float, force_n: float) -> None:
         fingers = len(self._closed)
@@ -121,8 +126,11 @@ class FingerServo(SimulatedGripper):
 
     def _reading(self) -> GripperReading:
         where = self._shares()
-        holding = self._stalled(where) and self._data.time - self._moved_s >= _STALLED_S
-        return GripperReading(sum(where), holding)
+        return GripperReading(sum(where), self._holds(where))
+
+    def _holds(self, where: list[float]) -> bool:
+        """Whether the fingers, which are at these positions, m, have been stalled for long enough."""
+        return self._stalled(where) and self._data.time - self._moved_s >= _STALLED_S
 
     def _stalled(self, where: list[float]) -> bool:
         """Whether the fingers, which are at these positions, m, stand still although their servos press."""

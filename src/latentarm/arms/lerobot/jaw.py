@@ -33,13 +33,19 @@ class Jaw:
         self._behind_s = 0.0
 
     def command(self, width_m: float, speed_m_s: float) -> None:
-        """Open or close to a width, m, at a speed, m/s."""
+        """Open or close to a width, m, at a speed, m/s; at 0 it halts."""
+        if speed_m_s <= 0.0:
+            self.halt()
+            return
         self._goal = float(np.clip(width_m * self._per_m, 0.0, 100.0))
         self._speed = speed_m_s * self._per_m
 
     def halt(self) -> None:
-        """Stay where it was told to be by now; what is held stays held."""
-        self._goal = self._target
+        """Stay where it is; what is held stays held, as hard as now."""
+        if self._speed > 0.0 and self._behind_s < _HOLDS_S:
+            self._target = self._at
+        # Once: a jaw that gives way later presses back.
+        self._goal, self._speed = self._target, 0.0
 
     def advance(self, span_s: float, at: float) -> float:
         """The target by now, from 0 to 100.
