@@ -33,7 +33,7 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.step import Step
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
-from latentarm.types import Command, GripperCommand, Context, FloatArray, Input, Reading, StepRecord
+from latentarm.types import Command, Context, FloatArray, GripperCommand, Input, Reading, StepRecord
 
 PERIOD_S = 0.01
 ENCODER_NOISE_RAD = 1e-5

@@ -250,8 +250,8 @@ class Input:
         switch_mode: the person asks for the controller's next mode.
         gripper: what the person asks of the gripper; None asks nothing. Like a mode switch it counts once,
             however long it is held.
-        pace: share of the speed, in [0, 1], that a second person leaves the first. It counts after all limits,
-            for everything that moves: what the robot adds, a way back, the gripper.
+        pace: share of the speed, in [0, 1], that a second person leaves the first. It counts after all
+            limits, for everything that moves: what the robot adds, a way back, the gripper.
         opens: whether the person holds down what opens the gripper of an arm that is not enabled.
     """
 

@@ -92,7 +92,7 @@ class World:
         self.number = 0
         self.enabled = self.neutral = self.asked_since = self.pushed_since = False
         self.ask = None
-        self.held_s = 0.0
+        self.held_since = self.held_at = math.inf
         self.paces = deque(maxlen=round(SETTLES_S / DT))
 
     def happens(self, event):
@@ -137,7 +137,11 @@ class World:
         if not falters:
             self.neutral = usable and not pushes and (runs or not self.enabled)
         self.enabled = runs
-        self.held_s = self.held_s + DT if usable and span.opens and not runs else 0.0
+        if usable and span.opens and not runs:
+            self.held_since, self.held_at = min(self.held_since, time_s), time_s
+        elif usable or runs or time_s - self.held_at > LIMITS.input_grace_s:
+            self.held_since = math.inf
+        self.held_s = time_s - self.held_since if usable else -math.inf
         pace = span.pace if usable else 0.0 if falters else 1.0
         self.check_arm(record.command.velocity, pace if pushes and runs else 0.0)
         self.check_gripper(record.command.gripper, pace, guided=guided and not runs)

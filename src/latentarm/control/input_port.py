@@ -56,6 +56,7 @@ class InputPort(InputSource):
         self._u: FloatArray = np.zeros(input_dim)
         self._switch = False
         self._pressed = False
+        self._opens = False
         self._gripper: GripperAsk | None = None
         self._asked: GripperAsk | None = None
         self._issued_s = self._received_s = -math.inf
@@ -102,6 +103,7 @@ class InputPort(InputSource):
             self._u = u
             self._switch = bool(given.switch_mode)
             self._pressed |= self._switch
+            self._opens = bool(given.opens)
             self._gripper = given.gripper
             self._asked = given.gripper or self._asked
             self._issued_s, self._received_s = issued_s, now_s
@@ -119,7 +121,7 @@ class InputPort(InputSource):
             age_s = now_s - self._received_s
             if now_s - self._issued_s > NONCE_LIFE_S or self._received_s > self._clock.now_s():
                 age_s = math.inf
-            return Input(self._u, switch, gripper), max(age_s, 0.0)
+            return Input(self._u, switch, gripper, opens=self._opens), max(age_s, 0.0)
 
 
 def _is_stamp(nonce: object, sequence: object) -> bool:

@@ -138,7 +138,8 @@ class Step:
         self._no_input = _sealed(np.zeros(controller.input_dim))
         self._engagement = Engagement()
         self._gripper = GripperFilter(robot.gripper, safety)
-        self._faltering = self._opens = False
+        self._faltering = False
+        self._opens: bool | None = None
         self._pace = 1.0
         self._mode = 0
         self._switch_held = False
@@ -312,7 +313,7 @@ class Step:
             self._plausibility.reset()
             self.halted(lost)
         self._time_s = time_s
-        self._faltering, self._opens, self._pace = False, False, 1.0
+        self._faltering, self._opens, self._pace = False, None, 1.0
         self._stack.tick(time_s)
         self._gripper.tick()
         q = self._positions_now(reading, time_s)

@@ -33,9 +33,11 @@ test("an input echoes the newest nonce and is numbered upwards", () => {
   connection.sendInput([1, 0], "dpad", false);
   socket.says(stateOf({ nonce: "b" }));
   connection.sendInput([0, 0], "dpad", true, "close");
+  connection.sendInput([0, 0], "gamepad", false, null, true);
   assert.deepEqual(socket.taken(), [
-    { type: "input", seq: 1, nonce: "a", u: [1, 0], source: "dpad", latched: false, gripper: null },
-    { type: "input", seq: 2, nonce: "b", u: [0, 0], source: "dpad", latched: true, gripper: "close" },
+    { type: "input", seq: 1, nonce: "a", u: [1, 0], source: "dpad", latched: false, gripper: null, opens: false },
+    { type: "input", seq: 2, nonce: "b", u: [0, 0], source: "dpad", latched: true, gripper: "close", opens: false },
+    { type: "input", seq: 3, nonce: "b", u: [0, 0], source: "gamepad", latched: false, gripper: null, opens: true },
   ]);
 });
 

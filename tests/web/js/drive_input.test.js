@@ -154,3 +154,33 @@ test("a lost connection lets go of everything", () => {
   assert.ok(!input.flowing);
   assert.equal(input.source, null);
 });
+
+test("what opens the gripper is said 50 times a second while it is held, and that it was let go", () => {
+  let held = true;
+  assert.ok(input.holdOpen("pointer", () => held));
+  drive(100, { phase: "disengaged" });
+  const opening = sent("input");
+  assert.ok(opening.length >= 4);
+  assert.ok(opening.every(({ opens, u, gripper }) => opens && u.every((axis) => axis === 0) && gripper === null));
+  held = false;
+  drive(100, { phase: "disengaged" });
+  assert.deepEqual(sent("input").map(({ opens }) => opens), [false]);
+});
+
+test("whatever makes the page doubtful, and Enable, end what opens the gripper", () => {
+  for (const end of [() => input.halt("focus_lost"), () => input.drop(), () => (fakes.document.hidden = true), () => input.enable()]) {
+    assert.ok(input.holdOpen("pointer", () => true));
+    drive(60, { phase: "disengaged" });
+    sent();
+    end();
+    drive(100, { phase: "disengaged" });
+    assert.ok(sent("input").every(({ opens }) => !opens));
+    fakes.document.hidden = false;
+    input.drop();
+  }
+});
+
+test("an enabled arm's gripper is not opened by holding", () => {
+  state({ phase: "ready" });
+  assert.ok(!input.holdOpen("pointer", () => true));
+});

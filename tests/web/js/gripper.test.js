@@ -12,6 +12,8 @@ let connection;
 let asked;
 let refused;
 let live;
+/** What was asked to be opened as long as it is held. */
+let held;
 let gripper;
 
 /** What the server says: whether there is a gripper, and how it is. */
@@ -26,13 +28,17 @@ const at = (width_m, fields = {}) => ({ width_m, holding: false, closing: null, 
 
 beforeEach(() => {
   fakes = newBrowser();
-  parts = { panel: new FakeElement(), open: new FakeElement(), close: new FakeElement(), state: new FakeElement() };
+  parts = { panel: new FakeElement(), open: new FakeElement(), close: new FakeElement(), state: new FakeElement(), hold: new FakeElement() };
   parts.panel.hidden = true;
   connection = Object.assign(new EventTarget(), { welcome: null, state: null });
   asked = [];
   refused = 0;
   live = true;
-  const input = { ask: (what, source) => live && asked.push([what, source]) > 0 };
+  held = null;
+  const input = {
+    ask: (what, source) => live && asked.push([what, source]) > 0,
+    holdOpen: (source, still) => !live && connection.driving && (held = { source, still }) !== null,
+  };
   gripper = attachGripper(parts, connection, input, () => (refused += 1));
 });
 
@@ -109,4 +115,41 @@ test("the state is said when it has settled, and not at every millimetre", () =>
   }
   pass(300);
   assert.deepEqual(said, ["Partly open, 52 mm."]);
+});
+
+test("held while the arm is not enabled, the button, G and a gamepad's button open it until they are let go", () => {
+  live = false;
+  connection.driving = true;
+  hears(at(0.02, { holding: true }));
+  assert.ok(!parts.hold.hidden);
+  const letGo = { pointer: "pointerup", keyboard: "keyup" };
+  for (const source of ["pointer", "keyboard"]) {
+    if (source === "pointer") parts.open.dispatchEvent(event("pointerdown"));
+    else gripper.toggle(source);
+    assert.equal(held.source, source);
+    assert.ok(held.still());
+    fakes.window.dispatchEvent(event(letGo[source]));
+    assert.ok(!held.still());
+  }
+  let pads = [null, { connected: true, buttons: [{ pressed: true }] }];
+  Object.defineProperty(globalThis.navigator, "getGamepads", { value: () => pads, configurable: true });
+  gripper.toggle("gamepad");
+  assert.ok(held.still());
+  pads = [];
+  assert.ok(!held.still());
+  assert.deepEqual(asked, []);
+});
+
+test("the click that ends holding it asks nothing, and a short one says that the arm is not enabled", () => {
+  live = false;
+  connection.driving = true;
+  hears(at(0.02));
+  parts.open.dispatchEvent(event("pointerdown"));
+  pass(1200);
+  parts.open.dispatchEvent(event("click"));
+  assert.equal(refused, 0);
+  parts.open.dispatchEvent(event("pointerdown"));
+  pass(200);
+  parts.open.dispatchEvent(event("click"));
+  assert.equal(refused, 1);
 });

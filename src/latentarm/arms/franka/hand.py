@@ -37,7 +37,8 @@ class Hand:
     """Drives a connected hand.
 
     A command to close grasps, and keeps the force; any other moves to a width. A new command stops the one
-    before, and one with speed 0 does no more than that: what has been grasped stays grasped. Nothing is let go of because commands end, nor by `close`.
+    before, and one with speed 0 does no more than that: what has been grasped stays grasped. Nothing is let
+    go of because commands end, nor by `close`.
 
     Args:
         hand: what franky has connected.

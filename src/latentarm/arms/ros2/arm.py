@@ -193,10 +193,9 @@ class Ros2Arm(GuidableArm):
 
     def move_gripper(self, command: GripperCommand) -> None:
         """See the base class."""
-        opened = self._open
-        if opened is not None and opened.gripper is not None and not self._out_of_reach():
-            if not self.status().takes_commands:
-                opened.gripper.command(command)
+        opened, status = self._open, self.status()
+        if opened is not None and opened.gripper is not None and not (status.lost or status.takes_commands):
+            opened.gripper.command(command)
 
     def recover(self) -> None:
         """See the base class."""

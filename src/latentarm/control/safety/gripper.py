@@ -1,4 +1,4 @@
-"""What leaves the loop for the gripper: asked by somebody who may, within limits, still when the arm stops."""
+"""What leaves the loop for the gripper: asked by who may ask, within limits, still when the arm stops."""
 
 import math
 from typing import Final, Literal, final, get_args
@@ -25,7 +25,8 @@ class GripperFilter:
     - the person who drives, while the arm is enabled. An ask counts once, when it appears;
     - a person who guides the disengaged arm by hand, as long as they do;
     - whoever holds down what opens the gripper of a disengaged arm: after `OPENS_AFTER_S` without a break it
-      opens as long as that is held. Nothing closes it then.
+      opens as long as that is held. Nothing closes it then. Inputs may be missing as long as an arm that
+      moves would not be stopped for it, and the fingers wait meanwhile.
 
     Otherwise the fingers stay where they are, and what they hold stays held as hard as at that moment, and no
     harder: when the arm is stopped, when guiding ends, and after the arm is enabled until something new is
@@ -38,6 +39,7 @@ class GripperFilter:
 
     def __init__(self, gripper: Gripper | None, config: SafetyConfig) -> None:
         self._gripper = gripper
+        self._gap_s = config.input_grace_s
         self._speed = self._force = 0.0
         if gripper is not None:
             self._speed = min(config.gripper_speed, gripper.speed_m_s)
@@ -51,7 +53,7 @@ class GripperFilter:
         self._asker: Literal["driver", "guide", "opener"] | None = None
         self._guided = False
         self._guide_asks: GripperAsk | None = None
-        self._opens_since_s = math.inf
+        self._opens_since_s = self._opens_heard_s = math.inf
         self._reading: GripperReading | None = None
         self._fresh = False
 
@@ -122,7 +124,7 @@ class GripperFilter:
         self._guided, self._guide_asks = True, asked
 
     def command(
-        self, time_s: float, pace: float, *, engaged: bool, opens: bool = False
+        self, time_s: float, pace: float, *, engaged: bool, opens: bool | None = None
     ) -> GripperCommand | None:
         """Where the gripper is to go now; called once in every tick.
 
@@ -130,15 +132,14 @@ class GripperFilter:
             time_s: the loop's clock, s.
             pace: share of its speed that it may move with, in [0, 1]; 0 while inputs falter.
             engaged: whether the arm may move.
-            opens: whether a fresh input says that what opens the gripper is held down.
+            opens: whether a fresh input says that what opens the gripper is held down; None without one.
 
         Returns:
             The command, or None where the gripper was never told anything and is to stay as it is.
         """
         guided, asked = self._guided and not engaged, self._guide_asks
         self._guided, self._guide_asks = False, None
-        self._opens_since_s = min(self._opens_since_s, time_s) if opens and not engaged else math.inf
-        frees = time_s - self._opens_since_s >= OPENS_AFTER_S
+        frees = not engaged and self._held_long_enough(opens, time_s)
         may = {"driver": engaged, "guide": guided, "opener": frees}
         if self._asker is not None and not may[self._asker]:
             # Where it is now, and not at each later reading: noise would let it creep.
@@ -151,9 +152,15 @@ class GripperFilter:
             self._asker = "opener"
         if self._target_m is None:
             return None
-        return GripperCommand(
-            self._target_m, 0.0 if self._asker is None else pace * self._speed, self._force
-        )
+        return GripperCommand(self._target_m, 0.0 if self._asker is None else pace * self._speed, self._force)
+
+    def _held_long_enough(self, opens: bool | None, time_s: float) -> bool:
+        if opens:
+            self._opens_since_s = min(self._opens_since_s, time_s)
+            self._opens_heard_s = time_s
+        elif opens is False or time_s - self._opens_heard_s > self._gap_s:
+            self._opens_since_s = math.inf
+        return bool(opens) and time_s - self._opens_since_s >= OPENS_AFTER_S
 
     def _aim(self, asked: GripperAsk) -> None:
         if self._gripper is not None:

@@ -111,9 +111,7 @@ class SafetyStack:
         """
         self._now_s = time_s
 
-    def command(
-        self, wanted: FloatArray, state: FloatArray, input_age_s: float, pace: float = 1.0
-    ) -> Passed:
+    def command(self, wanted: FloatArray, state: FloatArray, input_age_s: float, pace: float = 1.0) -> Passed:
         """The next command.
 
         Args:

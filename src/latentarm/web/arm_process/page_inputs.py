@@ -105,7 +105,7 @@ class PageInputs(InputSource):
         if asked is not None and self._port.offer(Input(u, gripper=asked.ask), asked.nonce, asked.seq):
             self._note(given)
             self._used(given.source)
-        if self._port.offer(Input(u), given.nonce, given.seq):
+        if self._port.offer(Input(u, opens=given.opens), given.nonce, given.seq):
             self._note(given)
 
     def _note(self, given: Given) -> None:

@@ -62,6 +62,7 @@ class Given(Message):
         source: with what kind of device.
         gripper: the newest thing that this driver has asked of the gripper; None before the first.
         paced: the newest that the driver's co-pilot has said; None without a co-pilot.
+        opens: what opens the gripper of an arm that is not enabled is held down.
     """
 
     driver: int
@@ -72,6 +73,7 @@ class Given(Message):
     source: str = ""
     gripper: AskedGripper | None = None
     paced: Paced | None = None
+    opens: bool = False
 
 
 @final

@@ -44,6 +44,9 @@ class Hello(Message):
 class DriverInput(Message):
     """The person's input, 50 times a second while the arm is enabled, including neutral.
 
+    Also while they hold down what opens the gripper of an arm that is not enabled. How long that has to be
+    held is judged next to the arm, by its own clock.
+
     Attributes:
         seq: grows.
         nonce: of the newest `State` that the page has seen.
@@ -51,6 +54,7 @@ class DriverInput(Message):
         source: with what.
         latched: continues without being held, for at most `Limits.latch_max_s`.
         gripper: what is asked of the gripper with this input; only in the one input that asks.
+        opens: what opens the gripper of an arm that is not enabled is held down.
     """
 
     type: Literal["input"]
@@ -60,6 +64,7 @@ class DriverInput(Message):
     source: Literal["pointer", "keyboard", "dpad", "gamepad", "switch"]
     latched: bool
     gripper: GripperAsk | None = None
+    opens: bool = False
 
 
 @final

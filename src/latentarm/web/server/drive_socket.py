@@ -366,6 +366,7 @@ class DriveSocket:
                 source=message.source,
                 gripper=self._asked,
                 paced=self._sessions.copilot.paced,
+                opens=message.opens,
             )
         )
 

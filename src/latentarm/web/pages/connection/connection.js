@@ -72,12 +72,13 @@ export class Connection extends EventTarget {
    * @param {import("../inputs/deflection.js").Source} source
    * @param {boolean} latched
    * @param {"open" | "close" | "toggle" | null} [gripper] what is asked of the gripper
+   * @param {boolean} [opens] whether what opens the gripper of an arm that is not enabled is held down
    * @returns {boolean} whether it went out.
    */
-  sendInput(u, source, latched, gripper = null) {
+  sendInput(u, source, latched, gripper = null, opens = false) {
     if (!this.fresh || !this.state) return false;
     this._sequence += 1;
-    return this.send({ type: "input", seq: this._sequence, nonce: this.state.nonce, u, source, latched, gripper });
+    return this.send({ type: "input", seq: this._sequence, nonce: this.state.nonce, u, source, latched, gripper, opens });
   }
 
   /** Another person sits here now: another page to the server. @param {import("../settings/settings.js").Person | null} person */

@@ -68,6 +68,7 @@ export interface DriverInput {
   source: "pointer" | "keyboard" | "dpad" | "gamepad" | "switch";
   latched: boolean;
   gripper?: "open" | "close" | "toggle" | null;
+  opens?: boolean;
 }
 
 export interface EndCopilot {

@@ -128,6 +128,7 @@ const gripper = attachGripper({
   open: byId("gripper-open", HTMLButtonElement),
   close: byId("gripper-close", HTMLButtonElement),
   state: byId("gripper-state"),
+  hold: byId("gripper-hold"),
 }, connection, input, status.refused);
 attachStick(byId("stick"), byId("stick-value"), input, settings);
 attachDpad(byId("dpad"), byId("dpad-help"), input, settings, status.refused);

@@ -33,6 +33,8 @@ export class DriveInput extends Deflection {
     this._timer = undefined;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._enabling = undefined;
+    /** @type {ReturnType<typeof setInterval> | undefined} While what opens the gripper is held. */
+    this._opening = undefined;
     this._wasEngaged = false;
     this._askedAt = -Infinity;
     this._tickedAt = -Infinity;
@@ -94,6 +96,25 @@ export class DriveInput extends Deflection {
     return this._connection.sendInput(this._meant(), this.source ?? source, this.latched, gripper);
   }
 
+  /**
+   * Open the gripper of an arm that is not enabled, as long as this is held; next to the arm it is judged for how long.
+   *
+   * @param {Source} source
+   * @param {() => boolean} held
+   * @returns {boolean} whether it can be asked for.
+   */
+  holdOpen(source, held) {
+    const may = () => !this.flowing && !document.hidden && this._connection.driving && !this._connection.engaged;
+    if (!may()) return false;
+    clearInterval(this._opening);
+    this._opening = setInterval(() => {
+      const opens = held() && may();
+      this._connection.sendInput(this._shaped(0, 0), source, false, null, opens);
+      if (!opens) clearInterval(this._opening);
+    }, PERIOD_MS);
+    return true;
+  }
+
   /** Let go of everything, and send no more until the person enables again. */
   drop() {
     this.neutral();
@@ -101,6 +122,7 @@ export class DriveInput extends Deflection {
     // An Enable that has not gone out yet must not come after a Stop.
     clearTimeout(this._enabling);
     clearInterval(this._timer);
+    clearInterval(this._opening);
     this._timer = undefined;
     this.lateness.rest();
   }

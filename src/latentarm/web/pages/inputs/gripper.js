@@ -1,6 +1,6 @@
 /** The gripper: two buttons, what every other way of driving asks of it, and its state in words. */
 
-import { setText } from "../layout/dom.js";
+import { setHidden, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 
 /** @import {Connection} from "../connection/connection.js" */
@@ -13,6 +13,8 @@ import { say } from "../layout/words.js";
 const END_SHARE = 0.03;
 /** The state is said once it has not changed for this long, ms: screen readers would announce every millimetre. */
 const SETTLE_MS = 250;
+/** The gripper of an arm that is not enabled opens after so long; the arm's own process counts it, ms. */
+const HOLD_MS = 1000;
 
 /**
  * Whether the gripper is closed or on its way: then the next thing to do is to open it.
@@ -39,7 +41,7 @@ export function gripperWords(gripper, widest) {
 }
 
 /**
- * @param {{panel: HTMLElement, open: HTMLButtonElement, close: HTMLButtonElement, state: HTMLElement}} parts
+ * @param {{panel: HTMLElement, open: HTMLButtonElement, close: HTMLButtonElement, state: HTMLElement, hold: HTMLElement}} parts
  * @param {Connection} connection
  * @param {DriveInput} input
  * @param {() => void} refused said when the gripper cannot be moved yet
@@ -54,9 +56,26 @@ export function attachGripper(parts, connection, input, refused) {
   const ask = (/** @type {"open" | "close" | "toggle"} */ what, /** @type {Source} */ source) => {
     if (widest() !== null && !input.ask(what, source)) refused();
   };
+  /** What opens the gripper of an arm that is not enabled, until that is let go. @type {Source | null} */
+  let holding = null;
+  let heldAt = NaN;
+  const hold = (/** @type {Source} */ source) => {
+    holding = source;
+    const begins = input.holdOpen(source, () => holding === source && (source !== "gamepad" || padPressed()));
+    heldAt = begins ? performance.now() : NaN;
+    return begins;
+  };
+  for (const end of ["keyup", "pointerup", "pointercancel", "blur"]) window.addEventListener(end, () => (holding = null));
+  parts.open.addEventListener("pointerdown", () => {
+    if (widest() !== null) hold("pointer");
+  });
   for (const what of /** @type {("open" | "close")[]} */ (["open", "close"])) {
     const button = parts[what];
-    button.addEventListener("click", () => ask(what, "pointer"));
+    button.addEventListener("click", () => {
+      // The click at the end of holding it asks nothing more.
+      if (what === "close" || !(performance.now() - heldAt >= HOLD_MS)) ask(what, "pointer");
+      heldAt = NaN;
+    });
     // A second finger, while the first holds the stick, makes no click.
     button.addEventListener("pointerup", ({ isPrimary, clientX, clientY }) => {
       if (!isPrimary && button.contains(document.elementFromPoint(clientX, clientY))) ask(what, "pointer");
@@ -68,6 +87,7 @@ export function attachGripper(parts, connection, input, refused) {
   connection.addEventListener("state", () => {
     const [{ state }, most] = [connection, widest()];
     if (!state || most === null) return;
+    setHidden(parts.hold, connection.engaged || !connection.driving);
     const words = gripperWords(state.gripper, most);
     if (words === wanted) return;
     wanted = words;
@@ -76,9 +96,9 @@ export function attachGripper(parts, connection, input, refused) {
   });
 
   return {
-    /** The other way than it was last told, by a key or a gamepad's button. @param {Source} source */
+    /** The other way than it was last told, by a key or a gamepad's button; held, it opens while the arm is not enabled. @param {Source} source */
     toggle(source) {
-      ask("toggle", source);
+      if (widest() === null || !hold(source)) ask("toggle", source);
     },
     /** Its place among the choices of a switch, which says what it will do. @returns {Choice[]} */
     choices() {
@@ -92,4 +112,9 @@ export function attachGripper(parts, connection, input, refused) {
       }];
     },
   };
+}
+
+/** Whether any button of any gamepad is pressed. */
+function padPressed() {
+  return [...navigator.getGamepads()].some((pad) => pad?.connected && pad.buttons.some(({ pressed }) => pressed));
 }
