@@ -22,6 +22,9 @@ BUFFER_M = 1e-3
 BUFFER_RAD = 2e-3
 """The same for joint positions."""
 
+MAY_BEND_M = 1e-6
+"""A command that keeps a distance which is too small already may bend towards it by this, m."""
+
 
 @final
 class Bounds:
@@ -44,6 +47,7 @@ class Bounds:
         acceleration: (n,), for ordinary motion, rad/s².
         quickening: (n,), the most that ordinary motion may speed up in one period, rad/s.
         jerk: (n,), for ordinary motion, rad/s³.
+        one_step: (n,), by how much ordinary motion can change a speed and be steady after one period, rad/s.
         release_acceleration: (n,), once the person has let go, rad/s².
         release_jerk: (n,), once the person has let go, rad/s³.
         stop_acceleration: (n,), for stops, rad/s².
@@ -107,6 +111,7 @@ class Bounds:
         self.acceleration = config.acceleration_fraction * hardware.acceleration
         self.quickening = self.acceleration * dt_s
         self.jerk = config.jerk_fraction * hardware.jerk
+        self.one_step = np.minimum(0.25 * self.jerk * dt_s**2, 0.5 * self.quickening)
         self.release_acceleration = config.release_fraction * hardware.acceleration
         self.release_jerk = config.release_fraction * hardware.jerk
         self.stop_acceleration = config.stop_fraction * hardware.acceleration
@@ -136,9 +141,9 @@ class Bounds:
                 f" had no fresh input for {1000 * STOPPED_WITHIN_S:.0f} ms must be enabled again: lower one."
             )
         self.reach_s = self.hold_s + self.stop_s
-        self.damping_per_s = float((self.acceleration / self.speed).min())
+        self.damping_per_s = min(float((self.acceleration / self.speed).min()), 1.0 / self.reach_s)
         self.nearest_m = config.clearance + BUFFER_M
-        self.horizon_s = max(1.0 / self.damping_per_s, self.reach_s)
+        self.horizon_s = 1.0 / self.damping_per_s
 
     def brake(self, velocity: np.ndarray, acceleration: np.ndarray) -> Brake:
         """The stop from a velocity (n,), rad/s, and an acceleration (n,), rad/s²."""

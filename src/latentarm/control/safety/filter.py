@@ -1,4 +1,4 @@
-"""What a safety filter is, what it knows, and the filters of the stack."""
+"""What a safety filter is, what it knows, and the filters that keep a velocity's direction."""
 
 import math
 from abc import ABC, abstractmethod
@@ -7,8 +7,7 @@ from typing import final
 import numpy as np
 
 from latentarm.control.safety.body import Body, Placement
-from latentarm.control.safety.bounds import BUFFER_M, BUFFER_RAD, Bounds
-from latentarm.control.safety.halfspaces import slide, unbent
+from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.proximity import Contacts, Proximity
 from latentarm.control.safety.small import largest, smallest, some
 from latentarm.control.safety.zone_distances import ZoneDistances
@@ -252,97 +251,3 @@ class LinkSpeed(SafetyFilter):
             return velocity
         fastest = largest(situation.placement.speeds(velocity))
         return velocity if fastest <= limit else velocity * (limit / fastest)
-
-
-@final
-class JointPosition(SafetyFilter):
-    """Slows each joint down before its limit and stops it there; the other joints go on.
-
-    The speed towards a limit is at most the distance left times ``damping_per_s``, which ordinary motion
-    can follow. Past a limit (the arm was put there by hand) a joint may only move back.
-    """
-
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return "joint position"
-
-    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
-        """See the base class."""
-        bounds = situation.bounds
-        if (situation.nearest_limit - BUFFER_RAD) * bounds.damping_per_s >= largest(np.abs(velocity)):
-            return velocity
-        down = (situation.room[0] + BUFFER_RAD) * bounds.damping_per_s
-        up = (situation.room[1] - BUFFER_RAD) * bounds.damping_per_s
-        clipped = np.minimum(np.maximum(velocity, np.minimum(down, 0.0)), np.maximum(up, 0.0))
-        return clipped if some(clipped != velocity) else velocity
-
-
-@final
-class WorkspaceBox(SafetyFilter):
-    """Damps motion towards the faces of the workspace box; without a box it changes nothing."""
-
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return "workspace"
-
-    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
-        """See the base class."""
-        bounds = situation.bounds
-        workspace = bounds.config.workspace
-        if workspace is None:
-            return velocity
-        points = situation.placement.points
-        # Room to the lower faces, then to the upper ones: (2, P, 3).
-        room = np.stack([points - workspace.lower, workspace.upper - points])
-        near = np.nonzero(room < BUFFER_M + bounds.config.link_speed * bounds.horizon_s)
-        if not len(near[0]):
-            return velocity
-        face, point, axis = near
-        outward = 1.0 - 2.0 * face
-        rows = situation.placement.jacobian[:, axis, point].T * outward[:, None]
-        left = np.maximum(room[near], 0.0)
-        floor = -bounds.damping_per_s * np.maximum(left - BUFFER_M, 0.0)
-        velocity = slide(velocity, rows, floor, left == 0.0)
-        speed = np.abs(velocity)
-        bend = situation.surroundings.body.point_curvature[point] @ speed @ speed
-        share = unbent(velocity, rows, left, bend, bounds.reach_s)
-        return velocity if share == 1.0 else share * velocity
-
-
-@final
-class Clearance(SafetyFilter):
-    """Limits the speed towards obstacles, and of the arm towards itself, by the remaining distance.
-
-    Where a distance is already too small, only motion that does not reduce it is allowed.
-    """
-
-    @property
-    def name(self) -> str:
-        """See the base class."""
-        return "clearance"
-
-    def apply(self, velocity: FloatArray, situation: Situation) -> FloatArray:
-        """See the base class."""
-        contacts = situation.contacts(np.abs(velocity))
-        if not contacts.pair.size:
-            return velocity
-        bounds, proximity = situation.bounds, situation.surroundings.proximity
-        height = contacts.height
-        if not contacts.fresh:
-            height = proximity.heights(contacts, np.zeros(bounds.dof))
-            if smallest(height.ravel()) <= bounds.nearest_m:
-                # This close to the limit, a slightly conservative bound would block motion.
-                contacts = situation.contacts_now()
-                if not contacts.pair.size:
-                    return velocity
-                height = contacts.height
-        rows = contacts.row.reshape(-1, bounds.dof)
-        room = np.maximum(height.ravel() - bounds.config.clearance, 0.0)
-        floor = -bounds.damping_per_s * np.maximum(room - BUFFER_M, 0.0)
-        velocity = slide(velocity, rows, floor, room == 0.0)
-        speed = np.abs(velocity)
-        bend = proximity.curvature[contacts.pair] @ speed @ speed
-        share = unbent(velocity, rows, room, np.repeat(bend, 2), bounds.reach_s)
-        return velocity if share == 1.0 else share * velocity

@@ -5,6 +5,7 @@ from typing import final
 import numpy as np
 
 from latentarm.control.safety.body import Placement
+from latentarm.control.safety.bounds import MAY_BEND_M
 from latentarm.control.safety.brake import Brake
 from latentarm.control.safety.filter import Situation
 from latentarm.control.safety.small import largest, smallest, some
@@ -84,7 +85,7 @@ class Guard:
       bound times the time of the path, in which the brake counts half.
 
     Where the arm is already past a limit (it was put there by hand), a path is accepted that does
-    not make that violation worse, so the operator can always back out. In a zone every path that is slow
+    not make that violation worse, so the operator can back out (`_worsens`). In a zone every path that is slow
     enough is accepted, wherever it leads.
     """
 
@@ -212,8 +213,8 @@ class Guard:
                 return False
             stray = (proximity.lever[contacts.pair] @ path.stray)[:, None]
             after = proximity.heights(contacts, path.way) - stray
-        allowed = np.minimum(clearance, contacts.height)
-        return some((after < allowed - _NUMERIC_M).ravel())
+        change = contacts.row @ path.way - stray
+        return _worsens(contacts.height, change, contacts.height + change - after, clearance)
 
     @staticmethod
     def _leaves_workspace(path: Path, situation: Situation) -> bool:
@@ -222,9 +223,25 @@ class Guard:
             return False
         body, placement = situation.surroundings.body, situation.placement
         way = np.abs(path.way)
-        lost = 0.5 * (body.point_curvature @ way @ way) + body.lever @ path.stray
+        bend, stray = 0.5 * (body.point_curvature @ way @ way)[:, None], (body.lever @ path.stray)[:, None]
         moved = np.tensordot(path.way, placement.jacobian[:, :3], axes=1).T
-        points = placement.points
-        low = points + moved - lost[:, None] < np.minimum(workspace.lower, points) - _NUMERIC_M
-        high = points + moved + lost[:, None] > np.maximum(workspace.upper, points) + _NUMERIC_M
-        return bool(low.any() or high.any())
+        return any(
+            _worsens(side * placement.points, side * moved - stray, bend, side * corner)
+            for side, corner in ((1.0, workspace.lower), (-1.0, workspace.upper))
+        )
+
+
+def _worsens(now: FloatArray, change: FloatArray, bend: FloatArray, least: FloatArray | float) -> bool:
+    """Whether a path takes distances below the least, or those that are below it already any lower.
+
+    Where a path leads along or away, those may bend by `MAY_BEND_M`: between two things that are both too near,
+    every way out bends towards one of them.
+
+    Args:
+        now: before it, m.
+        change: to first order, m.
+        bend: the most that they lose beyond that, m.
+        least: to be kept, m.
+    """
+    nearer = now + change < np.minimum(least, now) - _NUMERIC_M
+    return some((nearer | (now + change - bend < np.minimum(least, now - MAY_BEND_M))).ravel())

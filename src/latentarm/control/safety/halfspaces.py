@@ -1,65 +1,85 @@
 """Projections that keep a velocity from closing distances too fast."""
 
-import math
-
+import daqp
 import numpy as np
 
+from latentarm.control.safety.small import some
 from latentarm.types import BoolArray, FloatArray
 
-_PASSES = 12
-_ENOUGH = 1e-9
-
 _LEAN = 0.2
-"""Beyond a limit, at least this share of the motion must lead away from it."""
+"""Beyond a limit, at least this share of the motion must lead away from it, where that is possible."""
+
+_UNFELT = 1e-9
+"""A distance that no joint changes by more than this, in m per rad, has no direction."""
+
+_ROUNDING = 1e-6
+"""A velocity of which no greater share is left is rest."""
+
+_HARD, _SOFT = 0, 8
+_SOFTNESS = 1e-10
+"""The solver may miss half-spaces by this times their force: it finds no way between almost opposite ones otherwise."""
 
 
-def slide(velocity: FloatArray, rows: FloatArray, floor: FloatArray, passed: BoolArray) -> FloatArray:
-    """Remove from a velocity whatever approaches something too fast, and keep the rest.
+def slide(
+    velocity: FloatArray,
+    limits: tuple[FloatArray, FloatArray],
+    rows: FloatArray,
+    floor: FloatArray,
+    passed: BoolArray,
+) -> tuple[FloatArray, BoolArray]:
+    """The velocity nearest to what was asked for that approaches nothing too fast.
 
-    The worst half-space ``rows @ v >= floor`` is projected onto, in turn, so that an arm pushed obliquely
-    at a table slides along it. Where a limit is passed already, what is left leans away from it a little,
-    because a path along a curved surface would come nearer. The result is never longer than what was
-    asked for nor turned against it: where no such velocity is found, it is rest. What is still too fast
-    after a few rounds is slowed down as a whole.
+    Rest is within the half-spaces ``rows @ v >= floor`` and the ``limits``, so there is a nearest velocity P, and an
+    arm that is pushed obliquely at a table slides along it. P is rest only where every velocity d within
+    them leads backwards, ``d @ velocity <= 0``. Where a distance is too small already, what is left leans away from
+    it if it can, because a path along a curved surface would come nearer. The result is never longer than what
+    was asked for nor turned against it.
 
     Args:
         velocity: (n,), rad/s.
+        limits: lowest and highest speeds of the joints, (n,) each, with zero between them, rad/s.
         rows: (C, n), how joint velocities change C distances, m/s per rad/s.
         floor: (C,), the smallest rate of each distance, zero or below, m/s.
         passed: (C,), whether the distance is too small already.
 
     Returns:
-        (n,), rad/s; ``velocity`` itself where nothing is too fast.
+        (n,), rad/s, ``velocity`` itself where nothing is too fast; and which of the n + C limits changed it.
     """
-    rate = rows @ velocity
-    some_passed = bool(passed.any())
-    if not some_passed and (rate >= floor).all():
-        return velocity
-    norm = np.sqrt((rows * rows).sum(axis=1))
-    norm = np.maximum(norm, 1e-9)
-    lean = np.where(passed, 0.5 * _LEAN * norm, 0.0)
-    slid = velocity
-    for _ in range(_PASSES):
-        short = (floor + lean * math.sqrt(slid @ slid) - rate) / norm
-        worst = int(short.argmax())
-        if short[worst] <= _ENOUGH:
-            break
-        along = slid - rows[worst] * (rate[worst] / norm[worst] ** 2)
-        away = _LEAN * math.sqrt(along @ along) if passed[worst] else floor[worst] / norm[worst]
-        slid = along + rows[worst] * (away / norm[worst])
-        rate = rows @ slid
-    if slid is velocity:
-        return velocity
-    if slid @ velocity <= 0.0 or (rate[passed] < 0.0).any():
-        # Wedged between several things: the requested velocity may still be the way out.
-        slid, rate = velocity, rows @ velocity
-        if (rate[passed] <= 0.0).any():
-            return np.zeros_like(velocity)
-    share = min(1.0, math.sqrt((velocity @ velocity) / (slid @ slid)))
-    falling = rate < np.minimum(floor, -1e-12)
-    if falling.any():
-        share = min(share, float((floor[falling] / rate[falling]).min()))
-    return share * slid
+    clipped = np.clip(velocity, *limits)
+    acting = np.concatenate([clipped != velocity, passed & False])
+    if not some(passed) and not some(rows @ clipped < floor):
+        return (clipped if some(acting) else velocity), acting
+    norm = np.maximum(np.sqrt(np.vecdot(rows, rows)), _UNFELT)
+    rows, floor = rows / norm[:, None], floor / norm
+    slid, acting = _nearest(velocity, limits, rows, floor)
+    size = float(np.sqrt(velocity @ velocity))
+    if slid @ slid <= (_ROUNDING * size) ** 2:
+        return np.zeros_like(velocity), acting
+    lean = np.where(passed & (norm > _UNFELT), _LEAN * np.sqrt(slid @ slid), floor)
+    leaning, leant = _nearest(slid, limits, rows, lean)
+    if leaning @ velocity > 0.0 and not some(rows @ leaning < np.minimum(0.5 * lean, lean) - 1e-9):
+        slid, acting = leaning * min(1.0, size / float(np.sqrt(leaning @ leaning))), acting | leant
+    return (slid if some(acting) else velocity), acting
+
+
+def _nearest(
+    velocity: FloatArray, limits: tuple[FloatArray, FloatArray], rows: FloatArray, floor: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """The velocity within limits and half-spaces (of unit rows) that is nearest to one, and what holds it there."""
+    kinds = np.repeat(np.array([_HARD, _SOFT], dtype=np.int32), [len(velocity), len(rows)])
+    nearest, _, flag, info = daqp.solve(
+        np.eye(len(velocity)),
+        -velocity,
+        rows,
+        np.concatenate([limits[1], np.full(len(rows), np.inf)]),
+        np.concatenate([limits[0], floor]),
+        kinds,
+        primal_tol=1e-10,
+        rho_soft=_SOFTNESS,
+    )
+    if flag <= 0:
+        return np.zeros_like(velocity), kinds >= 0
+    return np.clip(nearest, *limits), info["lam"] != 0.0
 
 
 def unbent(
@@ -68,13 +88,13 @@ def unbent(
     """The share of a velocity that is slow enough to treat paths as straight.
 
     Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with
-    its rate g and its bend c. That must not use up more than the room left; where there is no room,
-    the motion must lead away. The largest such share has a closed form.
+    its rate g and its bend c. That must not use up more than the room left. The largest such share has a closed
+    form.
 
     Args:
         velocity: (n,), rad/s.
         rows: (C, n), as in `slide`.
-        room: (C,), distance that may still be lost, zero or more, m.
+        room: (C,), distance that may still be lost, above zero, m.
         bend: (C,), second derivative of each distance at full velocity, zero or more, m/s².
         time_s: s.
 

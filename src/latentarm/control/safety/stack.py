@@ -5,25 +5,23 @@ from typing import final
 
 import numpy as np
 
+from latentarm.control.safety.barriers import past_barriers
 from latentarm.control.safety.body import Body
 from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.brake import Brake
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.filter import (
-    Clearance,
     Finite,
     Freshness,
-    JointPosition,
     JointVelocity,
     LinkSpeed,
     SafetyFilter,
     Situation,
     Surroundings,
-    WorkspaceBox,
 )
 from latentarm.control.safety.guard import Guard
 from latentarm.control.safety.ramp import Ramp
-from latentarm.control.safety.small import largest, some
+from latentarm.control.safety.small import largest, smallest, some
 from latentarm.control.safety.zone_speed import ZoneSpeed
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray, Stop
@@ -52,8 +50,8 @@ class Passed:
 class SafetyStack:
     """Shapes and ramps the requested velocity, and sends it only with a proven stop.
 
-    The output is the first of these that is proven safe: the shaped and ramped velocity; an ordinary
-    deceleration; the stop that was proven with the previous command. See `Guard` for the proof.
+    The output is the first of these that is proven safe: the shaped velocity, ramped; a small step towards it; an
+    ordinary deceleration; the stop that was proven with the previous command. See `Guard` for the proof.
 
     Args:
         config: the limits.
@@ -65,16 +63,12 @@ class SafetyStack:
     """
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
-        self.bounds = Bounds(config, robot, dt_s)
-        self._surroundings = Surroundings(self.bounds, Body(robot))
-        position, velocity = JointPosition(), JointVelocity()
-        self._first: tuple[SafetyFilter, ...] = (Finite(), Freshness(), velocity, position)
-        self._sliding: tuple[SafetyFilter, ...] = (Clearance(), WorkspaceBox())
-        # Sliding along one thing can turn joints towards their limits, or speed one up.
-        self._after_sliding: tuple[SafetyFilter, ...] = (position, velocity)
-        bounds = self.bounds
+        self.bounds = bounds = Bounds(config, robot, dt_s)
+        self._surroundings = Surroundings(bounds, Body(robot))
+        self._first: tuple[SafetyFilter, ...] = (Finite(), Freshness(), JointVelocity())
         zones = [ZoneSpeed(bounds, index) for index in range(len(config.zones))]
-        self._last: tuple[SafetyFilter, ...] = (LinkSpeed(), *zones)
+        # Sliding along one thing can speed a joint up.
+        self._last: tuple[SafetyFilter, ...] = (JointVelocity(), LinkSpeed(), *zones)
         self._ramp = Ramp(dt_s, bounds.acceleration, bounds.jerk)
         self._release = Ramp(dt_s, bounds.release_acceleration, bounds.release_jerk)
         self._guard = Guard()
@@ -83,6 +77,7 @@ class SafetyStack:
         self._rest.flags.writeable = False
         self._velocity = self._rest
         self._acceleration = self._rest
+        self._by_steps = False
         self._brake: Brake | None = None
         self._brake_ticks = 0
         self._brake_began_s = 0.0
@@ -101,6 +96,7 @@ class SafetyStack:
     def reset(self) -> None:
         """Start again from an arm at rest."""
         self._velocity = self._acceleration = self._rest
+        self._by_steps = False
         self._brake = None
 
     def tick(self, time_s: float) -> None:
@@ -133,7 +129,15 @@ class SafetyStack:
             self._brake = None
             return Passed(self._rest, tuple(limited_by))
         first = self._ramp if some(wanted) and pace > 0.0 else self._release
-        for ramp, target in ((first, shaped), (self._ramp, self._rest)):
+        more = shaped - self._velocity
+        step = more * smallest(self.bounds.one_step / np.maximum(np.abs(more), self.bounds.one_step))
+        # The guard foresees what a ramp still adds once it has begun, which can be too much for a slow zone or
+        # beside a thing. Small steps, each over by the next tick, then move the arm until it is as fast as it may be.
+        self._by_steps &= some(wanted) and largest(np.abs(step - more)) > 0.0
+        targets = [(first, self._velocity + step), (self._ramp, self._rest)]
+        if not self._by_steps:
+            targets.insert(0, (first, shaped))
+        for ramp, target in targets:
             ramped = ramp.ramped(target, self._velocity, self._acceleration)
             if isinstance(ramped, Stop):
                 if self._ramp.name not in limited_by:
@@ -151,6 +155,7 @@ class SafetyStack:
                 if largest(np.abs(velocity - shaped)) > _SAME_RAD_S:
                     limited_by.append(self._ramp.name)
                 return Passed(velocity, tuple(limited_by))
+            self._by_steps = True
             if objection not in limited_by:
                 limited_by.append(objection)
         return Passed(self.stop(), tuple(limited_by))
@@ -160,10 +165,8 @@ class SafetyStack:
         velocity = self._through(self._first, wanted, situation, limited_by)
         if isinstance(velocity, Stop):
             return velocity
-        slid = self._through(self._sliding, velocity, situation, limited_by)
-        if not isinstance(slid, Stop) and slid is not velocity:
-            slid = self._through(self._after_sliding, slid, situation, limited_by)
-        return slid if isinstance(slid, Stop) else self._through(self._last, slid, situation, limited_by)
+        velocity = past_barriers(velocity, situation, limited_by)
+        return self._through(self._last, velocity, situation, limited_by)
 
     @staticmethod
     def _through(

@@ -39,7 +39,7 @@ class ZoneSpeed(SafetyFilter):
         self._name = zone_filter_name(zone.name)
         self._index = index
         self._limit = zone.speed
-        self._gain_per_s = min(bounds.damping_per_s, 1.0 / bounds.reach_s)
+        self._gain_per_s = bounds.damping_per_s
         self._begins_m = bounds.nearest_m + zone.speed * bounds.reach_s
         # Farther away than this, the limit of all links holds and this one is not below it.
         self._far_m = self._begins_m + (bounds.config.link_speed - zone.speed) / self._gain_per_s
