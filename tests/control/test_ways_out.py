@@ -33,7 +33,7 @@ def shape(name, kind, at, out, rng):
 
 
 def corner(robot, rng):
-    """Limits, a state and a wish: beyond joint limits, too near to things on one side or both, off the workspace."""
+    """Limits, a state and a wish: past joint limits, between things, off the workspace."""
     limits, capsules = robot.limits, robot.capsules
     q = rng.uniform(limits.lower, limits.upper) * 0.6 + 0.4 * robot.home
     end = np.where(rng.uniform(size=robot.dof) < 0.5, limits.lower + 0.1, limits.upper - 0.1)
@@ -181,5 +181,5 @@ def test_without_anything_in_the_way_any_joints_may_turn_at_once(request, seed, 
     rng = np.random.default_rng(seed)
     limits = robot.limits
     q = rng.uniform(limits.lower + 0.3, limits.upper - 0.3) * 0.5 + 0.5 * robot.home
-    states, fastest = driven(SafetyConfig(), robot, q, rng.choice([-1.0, 1.0], robot.dof))
+    _, fastest = driven(SafetyConfig(), robot, q, rng.choice([-1.0, 1.0], robot.dof))
     assert fastest > 0.01 or len(near(SafetyConfig(), robot, q))

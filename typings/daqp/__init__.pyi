@@ -5,9 +5,9 @@ from typing import Any
 from numpy.typing import NDArray
 
 def solve(
-    H: NDArray[Any],  # noqa: N803 - daqp's own name
+    H: NDArray[Any],
     f: NDArray[Any],
-    A: NDArray[Any],  # noqa: N803 - daqp's own name
+    A: NDArray[Any],
     bupper: NDArray[Any],
     blower: NDArray[Any],
     sense: NDArray[Any],

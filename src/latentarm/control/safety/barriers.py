@@ -20,7 +20,7 @@ class Distances:
     Attributes:
         kind: what the person is told when they have changed a command.
         rows: (C, n), how joint velocities change them, m/s per rad/s.
-        room: (C,), what each may still lose, zero or less where there is none, m.
+        room: (C,), what each may still lose, m.
         curvature: (C, n, n), bound of their second derivatives, see `Body`.
     """
 
@@ -33,11 +33,9 @@ class Distances:
 def past_barriers(velocity: FloatArray, situation: Situation, limited_by: list[str]) -> FloatArray:
     """Slow a velocity down before it passes a barrier, and keep what leads along it.
 
-    The speed towards a barrier is at most the distance left times ``damping_per_s``, which ordinary motion can
-    follow. Past a joint limit, or too near already, the arm may only move back.
-
-    All barriers count at once. One after the other, what slides along one could lead past another, and in their
-    corner the guard would let nothing pass (`docs/decisions/0040-a-way-out.md`).
+    The speed towards a barrier is at most the distance left times ``damping_per_s``, which ordinary motion
+    can follow. Past it the arm may only move back. One after the other, what slides along one barrier could
+    lead past another, and in their corner the guard would let nothing pass: so all of them count at once.
 
     Args:
         velocity: (n,), rad/s, within the joints' speeds.

@@ -85,7 +85,7 @@ class Guard:
       bound times the time of the path, in which the brake counts half.
 
     Where the arm is already past a limit (it was put there by hand), a path is accepted that does
-    not make that violation worse, so the operator can back out (`_worsens`). In a zone every path that is slow
+    not make that violation worse, so the operator can back out. In a zone every path that is slow
     enough is accepted, wherever it leads.
     """
 
@@ -232,16 +232,10 @@ class Guard:
 
 
 def _worsens(now: FloatArray, change: FloatArray, bend: FloatArray, least: FloatArray | float) -> bool:
-    """Whether a path takes distances below the least, or those that are below it already any lower.
+    """Whether a path takes distances, m, below the least, or those below it already lower.
 
-    Where a path leads along or away, those may bend by `MAY_BEND_M`: between two things that are both too near,
-    every way out bends towards one of them.
-
-    Args:
-        now: before it, m.
-        change: to first order, m.
-        bend: the most that they lose beyond that, m.
-        least: to be kept, m.
+    Where it changes those for the better, they may bend by `MAY_BEND_M`: between two things that are both too
+    near, every way out bends towards one of them. ``bend`` bounds what they lose beyond ``change``.
     """
     nearer = now + change < np.minimum(least, now) - _NUMERIC_M
     return some((nearer | (now + change - bend < np.minimum(least, now - MAY_BEND_M))).ravel())

@@ -17,7 +17,7 @@ _ROUNDING = 1e-6
 
 _HARD, _SOFT = 0, 8
 _SOFTNESS = 1e-10
-"""The solver may miss half-spaces by this times their force: it finds no way between almost opposite ones otherwise."""
+"""The solver may miss half-spaces by this times their force, or it finds no way between opposite ones."""
 
 
 def slide(
@@ -29,11 +29,11 @@ def slide(
 ) -> tuple[FloatArray, BoolArray]:
     """The velocity nearest to what was asked for that approaches nothing too fast.
 
-    Rest is within the half-spaces ``rows @ v >= floor`` and the ``limits``, so there is a nearest velocity P, and an
-    arm that is pushed obliquely at a table slides along it. P is rest only where every velocity d within
-    them leads backwards, ``d @ velocity <= 0``. Where a distance is too small already, what is left leans away from
-    it if it can, because a path along a curved surface would come nearer. The result is never longer than what
-    was asked for nor turned against it.
+    Rest is within the half-spaces ``rows @ v >= floor`` and the ``limits``, so there is a nearest velocity P:
+    an arm that is pushed obliquely at a table slides along it. P is rest only where every velocity d within
+    them leads backwards, ``d @ velocity <= 0``. Where a distance is too small already, what is left leans
+    away if it can, because a path along a curved surface would come nearer. The result is never longer than
+    what was asked for nor turned against it.
 
     Args:
         velocity: (n,), rad/s.
@@ -43,11 +43,11 @@ def slide(
         passed: (C,), whether the distance is too small already.
 
     Returns:
-        (n,), rad/s, ``velocity`` itself where nothing is too fast; and which of the n + C limits changed it.
+        (n,), rad/s, ``velocity`` itself where nothing is too fast; which of n + C limits changed it.
     """
     clipped = np.clip(velocity, *limits)
     acting = np.concatenate([clipped != velocity, passed & False])
-    if not some(passed) and not some(rows @ clipped < floor):
+    if not some(passed | (rows @ clipped < floor)):
         return (clipped if some(acting) else velocity), acting
     norm = np.maximum(np.sqrt(np.vecdot(rows, rows)), _UNFELT)
     rows, floor = rows / norm[:, None], floor / norm
@@ -65,7 +65,7 @@ def slide(
 def _nearest(
     velocity: FloatArray, limits: tuple[FloatArray, FloatArray], rows: FloatArray, floor: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """The velocity within limits and half-spaces (of unit rows) that is nearest to one, and what holds it there."""
+    """The velocity within limits and half-spaces of unit rows that is nearest, and which hold it."""
     kinds = np.repeat(np.array([_HARD, _SOFT], dtype=np.int32), [len(velocity), len(rows)])
     nearest, _, flag, info = daqp.solve(
         np.eye(len(velocity)),
@@ -88,8 +88,8 @@ def unbent(
     """The share of a velocity that is slow enough to treat paths as straight.
 
     Over ``time_s`` at share s of the velocity a distance changes by at least ``s g t - s² c t² / 2`` with
-    its rate g and its bend c. That must not use up more than the room left. The largest such share has a closed
-    form.
+    its rate g and its bend c. That must not use up more than the room left. The largest such share
+    has a closed form.
 
     Args:
         velocity: (n,), rad/s.

@@ -50,8 +50,8 @@ class Passed:
 class SafetyStack:
     """Shapes and ramps the requested velocity, and sends it only with a proven stop.
 
-    The output is the first of these that is proven safe: the shaped velocity, ramped; a small step towards it; an
-    ordinary deceleration; the stop that was proven with the previous command. See `Guard` for the proof.
+    The output is the first of these that is proven safe: the shaped and ramped velocity; a small step to it;
+    an ordinary deceleration; the stop that was proven with the previous command. See `Guard` for the proof.
 
     Args:
         config: the limits.
@@ -131,13 +131,11 @@ class SafetyStack:
         first = self._ramp if some(wanted) and pace > 0.0 else self._release
         more = shaped - self._velocity
         step = more * smallest(self.bounds.one_step / np.maximum(np.abs(more), self.bounds.one_step))
-        # The guard foresees what a ramp still adds once it has begun, which can be too much for a slow zone or
-        # beside a thing. Small steps, each over by the next tick, then move the arm until it is as fast as it may be.
+        # The guard foresees what a ramp still adds once it has begun, which may be too much in a slow zone or
+        # beside a thing. Steps that are over by the next tick then move the arm until it is fast enough.
         self._by_steps &= some(wanted) and largest(np.abs(step - more)) > 0.0
-        targets = [(first, self._velocity + step), (self._ramp, self._rest)]
-        if not self._by_steps:
-            targets.insert(0, (first, shaped))
-        for ramp, target in targets:
+        targets = ((first, shaped), (first, self._velocity + step), (self._ramp, self._rest))
+        for ramp, target in targets[self._by_steps :]:
             ramped = ramp.ramped(target, self._velocity, self._acceleration)
             if isinstance(ramped, Stop):
                 if self._ramp.name not in limited_by:
