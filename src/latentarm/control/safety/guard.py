@@ -234,8 +234,8 @@ class Guard:
 def _worsens(now: FloatArray, change: FloatArray, bend: FloatArray, least: FloatArray | float) -> bool:
     """Whether a path takes distances, m, below the least, or those below it already lower.
 
-    Where it changes those for the better, they may bend by `MAY_BEND_M`: between two things that are both too
-    near, every way out bends towards one of them. ``bend`` bounds what they lose beyond ``change``.
+    Unless straight ``change`` lowers those, their ``bend`` may, by `MAY_BEND_M`: between two things that are
+    both too near, every way out bends towards one of them.
     """
     nearer = now + change < np.minimum(least, now) - _NUMERIC_M
     return some((nearer | (now + change - bend < np.minimum(least, now - MAY_BEND_M))).ravel())
