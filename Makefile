@@ -11,10 +11,13 @@ CONSTRAIN := $(if $(LOCK),PIP_CONSTRAINT=$(abspath $(LOCK)))
 UV := $(CONSTRAIN) $(BIN)/python scripts/uv.py
 INSTALL := $(UV) pip install --quiet --python $(BIN)/python $(TORCH)
 WORKERS ?= $(shell env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)
-# One thread for each worker. A test file stays with one worker, so that what it trains is trained once; tests/conftest.py
-# orders the files. Tests start a hundred processes: bytecode is kept even where the environment says otherwise, because each
-# process would compile torch and us anew.
-PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
+# One thread for each worker, unless the caller sets another number. A test file stays with one worker, so that what it
+# trains is trained once; tests/conftest.py orders the files. Tests start a hundred processes: bytecode is kept even where
+# the environment says otherwise, because each process would compile torch and us anew.
+OMP_NUM_THREADS ?= 1
+OPENBLAS_NUM_THREADS ?= 1
+PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=$(OMP_NUM_THREADS) \
+	OPENBLAS_NUM_THREADS=$(OPENBLAS_NUM_THREADS) $(BIN)/python -m pytest
 PARALLEL := --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
@@ -61,7 +64,8 @@ test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of app
 	$(PYTEST) -m "not clock and not browser" $(PARALLEL)
 	$(PYTEST) -m "clock or browser" tests/arms tests/web
 
-test-thorough: $(VENV)/installed-dev ## 10,000 Hypothesis examples for motion and geometry, 2,000 drives (hours; nightly).
+test-thorough: $(VENV)/installed-dev ## Random examples, 10,000 for motion and geometry, 2,000 drives (hours; nightly).
+	$(PYTEST) --hypothesis-profile=random -m "not slow and not clock" $(PARALLEL)
 	$(BIN)/python -m pytest --hypothesis-profile=thorough tests/control tests/kinematics tests/robots
 	$(BIN)/python scripts/clearance_drives.py
 

@@ -11,10 +11,17 @@ from figure_faults import faults
 HERE = Path(__file__).parent
 
 # On a busy machine a single example, or making one, may take long without anything being wrong. Fifty
-# examples hit the laws well; those of motion and geometry have thousands each night.
+# examples hit the laws well. `make test` draws the same ones everywhere: Hypothesis seeds each test with a
+# digest of its source, and reads no database of failures. `make test-thorough` draws at random, thousands for
+# motion and geometry; whatever it finds is kept as an `@example`.
 SLOW = (HealthCheck.too_slow,)
-settings.register_profile("latentarm", max_examples=50, deadline=None, suppress_health_check=SLOW)
-settings.register_profile("thorough", max_examples=10_000, deadline=None, suppress_health_check=SLOW)
+settings.register_profile(
+    "latentarm", max_examples=50, deadline=None, suppress_health_check=SLOW, derandomize=True
+)
+settings.register_profile(
+    "random", max_examples=50, deadline=None, suppress_health_check=SLOW, print_blob=True
+)
+settings.register_profile("thorough", settings.get_profile("random"), max_examples=10_000)
 settings.load_profile("latentarm")
 
 LONGEST_FIRST = ("plugins", "studies", "models", "parallel", "cli", "docs", "simulation", "control")

@@ -130,30 +130,30 @@ def test_a_belief_may_belong_to_the_context(swings, arm, answered):
 
 
 def test_of_all_weights_those_are_kept_that_miss_the_held_out_answers_least(curved_model, arm, answered):
-    """Two answers train for long, and any weights learned from them miss eight others more and more."""
-    answers = answered(4, count=10)
-    unlabelled = answers.motions.context
-    decoder = curved_model.decoder()
-    errors = {
-        held_out: relative_alignment_error(
-            fit_alignments(
-                curved_model,
-                arm.chain,
-                [answers],
-                unlabelled,
-                FitConfig(NO_PRIORS, hidden=(32,), steps=1000, learning_rate=0.03, held_out=held_out),
-            ).best,
-            decoder,
-            arm.chain,
-            answers[np.arange(2, 10)],
+    """The two answers of these people say little of the other eight: the longer f trains, the more it misses.
+
+    In the end it misses by 2 to 19 percent more than at best. For most people all weights looked at miss
+    equally, and rounding decides which are kept.
+    """
+    seeds = (15, 20, 23)
+    people = [answered(4, count=10, seed=seed) for seed in seeds]
+    others = [answers[np.arange(2, 10)] for answers in people]
+
+    def errors(answers, held_out):
+        config = FitConfig(NO_PRIORS, hidden=(32,), steps=1000, learning_rate=0.03, held_out=held_out)
+        unlabelled = people[0].motions.context
+        fitted = fit_alignments(curved_model, arm.chain, answers, unlabelled, config, seeds=seeds)
+        return np.array(
+            [
+                relative_alignment_error(alignment, curved_model.decoder(), arm.chain, other)
+                for alignment, other in zip(fitted.alignments, others, strict=True)
+            ]
         )
-        for held_out in (0.0, 0.8)
-    }
-    trained_on_all, chosen = errors[0.0], errors[0.8]
-    short = FitConfig(NO_PRIORS, hidden=(32,), steps=1000, learning_rate=0.03)
-    (long,) = fit_alignments(curved_model, arm.chain, [answers[np.arange(2)]], unlabelled, short).alignments
-    assert trained_on_all < chosen
-    assert chosen < relative_alignment_error(long, decoder, arm.chain, answers[np.arange(2, 10)])
+
+    trained_on_all, chosen = errors(people, 0.0), errors(people, 0.8)
+    last = errors([answers[np.arange(2)] for answers in people], 0.0)
+    assert (trained_on_all < 0.5 * chosen).all()
+    assert (chosen < 0.99 * last).all()
 
 
 def test_what_cannot_be_learned_is_refused(curved_model, arm, answered):
