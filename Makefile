@@ -19,6 +19,8 @@ OPENBLAS_NUM_THREADS ?= 1
 PYTEST := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=$(OMP_NUM_THREADS) \
 	OPENBLAS_NUM_THREADS=$(OPENBLAS_NUM_THREADS) $(BIN)/python -m pytest
 PARALLEL := --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
+# Tests in real time mostly wait: two at a time leave each what it needs, however many cores there are.
+IN_PAIRS := --numprocesses $(if $(filter 1,$(WORKERS)),1,2) --dist loadfile --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-all test-thorough check message-types format bench docs dist lock arms lerobot clean
@@ -58,7 +60,7 @@ message-types: $(VENV)/installed-dev ## Write the types of the page's messages f
 test: check ## Everything that must hold, in minutes.
 	$(BIN)/node --test 'tests/web/js/*.test.js'
 	$(PYTEST) -m "not slow and not clock" $(PARALLEL)
-	$(PYTEST) -m "not slow and clock" tests/arms tests/web
+	$(PYTEST) -m "not slow and clock" $(IN_PAIRS) tests/arms tests/web
 
 test-all: check ## The slow tests too: kill tests, real lerobot, hundreds of approaches.
 	$(PYTEST) -m "not clock and not browser" $(PARALLEL)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture import providers
 from matplotlib.figure import Figure
 
 from figure_faults import faults
@@ -59,6 +60,18 @@ def well_drawn() -> Iterator[None]:
     save = Figure.savefig
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Figure, "savefig", save_and_look)
+        yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def drawn_alike() -> Iterator[None]:
+    """Fixed seeds draw the same examples whatever ran before.
+
+    Hypothesis also tries constants of our modules, of those that happen to be loaded. Random draws keep them.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        if settings().derandomize:
+            patch.setattr(providers, "_get_local_constants", providers.Constants, raising=False)
         yield
 
 

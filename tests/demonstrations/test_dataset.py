@@ -18,6 +18,7 @@ from latentarm.demonstrations.dataset import (
     write_dataset,
 )
 from latentarm.demonstrations.folders import locked, staged_folder
+from latentarm.demonstrations.validation import RESERVED_FEATURES
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, Goal, Pose
 
@@ -25,6 +26,7 @@ Equal = Callable[[Demonstrations, Demonstrations], bool]
 MakeEpisode = Callable[..., Episode]
 
 NAMES = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=8)
+FEATURES = NAMES.filter(lambda name: "/" not in name and name not in RESERVED_FEATURES)
 
 
 def numbers(shape: tuple[int, ...]) -> st.SearchStrategy[np.ndarray]:
@@ -34,7 +36,7 @@ def numbers(shape: tuple[int, ...]) -> st.SearchStrategy[np.ndarray]:
 @st.composite
 def any_demonstrations(draw: st.DrawFn) -> Demonstrations:
     dof = draw(st.integers(1, 4))
-    extras = draw(st.dictionaries(NAMES.filter(lambda name: "/" not in name), st.integers(1, 3), max_size=2))
+    extras = draw(st.dictionaries(FEATURES, st.integers(1, 3), max_size=2))
     acts = draw(st.booleans())
     episodes = []
     for _ in range(draw(st.integers(1, 3))):
