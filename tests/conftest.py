@@ -29,7 +29,7 @@ LONGEST_FIRST = ("plugins", "studies", "models", "parallel", "cli", "docs", "sim
 """Folders whose files take longest: a worker that begins one last would keep the others waiting."""
 
 REAL_TIME = ("arms", "web")
-"""Folders whose tests may be marked ``clock``: they run afterwards, with the whole machine."""
+"""Folders whose tests may be marked ``clock``: they run afterwards, two at a time."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -47,7 +47,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.clock)
 
 
-def wait_for(what: Callable[[], Any], within_s: float = 60.0) -> Any:
+def wait_for(what: Callable[[], Any], within_s: float = 300.0) -> Any:
     """What there is once there is something."""
     end_s = time.monotonic() + within_s
     while not (found := what()):
