@@ -163,6 +163,7 @@ def test_training_with_the_term_leaves_the_other_goal_open():
     assert error.mean() < 0.1 * np.square(action).sum(axis=-1).mean()
 
 
+@pytest.mark.usefixtures("double_precision")
 def test_a_seed_trains_with_the_term_as_it_would_alone():
     context = np.random.default_rng(0).uniform(-1, 1, (9, 4))
     z = np.linspace(-1, 1, 9)[:, None]
