@@ -15,7 +15,6 @@ _UNFELT = 1e-9
 _ROUNDING = 1e-6
 """A velocity of which no greater share is left is rest."""
 
-_HARD, _SOFT = 0, 8
 _SOFTNESS = 1e-10
 """The solver may miss half-spaces by this times their force, or it finds no way between opposite ones."""
 
@@ -66,7 +65,7 @@ def _nearest(
     velocity: FloatArray, limits: tuple[FloatArray, FloatArray], rows: FloatArray, floor: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
     """The velocity within limits and half-spaces of unit rows that is nearest, and which hold it."""
-    kinds = np.repeat(np.array([_HARD, _SOFT], dtype=np.int32), [len(velocity), len(rows)])
+    kinds = np.repeat(np.array([0, 8], dtype=np.int32), [len(velocity), len(rows)])  # hard, soft
     nearest, _, flag, info = daqp.solve(
         np.eye(len(velocity)),
         -velocity,
