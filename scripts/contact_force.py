@@ -1,27 +1,31 @@
-"""How hard an arm presses on a table that its safety filters know, and on one that they do not.
+"""How hard an arm presses on what its safety filters do not know, and for how long after its stop.
 
 A Panda in MuJoCo with 1 kg at its tool, noise on its readings, and readings that are 0 to 3 ticks late, is
 pushed down at 100 Hz with full input, from places over the whole table. Most of the time the stick points
-straight down; the rest of the time anywhere. The filters do not limit force. What ends the pushing on a table
-that they do not know is the following error: the joints move less far than they are commanded to.
+straight down; the rest of the time anywhere. The thing is the table, or a spring without mass or friction that
+begins above it. The filters do not limit force. What ends the pushing is the following error: the joints move
+less far than they are commanded to. Where that has not happened after 4 s, the person presses Stop.
 
-    python scripts/contact_force.py --drives 40
+    python scripts/contact_force.py --drives 8
 """
 
 import argparse
-from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, final
 
+import mujoco
 import numpy as np
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
+from enabled_arm import enabled
 from latentarm.arms.mujoco import MujocoArm
 from latentarm.control.clock import SimulatedClock
 from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.safety.zones import Zone
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.kinematics.obstacles import HalfSpace
 from latentarm.robots.panda import panda
 from latentarm.robots.robot import Robot
 from latentarm.scene.scene import TABLE, TOOL, Scene
@@ -29,32 +33,57 @@ from latentarm.tasks.inverse_kinematics import solve
 from latentarm.types import FloatArray, Input, Pose
 from physics_safety import LATE_TICKS, PERIOD_S, imperfect
 
-PUSH_TICKS: Final = 300
+PRESSED_TICKS: Final = 400
+DRIVE_TICKS: Final = 1000
 
 UP_AND_DOWN: Final = 1
 """The controller's mode whose first axis moves the tool up and down."""
 
 BOTH: Final = (min(TOOL, TABLE), max(TOOL, TABLE))
 
-AT_M: Final = ((0.35, 0.6), (-0.3, 0.3), (0.05, 0.12))
+AT_M: Final = ((0.35, 0.6), (-0.3, 0.3), (0.06, 0.12))
 """Where the tool starts, x, y and z, m."""
 
+SPRING_M: Final = 0.05
+"""Where springs begin, above the table, m."""
 
-@dataclass
-class Pressed:
-    """What came of all drives with one delay at one table.
+AFTER_S: Final = (0.0, 0.2, 1.0, 3.0)
+"""When the force is looked at, after the stop, s."""
 
-    Attributes:
-        peak_n: the largest force of each drive that touched the table, N.
-        touched_s: from the first touch until the arm was stopped or the drive ended, s, of the same drives.
-        drives: how many there were.
-        stops: drives in which the filters stopped the arm.
+STIFFNESS_N_MM: Final = (None, 150.0, 75.0, 25.0, 10.0)
+"""Of the springs; None for the table."""
+
+ZONES_M_S: Final = (None, 0.05, 0.02)
+
+
+@final
+class Thing:
+    """What the arm presses on.
+
+    Args:
+        arm: that presses.
+        stiffness_n_mm: of the spring, N/mm; None for the table.
     """
 
-    peak_n: list[float] = field(default_factory=list)
-    touched_s: list[float] = field(default_factory=list)
-    drives: int = 0
-    stops: int = 0
+    def __init__(self, arm: MujocoArm, stiffness_n_mm: float | None) -> None:
+        self._arm = arm
+        self._stiffness = stiffness_n_mm
+        self._tool = arm.model.site(panda().chain.tools[0].name).id
+        self._peak_n = 0.0
+        mujoco.set_mjcb_passive(None if stiffness_n_mm is None else self._push)
+
+    def _push(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        at = data.site_xpos[self._tool]
+        force_n = 1e3 * (self._stiffness or 0.0) * max(0.0, SPRING_M - at[2])
+        self._peak_n = max(self._peak_n, force_n)
+        up, body = np.array([0.0, 0.0, force_n]), model.site_bodyid[self._tool]
+        mujoco.mj_applyFT(model, data, up, np.zeros(3), at, body, data.qfrc_passive)
+
+    def force_n(self) -> float:
+        """The largest force since the last call, N."""
+        table_n = self._arm.scene_state().force_n.get(BOTH, 0.0)
+        peak_n, self._peak_n = self._peak_n, 0.0
+        return table_n if self._stiffness is None else peak_n
 
 
 def start(robot: Robot, rng: np.random.Generator) -> FloatArray:
@@ -64,39 +93,38 @@ def start(robot: Robot, rng: np.random.Generator) -> FloatArray:
     return solve(robot, Pose(place, home.rotation), robot.home)
 
 
-def drive(robot: Robot, late: int, known: bool, pressed: Pressed, rng: np.random.Generator) -> None:
-    """Push down once."""
-    scene, controller, clock = Scene(), EndEffectorController(robot), SimulatedClock()
-    imperfections = imperfect(late, rng)
-    arm = MujocoArm(robot, start(robot, rng), clock.now_s, imperfections, scene)
-    config = SafetyConfig(obstacles=(scene.table,) if known else ())
-    step = Step(robot, controller, config, dt_s=PERIOD_S)
-    arm.connect()
-    step.reset(arm.read().q)
+def drive(number: int, stiffness_n_mm: float | None, config: SafetyConfig, seed: int) -> FloatArray | None:
+    """Push down once.
+
+    Returns:
+        From touch to stop, s; the peak, and the forces at `AFTER_S`, N; whether the arm stopped by itself.
+        None where it touched nothing.
+    """
+    late, robot, rng = LATE_TICKS[number % len(LATE_TICKS)], panda(), np.random.default_rng([seed, number])
+    clock = SimulatedClock()
+    arm = MujocoArm(robot, start(robot, rng), clock.now_s, imperfect(late, rng), Scene())
+    thing, step = Thing(arm, stiffness_n_mm), Step(robot, EndEffectorController(robot), config, dt_s=PERIOD_S)
+    first = enabled(arm, step, clock, late, inputs=2)
     step.choose_mode(UP_AND_DOWN)
-    pressed.drives += 1
-    peak_n, first_s, last_s = 0.0, None, 0.0
-    for tick in range(late + 2 + PUSH_TICKS):
-        clock.wait_until(PERIOD_S * (tick + 1))
-        u = np.zeros(2)
-        if tick == late + 2:
-            arm.enable()
-            if (refused := step.enable()) is not None:
-                raise RuntimeError(f"the arm could not be enabled: {refused.reason}")
-        if tick >= late + 2:
-            u = np.array([-1.0, 0.0]) if rng.uniform() < 0.8 else rng.uniform(-1.0, 1.0, 2)
+    forces: list[float] = []
+    touch = stop = None
+    for tick in range(DRIVE_TICKS):
+        clock.wait_until(PERIOD_S * (first + tick))
+        if stop is None and touch is not None and tick == touch + PRESSED_TICKS:
+            step.stop("Stop was pressed.")
+        u = np.array([-1.0, 0.0]) if rng.uniform() < 0.8 else rng.uniform(-1.0, 1.0, 2)
         record = step(Input(u), 0.0, arm.read(), clock.now_s())
         arm.send(record.command)
-        force_n = arm.scene_state().force_n.get(BOTH, 0.0)
-        if force_n > 0.0 and first_s is None:
-            first_s = clock.now_s()
-        peak_n, last_s = max(peak_n, force_n), clock.now_s()
-        if tick >= late + 2 and record.command.stop is not None:
-            pressed.stops += 1
+        forces.append(thing.force_n())
+        touch = tick if touch is None and forces[-1] > 0.0 else touch
+        stop = tick if stop is None and record.command.stop is not None else stop
+        if stop is not None and tick >= stop + AFTER_S[-1] / PERIOD_S:
             break
-    if first_s is not None:
-        pressed.peak_n.append(peak_n)
-        pressed.touched_s.append(last_s - first_s)
+    mujoco.set_mjcb_passive(None)
+    if touch is None or stop is None:
+        return None
+    after = [forces[stop + round(after_s / PERIOD_S)] for after_s in AFTER_S]
+    return np.array([PERIOD_S * (stop - touch), max(forces), *after, stop < touch + PRESSED_TICKS])
 
 
 def main() -> None:
@@ -104,28 +132,30 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--drives", type=int, default=40, help="with each delay at each table")
+    parser.add_argument("--drives", type=int, default=8, help="at each thing with each zone")
     parser.add_argument("--seed", type=int, default=0)
-    config = parser.parse_args()
-    robot = panda()
-    cells = [(known, late) for known in (True, False) for late in LATE_TICKS]
-    table = Table(
-        "table", "ticks late", "drives", "touched", "stopped", "largest force (N)", "median (N)", "s"
-    )
-    for known, late in track(cells, "drives", console=Console(stderr=True)):
-        pressed = Pressed()
-        for number in range(config.drives):
-            # The same starts and inputs at both tables.
-            drive(robot, late, known, pressed, np.random.default_rng([config.seed, late, number]))
-        found = bool(pressed.peak_n)
-        table.add_row(
-            "known" if known else "not known",
-            *(str(count) for count in (late, pressed.drives, len(pressed.peak_n), pressed.stops)),
-            f"{max(pressed.peak_n):.0f}" if found else "0",
-            f"{np.median(pressed.peak_n):.0f}" if found else "0",
-            f"{np.median(pressed.touched_s):.2f}" if found else "–",
+    options = parser.parse_args()
+    at = [f"{after_s:g} s after" for after_s in AFTER_S]
+    table = Table("N/mm", "zone (m/s)", "touched", "stopped by itself", "touch to stop (s)", "peak (N)", *at)
+    cells = [(stiffness, zone) for zone in ZONES_M_S for stiffness in STIFFNESS_N_MM]
+    for known, (stiffness, zone) in track(
+        [(True, cells[0]), *((False, cell) for cell in cells)], "drives", console=Console(stderr=True)
+    ):
+        height_m = 0.0 if stiffness is None else SPRING_M
+        up = HalfSpace("thing", np.array([0.0, 0.0, height_m]), np.array([0.0, 0.0, 1.0]))
+        config = SafetyConfig(
+            obstacles=(up,) if known else (), zones=() if zone is None else (Zone(up, zone),)
         )
-    Console(width=150).print(table, "s: median time from the first touch to the stop")
+        found = [drive(number, stiffness, config, options.seed) for number in range(options.drives)]
+        figures = np.array([one for one in found if one is not None])
+        name = "known table" if known else "table" if stiffness is None else f"{stiffness:g}"
+        row = [name, "none" if zone is None else f"{zone:g}", f"{len(figures)} of {len(found)}"]
+        if len(figures):
+            medians, most = np.median(figures, axis=0), figures.max(axis=0)
+            row += [f"{figures[:, -1].sum():.0f}", f"{medians[0]:.2f}"]
+            row += [f"{one:.0f} / {top:.0f}" for one, top in zip(medians[1:-1], most[1:-1], strict=True)]
+        table.add_row(*row)
+    Console(width=150).print(table, "median / largest of the drives that touched")
 
 
 if __name__ == "__main__":

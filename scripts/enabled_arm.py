@@ -9,7 +9,9 @@ from latentarm.control.step import Step
 from latentarm.types import Input
 
 
-def enabled(arm: KinematicArm | MujocoArm, step: Step, clock: SimulatedClock, late_ticks: int) -> int:
+def enabled(
+    arm: KinematicArm | MujocoArm, step: Step, clock: SimulatedClock, late_ticks: int, inputs: int = 1
+) -> int:
     """Connect an arm, let it stand, and enable it.
 
     Args:
@@ -17,6 +19,7 @@ def enabled(arm: KinematicArm | MujocoArm, step: Step, clock: SimulatedClock, la
         step: drives it.
         clock: at zero.
         late_ticks: how old its readings are, ticks of the step.
+        inputs: how many numbers an input of the step has.
 
     Returns:
         The first tick in which it may move.
@@ -30,7 +33,7 @@ def enabled(arm: KinematicArm | MujocoArm, step: Step, clock: SimulatedClock, la
         reading = arm.read()
         if tick == 0:
             step.reset(reading.q)
-        step(Input(np.zeros(1)), 0.0, reading, clock.now_s())
+        step(Input(np.zeros(inputs)), 0.0, reading, clock.now_s())
     arm.enable()
     if (refused := step.enable()) is not None:
         raise RuntimeError(f"the arm could not be enabled: {refused.reason}")

@@ -14,9 +14,10 @@ from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.filter import Freshness
 from latentarm.control.safety.gripper import GripperFilter
 from latentarm.control.safety.newest_reading import NewestReading
-from latentarm.control.safety.plausibility import Plausibility
+from latentarm.control.safety.plausibility import FOLLOWING_ERRORS, Plausibility
 from latentarm.control.safety.stack import Passed, SafetyStack
 from latentarm.control.safety.timekeeping import Timekeeping
+from latentarm.control.safety.yielding import YIELDING, Yielding
 from latentarm.control.shared_autonomy import SharedAutonomy
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
@@ -129,6 +130,7 @@ class Step:
         self._stack = SafetyStack(safety, robot, dt_s)
         self._config = safety
         self._plausibility = Plausibility(self._stack.bounds, robot)
+        self._yielding = Yielding(self._stack.bounds, self._stack.body)
         self._hold_s = self._stack.bounds.hold_s
         self._timekeeping = Timekeeping(self._hold_s)
         self._newest_reading = NewestReading(self._stack.bounds.reading_timeout_s, self._hold_s)
@@ -161,8 +163,8 @@ class Step:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the last command was to stand still."""
-        return self._stack.at_rest
+        """Whether the last command was to stand still, and the arm is not about to yield."""
+        return self._stack.at_rest and not self._yielding.on
 
     @property
     def dead_zone(self) -> float:
@@ -215,6 +217,7 @@ class Step:
             raise UserError(f"A state of this arm is {self._dof} joint positions near their limits.")
         self._stack.reset()
         self._plausibility.reset()
+        self._yielding.end()
         self._timekeeping.reset()
         self._newest_reading.reset()
         self._gripper.reset()
@@ -235,7 +238,10 @@ class Step:
                 "The joint readings jumped a moment ago: check the arm, then enable it.",
                 code="readings_unsteady",
             )
-        return self._engagement.enable()
+        refused = self._engagement.enable()
+        if refused is None:
+            self._yielding.end()
+        return refused
 
     def sent(self, time_s: float) -> None:
         """Set when the last command was sent, which is later than its tick began.
@@ -265,6 +271,7 @@ class Step:
             reason: one short sentence for the person.
         """
         self._engagement.stop(Stop(reason))
+        self._yielding.end()
 
     def refuse(self, stop: Stop) -> None:
         """Keep the arm disengaged for this reason, whatever the reason was until now.
@@ -273,6 +280,7 @@ class Step:
             stop: why.
         """
         self._engagement.replace(stop)
+        self._yielding.end()
 
     def halted(self, stop: Stop) -> None:
         """Record that a command ran out and the arm stopped by itself; stay stopped.
@@ -282,6 +290,7 @@ class Step:
         """
         self._engagement.stop(stop)
         self._stack.reset()
+        self._yielding.end()
 
     def forget(self) -> None:
         """Believe again what was believed at first: a motion that nobody steered says nothing of a goal."""
@@ -319,7 +328,9 @@ class Step:
         q = self._positions_now(reading, time_s)
         if isinstance(q, Stop):
             self._engagement.stop(q)
+            self._yielding.end()
             return self._record(time_s, self._unreadable, Passed(self._stack.stop()))
+        self._yielding.saw(q, self._stack.velocity)
         if self._doubts(q, time_s, new=self._newest_reading.new):
             return self._record(time_s, q, Passed(self._stack.stop()))
         if self._falters(input_age_s):
@@ -328,7 +339,7 @@ class Step:
         u = self._usable(given, input_age_s)
         if isinstance(u, Stop):
             self._engagement.stop(u)
-            return self._record(time_s, q, Passed(self._stack.stop()))
+            return self._record(time_s, q, self._stopping(q))
         self._pace = float(given.pace)
         # After a jump of the clock nobody knows for how long it has been held.
         self._opens = bool(given.opens) and lost is None
@@ -337,7 +348,7 @@ class Step:
         self._switch(bool(given.switch_mode))
         self._gripper.ask(given.gripper, engaged=self._engagement.stopped is None)
         if self._engagement.stopped is not None:
-            return self._record(time_s, q, Passed(self._stack.stop()))
+            return self._record(time_s, q, self._stopping(q))
         if neutral and not self._shared.acts_at_rest:
             return self._record(time_s, q, self._passed(self._no_motion, q, input_age_s))
         return self._driven(u, input_age_s, q, time_s)
@@ -351,8 +362,11 @@ class Step:
             # Reported even if the arm is already disengaged: nobody may enable it without knowing.
             self._steady_s = time_s + STEADY_S
             self._engagement.replace(jumped)
+            self._yielding.end()
         elif astray is not None:
             self._engagement.stop(astray)
+            if astray.code in FOLLOWING_ERRORS:
+                self._yielding.begin()
         return jumped is not None or astray is not None
 
     def _falters(self, age_s: float) -> bool:
@@ -410,6 +424,16 @@ class Step:
         if passed.stop is not None:
             self._engagement.stop(passed.stop)
         return passed
+
+    def _stopping(self, q: FloatArray) -> Passed:
+        """The stop that is under way; after a following error the arm then yields to what holds it."""
+        back = self._yielding.wanted(q)
+        if back is None:
+            return Passed(self._stack.stop())
+        passed = self._stack.command(back, self._plausibility.estimate(q), 0.0)
+        if passed.stop is not None:
+            self._yielding.end()
+        return Passed(passed.velocity, (*passed.limited_by, YIELDING))
 
     def _refused(self, stop: Stop) -> Passed:
         self._engagement.stop(stop)

@@ -2,19 +2,22 @@
 
 import math
 from collections import deque
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.control.safety.bounds import LATE_PERIODS, Bounds
 from latentarm.control.safety.small import largest
 from latentarm.robots.robot import Robot
-from latentarm.types import FloatArray, Stop
+from latentarm.types import FloatArray, Stop, StopCode
 
 _BUCKETS = 9
 """The commands of the last `Bounds.lag_s` are kept as lowest and highest positions in this many time bins,
 so that a check costs the same at every rate. The newest bin is still being filled."""
 
+
+FOLLOWING_ERRORS: Final[tuple[StopCode, ...]] = ("joint_astray", "slide_astray")
+"""Codes of the stops by a following error."""
 
 _BOTH_SIGNS = np.array([[1.0], [-1.0]])
 

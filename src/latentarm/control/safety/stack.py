@@ -58,13 +58,18 @@ class SafetyStack:
         robot: the arm.
         dt_s: the loop's period, s.
 
+    Attributes:
+        bounds: the limits for this arm.
+        body: the arm.
+
     Raises:
         UserError: the limits do not suit the robot or the period, see `Bounds`.
     """
 
     def __init__(self, config: SafetyConfig, robot: Robot, dt_s: float) -> None:
         self.bounds = bounds = Bounds(config, robot, dt_s)
-        self._surroundings = Surroundings(bounds, Body(robot))
+        self.body = Body(robot)
+        self._surroundings = Surroundings(bounds, self.body)
         self._first: tuple[SafetyFilter, ...] = (Finite(), Freshness(), JointVelocity())
         zones = [ZoneSpeed(bounds, index) for index in range(len(config.zones))]
         # Sliding along one thing can speed a joint up.
