@@ -8,7 +8,7 @@ import numpy as np
 
 from latentarm.control.safety.body import Body
 from latentarm.control.safety.bounds import Bounds
-from latentarm.control.safety.small import largest, some
+from latentarm.control.safety.small import largest
 from latentarm.types import FloatArray
 
 YIELDING: Final = "yielding"
@@ -21,7 +21,7 @@ LONGEST_S: Final = 1.0
 """No command draws back for longer than this, s; the last one is ramped down as any other."""
 
 PACE: Final = 0.5
-"""Commands are taken back at this share of their speed."""
+"""Commands are taken back at this share of their speed, and joints go to where they are at this share."""
 
 LOOK_S: Final = 0.5
 """An arm that does not stand still so long after its stop does not draw back, s."""
@@ -35,14 +35,14 @@ class Yielding:
     """After a following error that looks like contact, takes back the commands of the last second.
 
     A command to stand still does not relieve what the arm presses on: its servo goes on towards the position
-    that was commanded, which lies inside the thing. So the commands are taken back, the newest first, at half
-    their speed. This unwinds the servo and then leads the arm back along its path, until a point of it has
-    gone back by `FARTHEST_M`, for at most `LONGEST_S`.
+    that was commanded, which lies inside the thing. So the arm is commanded to where it is measured, and then
+    back along the commands of the last second, the newest first, until a point of it has gone back by
+    `FARTHEST_M`, for at most `LONGEST_S`.
 
     Contact is not measured. A following error counts as one if the arm then stands still and a joint is still
-    off, in readings that change; and if this leaves the point that is farthest off behind where it was
-    commanded to go. An encoder that froze repeats itself, readings that are late catch up, and what is pushed
-    along is not behind. Where this is mistaken, the arm moves to where it was within the last second.
+    off, in readings that change; and if that joint, or else the point that is farthest off, is behind where it
+    was commanded to go. An encoder that froze repeats itself, readings that are late catch up, and what is
+    pushed along is not behind. Where this is mistaken, the arm moves to where it was within the last second.
 
     Args:
         bounds: the limits.
@@ -56,8 +56,9 @@ class Yielding:
         self._looks = math.ceil(max(bounds.lag_s, bounds.stop_s) / bounds.dt_s)
         # Each reading with the command since the one before, the newest last.
         self._past: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=round(_REMEMBERED_S / bounds.dt_s))
+        self._fastest = PACE * bounds.speed
         self._looked: int | None = None
-        self._back: int | None = None
+        self._way_back: list[FloatArray] | None = None
         self._start_m: FloatArray = np.zeros((0, 3))
 
     @property
@@ -67,12 +68,12 @@ class Yielding:
 
     def end(self) -> None:
         """Rest, and forget the past."""
-        self._looked = self._back = None
+        self._looked = self._way_back = None
         self._past.clear()
 
     def saw(self, q: FloatArray, velocity: FloatArray) -> None:
         """Remember a reading (n,), rad, and the command since the one before, (n,), rad/s."""
-        if self._back is None:
+        if self._way_back is None:
             self._past.append((q, velocity))
 
     def begin(self) -> None:
@@ -90,40 +91,47 @@ class Yielding:
         """
         if self._looked is None:
             return None
-        if self._back is None:
+        if self._way_back is None:
             self._looked += 1
-            if not self._held():
+            self._way_back = self._decided(self._looked)
+            self._start_m = self._points(q)
+            if self._way_back is None:
                 if self._looked * self._dt_s >= LOOK_S:
                     self.end()
                 return None
-            while not some(self._past[-1][1]):
-                self._past.pop()
-            self._back, self._start_m = 0, self._points(q)
-        taken = int(PACE * self._back)
         gone = largest(np.linalg.norm(self._points(q) - self._start_m, axis=1))
-        if gone >= FARTHEST_M or self._back * self._dt_s >= LONGEST_S or taken >= len(self._past):
+        if gone >= FARTHEST_M or not self._way_back:
             self.end()
             return None
-        self._back += 1
-        return -PACE * self._past[-1 - taken][1]
+        return self._way_back.pop()
 
-    def _held(self) -> bool:
-        """Whether what was seen until the stop and since looks as if something holds the arm."""
-        looked = self._looked or 0
+    def _decided(self, looked: int) -> list[FloatArray] | None:
+        """Velocities that lead back, the last one first, rad/s; None where nothing seems to hold the arm.
+
+        Args:
+            looked: for how many ticks the arm has been looked at.
+        """
         if looked <= self._looks or len(self._past) <= looked + self._looks:
-            return False
+            return None
         q, velocity = (np.array(part) for part in zip(*self._past, strict=True))
         if largest(np.abs(q[-1] - q[-1 - self._looks // 2])) > _STILL_RAD:
-            return False
+            return None
         way = self._dt_s * velocity
         commanded = q[0] + way[1:].sum(axis=0)
-        behind = np.abs(commanded - q[-1])
-        alive = (np.diff(q[-1 - looked :, int(behind.argmax())]) != 0.0).mean() >= 0.25
-        ahead_m = self._points(commanded)
-        off_m = ahead_m - self._points(q[-1])
-        point = int(np.linalg.norm(off_m, axis=1).argmax())
-        going_m = ahead_m - self._points(commanded - way[-looked - self._looks :].sum(axis=0))
-        return bool(largest(behind) > self._margin_rad and alive and off_m[point] @ going_m[point] > 0.0)
+        before = commanded - way[-looked - self._looks :].sum(axis=0)
+        ahead, going = commanded - q[-1], commanded - before
+        joint = int(np.abs(ahead).argmax())
+        ahead_m = self._points(commanded) - self._points(q[-1])
+        point = int(np.linalg.norm(ahead_m, axis=1).argmax())
+        going_m = self._points(commanded)[point] - self._points(before)[point]
+        behind = ahead[joint] * going[joint] > 0.0 or ahead_m[point] @ going_m > 0.0
+        alive = np.count_nonzero(np.diff(q[-1 - looked :, joint])) >= 0.25 * looked
+        if not (behind and alive and abs(ahead[joint]) > self._margin_rad):
+            return None
+        to_measured = math.ceil(largest(np.abs(ahead) / self._fastest) / self._dt_s)
+        taken_back = np.repeat(-PACE * velocity[velocity.any(axis=1)], round(1.0 / PACE), axis=0)
+        back = [*taken_back, *([-ahead / (to_measured * self._dt_s)] * to_measured)]
+        return back[-round(LONGEST_S / self._dt_s) :]
 
     def _points(self, q: FloatArray) -> FloatArray:
         """(P, 3), m."""
