@@ -143,3 +143,31 @@ def test_an_arm_that_drops_out_by_itself_is_noticed(rig):
     rig.loop.run(50)
     assert said(rig.records[30]) == ArmStatus("disabled", "The arm is not enabled yet.").reason
     assert not rig.records[31].command.velocity.any()
+
+
+def test_an_arm_that_takes_no_commands_any_more_does_not_go_on_drawing_back(rig):
+    """A collision that the arm itself notices while it yields: what follows is up to the person."""
+    still = rig.step.robot.home.copy()
+    noise = np.random.default_rng(0)
+    read = rig.arm.read
+
+    def held():
+        reading = read()
+        q = np.where(np.arange(7) == 1, still, reading.q) + noise.normal(scale=1e-5, size=7)
+        return replace(reading, q=q)
+
+    rig.arm.read = held
+    rig.at[3] = rig.let_go_and_enable
+    rig.at[10] = rig.push
+    drawing = []
+
+    def watch(record):
+        if "yielding" in record.command.limited_by:
+            drawing.append(len(rig.records))
+            if len(drawing) == 5:
+                rig.arm.press_emergency_stop()
+
+    rig.loop = ControlLoop(rig.step, rig.arm, rig.stick, rig.clock, [rig._observe, watch])
+    rig.loop.run(ticks=250)
+    assert len(drawing) == 5
+    assert not any(one.command.velocity.any() for one in rig.records[drawing[-1] :])

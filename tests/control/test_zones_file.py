@@ -7,8 +7,12 @@ from scipy.spatial.transform import Rotation
 from latentarm.control.safety.bounds import Bounds
 from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.zones_file import read_zones
+from latentarm.control.step import Step
+from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Box, Capsule, HalfSpace, Sphere
+from latentarm.types import Input
+from stepping import stepped
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "your-arm" / "zones.toml"
 FACE = """
@@ -122,3 +126,40 @@ def test_what_cannot_be_used_is_one_sentence_that_names_the_file(written, text, 
 def test_a_file_that_is_not_there_is_said(tmp_path):
     with pytest.raises(UserError, match=r"nowhere\.toml"):
         read_zones(tmp_path / "nowhere.toml")
+
+
+SOLIDS = {
+    "half_space": "point_m = [0.0, 0.0, 0.1]\nnormal = [0.0, 0.0, 2.0]",
+    "sphere": "centre_m = [0.4, 0.0, 0.0]\nradius_m = 0.1",
+    "capsule": "start_m = [0.2, 0.0, 0.0]\nend_m = [0.6, 0.0, 0.0]\nradius_m = 0.1",
+    "box": "centre_m = [0.4, 0.0, 0.0]\nsize_m = [0.2, 0.2, 0.2]",
+}
+
+
+@pytest.mark.parametrize("shape", SOLIDS)
+def test_a_solid_keeps_the_arm_off_by_what_it_states(arm, scripted, written, shape):
+    """A hand is thicker than what is kept without it."""
+    (solid,) = read_zones(
+        written(f'[keep_out.table]\nshape = "{shape}"\n{SOLIDS[shape]}\nclearance_m = 0.08')
+    ).keep_out
+    controller = EndEffectorController(arm)
+    step, state = Step(arm, controller, SafetyConfig(obstacles=(solid,))), arm.home
+    step.reset(state)
+    step.choose_mode(1)
+    for tick in range(500):
+        u = np.array([-1.0 if tick else 0.0, 0.0])
+        record = stepped(step, Input(u), 0.0, state, 0.01 * tick)
+        state = state + 0.01 * record.command.velocity
+        if not tick:
+            assert step.enable() is None
+    tool_m, began_m = (arm.chain.forward(q).position for q in (state, arm.home))
+    # It came as near as it may and no nearer: down to the others, round the ball.
+    left_m = np.linalg.norm(tool_m - [0.4, 0.0, 0.0]) if shape == "sphere" else tool_m[2]
+    assert began_m[2] > 0.3
+    assert left_m > 0.1 + 0.08 - 1e-3
+
+
+@pytest.mark.parametrize("clearance", ["0.01", "-0.1", "0.6", "nan", "inf", "true", '"far"', "[0.1]"])
+def test_a_clearance_that_is_none_is_refused(written, clearance):
+    with pytest.raises(UserError, match=r"keep_out\.pillar\.clearance_m"):
+        read_zones(written(OUT + f"clearance_m = {clearance}"))

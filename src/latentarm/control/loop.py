@@ -214,7 +214,7 @@ class ControlLoop:
 
     def _heed(self, status: ArmStatus) -> None:
         """Disengage where the arm takes no commands: it has stopped by itself, or somebody stopped it."""
-        if not status.takes_commands and self._step.stopped is None:
+        if not status.takes_commands and (self._step.stopped is None or self._step.yielding):
             self._step.halted(stop_of(status))
 
     def _try_to_enable(self, now_s: float) -> bool:

@@ -69,6 +69,9 @@ class Step:
         step(neutral, 0.0, arm.read(), now)
         step.enable()
 
+    After a stop by a following error that looks like contact the arm draws back a little before it rests: the
+    one motion without a fresh input, see `Yielding`. `stop`, `enable` and any other reason to stop end it.
+
     What is asked of the gripper passes a filter of its own (see `GripperFilter`), whoever asks: the person
     who drives, one who guides the arm by hand, one who holds down what opens it. An arm that stops drops
     nothing, and what was asked or believed before a stop counts for nothing after it.
@@ -163,8 +166,13 @@ class Step:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the last command was to stand still, and the arm is not about to yield."""
-        return self._stack.at_rest and not self._yielding.on
+        """Whether the last command was to stand still, and the arm is not about to draw back."""
+        return self._stack.at_rest and not self.yielding
+
+    @property
+    def yielding(self) -> bool:
+        """Whether the arm draws back from what has stopped it, or is looked at for that; see `Yielding`."""
+        return self._yielding.on
 
     @property
     def dead_zone(self) -> float:

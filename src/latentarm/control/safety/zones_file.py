@@ -12,6 +12,7 @@ An example::
     shape = "half_space"
     point_m = [0.0, 0.0, 0.0]
     normal = [0.0, 0.0, 1.0]
+    clearance_m = 0.08  # kept from it; without this key, what the safety limits keep from everything
 
 Shapes and their keys: ``sphere`` (``centre_m``, ``radius_m``), ``capsule`` (``start_m``, ``end_m``,
 ``radius_m``), ``box`` (``centre_m``, ``size_m``, and ``turned_deg`` about the base's x, y and z axes in this
@@ -20,12 +21,13 @@ order, where it is turned) and ``half_space`` (``point_m`` and ``normal``, out o
 
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, cast, final
 
 import numpy as np
 
+from latentarm.control.safety.config import SafetyConfig
 from latentarm.control.safety.obstacles import checked_obstacle
 from latentarm.control.safety.zones import MOST_ZONES, Zone, check_name, checked_zones
 from latentarm.errors import UserError
@@ -40,6 +42,8 @@ MOST_BYTES: Final = 100_000
 _SLOW: Final = "zones"
 _KEEP_OUT: Final = "keep_out"
 _SPEED: Final = "speed_m_per_s"
+_CLEARANCE: Final = "clearance_m"
+_MOST_CLEARANCE_M: Final = 0.5
 
 
 @final
@@ -49,7 +53,7 @@ class StatedZones:
 
     Attributes:
         slow: where the arm is slow.
-        keep_out: what the arm must keep clear of.
+        keep_out: what the arm must keep clear of, larger by what is to be kept beyond the usual clearance.
     """
 
     slow: tuple[Zone, ...]
@@ -91,11 +95,11 @@ def parse_zones(document: object, where: str) -> StatedZones:
     if not slow and not keep_out:
         raise UserError(f"{where} states no zones: begin one with [{_SLOW}.face] or [{_KEEP_OUT}.table].")
     found = [_entry(f"{_SLOW}.{name}", entry, where, (_SPEED,)) for name, entry in slow.items()]
-    solid = [_entry(f"{_KEEP_OUT}.{name}", entry, where) for name, entry in keep_out.items()]
+    solid = [_solid(name, entry, where) for name, entry in keep_out.items()]
     try:
         return StatedZones(
             checked_zones([Zone(make(name), speed) for name, (make, speed) in zip(slow, found, strict=True)]),
-            _kept_out([make(name) for name, (make, _) in zip(keep_out, solid, strict=True)]),
+            _kept_out([make() for make in solid]),
         )
     except UserError as error:
         raise UserError(f"{where}: {error}") from error
@@ -109,6 +113,30 @@ def _kept_out(solids: list[Obstacle]) -> tuple[Obstacle, ...]:
     for solid in solids:
         check_name(solid.name, f"The obstacle {solid.name!r}")
     return tuple(checked_obstacle(solid) for solid in solids)
+
+
+def _solid(name: str, entry: object, where: str) -> Callable[[], Obstacle]:
+    """What makes a solid to keep out of, larger by the clearance that it states beyond the usual one."""
+    key, usual_m = f"{_KEEP_OUT}.{name}", SafetyConfig.clearance
+    given = dict(table_of(entry, where, key))
+    clearance_m = number_of(given.pop(_CLEARANCE, usual_m), where, f"{key}.{_CLEARANCE}")
+    if not usual_m <= clearance_m <= _MOST_CLEARANCE_M:
+        raise UserError(
+            f"{where}: {key}.{_CLEARANCE} is {clearance_m:g}: it must be at least {usual_m:g} and at most"
+            f" {_MOST_CLEARANCE_M:g} m."
+        )
+    make, _ = _entry(key, given, where)
+    return lambda: _grown(make(name), clearance_m - usual_m)
+
+
+def _grown(solid: Obstacle, by_m: float) -> Obstacle:
+    match solid:
+        case HalfSpace():
+            return replace(solid, point=solid.point + by_m * solid.normal)
+        case Box():
+            return replace(solid, half_extents=solid.half_extents + by_m)
+        case Sphere() | Capsule():
+            return replace(solid, radius=solid.radius + by_m)
 
 
 def _entry(
