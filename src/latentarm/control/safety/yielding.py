@@ -32,17 +32,15 @@ _REMEMBERED_S: Final = LOOK_S + 1.0
 
 @final
 class Yielding:
-    """After a following error that looks like contact, takes back the commands of the last second.
+    """After a following error that looks like contact, leads the arm back over the last second.
 
     A command to stand still does not relieve what the arm presses on: its servo goes on towards the position
-    that was commanded, which lies inside the thing. So the arm is commanded to where it is measured, and then
-    back along the commands of the last second, the newest first, until a point of it has gone back by
-    `FARTHEST_M`, for at most `LONGEST_S`.
+    that was commanded, inside the thing. So the arm is commanded to where it is measured, then back along its
+    last commands, until a point of it has gone back by `FARTHEST_M`, for at most `LONGEST_S`.
 
-    Contact is not measured. A following error counts as one if the arm then stands still and a joint is still
-    off, in readings that change; and if that joint, or else the point that is farthest off, is behind where it
-    was commanded to go. An encoder that froze repeats itself, readings that are late catch up, and what is
-    pushed along is not behind. Where this is mistaken, the arm moves to where it was within the last second.
+    Contact is not measured. What counts as contact: the arm stands still, a joint is still off, in readings
+    that change, and it or the farthest point is behind where it was commanded to go. A frozen encoder repeats
+    itself, late readings catch up, and what is pushed along is not behind.
 
     Args:
         bounds: the limits.
