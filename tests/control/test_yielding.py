@@ -15,7 +15,8 @@ from latentarm.control.safety.yielding import FARTHEST_M, LONGEST_S, LOOK_S, PAC
 from latentarm.control.step import Step
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.scene.scene import Scene
-from latentarm.types import Input, Reading
+from latentarm.tasks.inverse_kinematics import solve
+from latentarm.types import Input, Pose, Reading
 
 PERIODS_S = st.sampled_from([0.005, 0.01, 0.02])
 SEEDS = st.integers(0, 2**32 - 1)
@@ -275,7 +276,9 @@ def test_the_same_readings_give_the_same_commands_to_the_bit(bare, scripted):
 def test_an_arm_that_has_stopped_itself_does_not_go_on_pressing(arm):
     """Down on a table that the filters do not know of, with the stick held all along."""
     clock, step = SimulatedClock(), Step(arm, EndEffectorController(arm), SafetyConfig())
-    pressing = MujocoArm(arm, arm.home, clock.now_s, Imperfections(payload_kg=1.0), Scene(table_m=0.4))
+    over_the_table = Pose(np.array([0.5, 0.0, 0.06]), arm.chain.forward(arm.home).rotation)
+    start = solve(arm, over_the_table, arm.home)
+    pressing = MujocoArm(arm, start, clock.now_s, Imperfections(payload_kg=1.0), Scene())
     pressing.connect()
     step.reset(pressing.read().q)
     step.choose_mode(1)
