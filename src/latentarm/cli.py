@@ -60,6 +60,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "export:export",
         "List what was recorded, and export it to a native dataset (LeRobotDataset v3.0).",
     ),
+    "replay": (
+        "replay:replay",
+        "Decide again what an arm was commanded on the page, and compare every command to the bit.",
+    ),
     **{f"reproduce {name}": (f"reproduce:{name}", entry.summary) for name, entry in STUDIES.items()},
     "study list": (
         "study:list_studies",

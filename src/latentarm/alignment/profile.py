@@ -160,6 +160,15 @@ def trial_folder(run: Path) -> Path:
     return run / FOLDER / TRIAL
 
 
+def folder_of(run: Path, name: str) -> Path:
+    """Where a run has the profile of a name, which may be on trial.
+
+    Raises:
+        UserError: it is no name.
+    """
+    return trial_folder(run) if name == TRIAL else profile_folder(run, name)
+
+
 def keep_trial(run: Path, name: str) -> None:
     """Keep the profile on trial under a person's name.
 
@@ -229,7 +238,7 @@ def load_profile(run: Path, name: str) -> Profile:
         UserError: there is no such profile, its files are broken or foreign, or it was learned for another
             model.
     """
-    folder = trial_folder(run) if name == TRIAL else profile_folder(run, name)
+    folder = folder_of(run, name)
     if not folder.is_dir():
         raise UserError(
             f"{run} has no profile '{name}': make one with"

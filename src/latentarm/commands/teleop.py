@@ -66,6 +66,9 @@ def teleop(
             " testsrc, a test pattern.",
         ),
     ] = (),
+    incidents: Annotated[
+        bool, arg(help="Keep what the arm was told in the last hours in incidents/ of --out (512 MB).")
+    ] = True,
     pin: Annotated[bool, arg(help="People may protect their records by a PIN.")] = False,
     json: Json = False,
 ) -> int:
@@ -113,6 +116,7 @@ def teleop(
         zones=slow,
         keep_out=stated.keep_out,
         speeds=speeds,
+        incidents=incidents,
     )
     config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())

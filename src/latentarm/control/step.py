@@ -8,6 +8,7 @@ import numpy as np
 
 from latentarm.assistance.assistance import Assistance
 from latentarm.assistance.belief import Belief
+from latentarm.control.call_log import CallLog, logged
 from latentarm.control.controller import Controller
 from latentarm.control.engagement import Engagement
 from latentarm.control.safety.config import SafetyConfig
@@ -101,6 +102,7 @@ class Step:
         dt_s: the loop's period, s.
         surroundings: gives the poses (K, 9) of the controller's `objects` at this moment, see
             `Context.objects`; for controllers that look at any.
+        calls: where every call that changes anything is recorded; None for nowhere.
 
     Raises:
         UserError: the limits do not suit the robot or the period, assistance lacks goals, or the controller
@@ -117,13 +119,15 @@ class Step:
         assistance: Assistance | None = None,
         dt_s: float = 0.01,
         surroundings: Callable[[], FloatArray] | None = None,
+        calls: CallLog | None = None,
     ) -> None:
         if controller.objects and surroundings is None:
             raise UserError(
                 f"The controller looks at the poses of {', '.join(controller.objects)}, and nothing tells"
                 " where these are: drive it at a task that has them."
             )
-        self._surroundings = surroundings
+        self.calls = calls
+        self._surroundings = surroundings if calls is None else calls.watched(surroundings)
         self._shared = SharedAutonomy(robot.dof, controller, goals, belief, assistance, dt_s)
         self._robot = robot
         self._dof = robot.dof
@@ -212,6 +216,7 @@ class Step:
         objects = NO_OBJECTS if self._surroundings is None else self._surroundings()
         return Context(state, self._shared.belief, gripper, objects, target)
 
+    @logged
     def reset(self, state: FloatArray) -> None:
         """Begin a new episode from an arm that stands still: disengaged, first mode, first belief.
 
@@ -235,6 +240,7 @@ class Step:
         self._switch_held = False
         self._shared.reset()
 
+    @logged
     def enable(self) -> Stop | None:
         """Let the arm move, if the newest input was neutral and the readings are steady.
 
@@ -251,6 +257,7 @@ class Step:
             self._yielding.end()
         return refused
 
+    @logged
     def sent(self, time_s: float) -> None:
         """Set when the last command was sent, which is later than its tick began.
 
@@ -259,6 +266,7 @@ class Step:
         """
         self._timekeeping.sent(time_s)
 
+    @logged
     def choose_mode(self, mode: int) -> None:
         """Switch to another mode from the next step on; the current motion is ramped over to it.
 
@@ -272,6 +280,7 @@ class Step:
             raise UserError(f"The controller has modes 0 to {len(self._controller.modes) - 1}, not {mode}.")
         self._mode = mode
 
+    @logged
     def stop(self, reason: str) -> None:
         """Stop the arm from the next step on.
 
@@ -281,6 +290,7 @@ class Step:
         self._engagement.stop(Stop(reason))
         self._yielding.end()
 
+    @logged
     def refuse(self, stop: Stop) -> None:
         """Keep the arm disengaged for this reason, whatever the reason was until now.
 
@@ -290,6 +300,7 @@ class Step:
         self._engagement.replace(stop)
         self._yielding.end()
 
+    @logged
     def halted(self, stop: Stop) -> None:
         """Record that a command ran out and the arm stopped by itself; stay stopped.
 
@@ -300,10 +311,12 @@ class Step:
         self._stack.reset()
         self._yielding.end()
 
+    @logged
     def forget(self) -> None:
         """Believe again what was believed at first: a motion that nobody steered says nothing of a goal."""
         self._shared.reset()
 
+    @logged
     def guided(self, ask: GripperAsk | None) -> None:
         """In the next step the gripper goes where somebody asks who guides the disengaged arm by hand.
 
@@ -314,6 +327,7 @@ class Step:
         """
         self._gripper.guided(ask)
 
+    @logged
     def __call__(self, given: Input, input_age_s: float, reading: Reading, time_s: float) -> StepRecord:
         """One pass through Algorithm 1.
 

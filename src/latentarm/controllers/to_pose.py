@@ -4,6 +4,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.control.call_log import CallLog, logged
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
@@ -27,6 +28,9 @@ class ToPose(Controller):
         robot: the arm; its first tool is kept slow.
         pose: (n,), where it leads at first, rad.
 
+    Attributes:
+        calls: where it is recorded where it leads; None for nowhere.
+
     Raises:
         UserError: the pose is not n finite numbers.
     """
@@ -34,8 +38,10 @@ class ToPose(Controller):
     def __init__(self, robot: Robot, pose: FloatArray) -> None:
         self._chain = robot.chain
         self._dof = robot.dof
+        self.calls: CallLog | None = None
         self.lead_to(pose)
 
+    @logged
     def lead_to(self, pose: FloatArray) -> None:
         """Lead somewhere else from now on.
 

@@ -8,6 +8,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.arms.contract import Arm
+from latentarm.control.call_log import CallLog
 from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
 from latentarm.control.safety.straight_way import StraightWay
@@ -89,6 +90,7 @@ class Drive:
         steering: goes on from the drive before.
         note: shown to the person first; None for nothing.
         observers: also called after every command.
+        calls: where everything that the arm's `Step` is told is recorded; None for nowhere.
 
     Attributes:
         change: the order that ended the loop to start it again; None if it ended for good.
@@ -105,6 +107,7 @@ class Drive:
         steering: Steering,
         note: Notice | None = None,
         observers: Sequence[Callable[[StepRecord], None]] = (),
+        calls: CallLog | None = None,
     ) -> None:
         self._setup = setup
         self._arm = arm
@@ -114,7 +117,9 @@ class Drive:
         self._orphaned = orphaned
         self._steering = steering
         self._to_pose = setup.to_pose()
-        self._step = setup.step(arm, self._to_pose)
+        self._calls = calls
+        self._to_pose.calls = setup.help.calls = calls
+        self._step = setup.step(setup.surroundings(arm), self._to_pose, calls)
         self._inputs = PageInputs(
             channel.given, clock, setup.controller.input_dim, self._step.dead_zone, self._stop_if_enabled
         )
@@ -171,6 +176,15 @@ class Drive:
         self._channel.report.write(self._report(record).model_dump_json().encode())
         if self._clock.now_s() + _SPARE_S < record.time_s + PERIOD_S:
             self._look(record)
+        if self._calls is not None:
+            self._record_calls(self._calls)
+
+    def _record_calls(self, calls: CallLog) -> None:
+        calls.flush()
+        idle = self._step.stopped is not None and self._step.at_rest and not self._standing.guided
+        if calls.large and idle and not self._writer.on and self.change is None:
+            # A file has everything from the start of its loop: the same is driven on, in another file.
+            self._change_to(ChooseProfile(name=self._setup.spec.profile))
 
     def _obey(self, record: StepRecord) -> None:
         if self._channel.stop.version != self._stop_version:

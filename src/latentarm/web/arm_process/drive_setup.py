@@ -1,5 +1,6 @@
 """What a page drives: the task, its modes and their controllers. Used by both processes."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final, final
@@ -12,6 +13,7 @@ from latentarm.arms.contract import Arm, SceneArm
 from latentarm.assistance.boltzmann import BoltzmannBelief
 from latentarm.assistance.goal_blending import GoalBlending
 from latentarm.context import BELIEF
+from latentarm.control.call_log import CallLog
 from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.recorder import EpisodeHeader
 from latentarm.control.safety.config import SafetyConfig
@@ -82,6 +84,7 @@ class Spec:
         zones: where the arm is slow.
         keep_out: what it must keep clear of, besides what the task says.
         speeds: how fast it may move anywhere.
+        incidents: whether what the arm is told is kept for a while, see `latentarm.web.arm_process.incident`.
 
     Raises:
         UserError: the seed is out of range, or a profile is named without a run.
@@ -100,6 +103,7 @@ class Spec:
     zones: tuple[Zone, ...] = ()
     keep_out: tuple[Obstacle, ...] = ()
     speeds: Speeds = field(default_factory=Speeds)
+    incidents: bool = True
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
@@ -223,40 +227,58 @@ class DriveSetup:
         """Slow motions to a pose; to the start at first."""
         return ToPose(self.task.robot, self.start)
 
-    def step(self, arm: Arm | None = None, to_pose: ToPose | None = None) -> Step:
-        """Algorithm 1 with its safety filters, disengaged.
+    @property
+    def safety(self) -> SafetyConfig:
+        """The limits."""
+        return SafetyConfig(
+            joint_speed=self.spec.speeds.joint,
+            link_speed=self.spec.speeds.link,
+            input_timeout_s=INPUT_TIMEOUT_S,
+            input_grace_s=INPUT_GRACE_S,
+            release_fraction=RELEASE_FRACTION,
+            command_periods=COMMAND_PERIODS,
+            obstacles=self.obstacles,
+            zones=self.spec.zones,
+        )
+
+    def surroundings(self, arm: Arm | None) -> Callable[[], FloatArray] | None:
+        """What tells `step` where the things are that the controller looks at.
 
         Args:
-            arm: what is driven; None only to see whether it could be. It says where things are by now.
-            to_pose: the controller of the slow motions; None where nobody tells it where to lead.
+            arm: what is driven, which says where they are by now; None for where they begin.
         """
         objects = self.controller.objects
         if self.scene is None:
-            surroundings = surroundings_of(self.task, objects)
-        elif isinstance(arm, SceneArm):
-            surroundings = watched(lambda: arm.scene_state().poses, objects)
-        else:
-            begun = {thing.name: thing.pose for thing in self.scene.things}
-            surroundings = watched(lambda: begun, objects)
+            return surroundings_of(self.task, objects)
+        if isinstance(arm, SceneArm):
+            return watched(lambda: arm.scene_state().poses, objects)
+        begun = {thing.name: thing.pose for thing in self.scene.things}
+        return watched(lambda: begun, objects)
+
+    def step(
+        self,
+        surroundings: Callable[[], FloatArray] | None = None,
+        to_pose: ToPose | None = None,
+        calls: CallLog | None = None,
+    ) -> Step:
+        """Algorithm 1 with its safety filters, disengaged.
+
+        Args:
+            surroundings: see `Step`; None for things that stand where they begin.
+            to_pose: the controller of the slow motions; None where nobody tells it where to lead.
+            calls: see `Step`.
+        """
         goals = np.array([goal.configuration for goal in self.task.goals])
         return Step(
             self.task.robot,
             JoinedController([self.controller, to_pose or self.to_pose()]),
-            SafetyConfig(
-                joint_speed=self.spec.speeds.joint,
-                link_speed=self.spec.speeds.link,
-                input_timeout_s=INPUT_TIMEOUT_S,
-                input_grace_s=INPUT_GRACE_S,
-                release_fraction=RELEASE_FRACTION,
-                command_periods=COMMAND_PERIODS,
-                obstacles=self.obstacles,
-                zones=self.spec.zones,
-            ),
+            self.safety,
             goals=self.task.goals,
             belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
             assistance=GoalBlending(goals, self.help) if self.task.goals else None,
             dt_s=PERIOD_S,
-            surroundings=surroundings,
+            surroundings=surroundings or self.surroundings(None),
+            calls=calls,
         )
 
 

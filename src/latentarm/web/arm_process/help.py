@@ -3,6 +3,7 @@
 from typing import Final, final
 
 from latentarm.assistance.blending import Arbitration, ConfidenceAlpha, FixedAlpha
+from latentarm.control.call_log import CallLog, logged
 from latentarm.types import FloatArray
 from latentarm.web.protocol.orders import HelpLevel
 
@@ -27,11 +28,22 @@ class Help(Arbitration):
     """Help whose level can be changed while the arm is driven.
 
     Attributes:
-        level: how much.
+        calls: where changes are recorded; None for nowhere.
     """
 
     def __init__(self) -> None:
-        self.level: HelpLevel = "off"
+        self.calls: CallLog | None = None
+        self._level: HelpLevel = "off"
+
+    @property
+    def level(self) -> HelpLevel:
+        """How much."""
+        return self._level
+
+    @level.setter
+    @logged
+    def level(self, level: HelpLevel) -> None:
+        self._level = level
 
     @property
     def on(self) -> bool:

@@ -27,6 +27,7 @@ from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import SEEDS, DriveSetup, Spec, load_setup, with_profile
 from latentarm.web.arm_process.driven_arm import first_arm, from_where_it_stands, next_arm
 from latentarm.web.arm_process.help import USUAL_HELP
+from latentarm.web.arm_process.incident import begin_incident
 from latentarm.web.arm_process.lost_arm import reconnect
 from latentarm.web.arm_process.recording import EpisodeWriter
 from latentarm.web.arm_process.steering import Steering
@@ -84,9 +85,15 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
         try:
             with short_collections():
                 while True:
-                    drive = Drive(setup, arm, channel, clock, writer, orphaned, steering, note)
+                    calls = begin_incident(setup)
+                    drive = Drive(setup, arm, channel, clock, writer, orphaned, steering, note, calls=calls)
                     note = None
-                    match drive.run():
+                    try:
+                        change = drive.run()
+                    finally:
+                        if calls is not None:
+                            calls.close()
+                    match change:
                         case None:
                             break
                         case Reconnect():

@@ -1,0 +1,199 @@
+"""Every call of a `Step` in an incident file: what it was given, and what it answered."""
+
+import hashlib
+import json
+import sys
+import zlib
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import wraps
+from pathlib import Path
+from typing import Any, Concatenate, Final, ParamSpec, Protocol, TypeVar, final
+
+from latentarm.control.exact_json import to_json
+from latentarm.control.journal_limits import JournalLimits, JournalWatch
+from latentarm.errors import UserError
+from latentarm.types import FloatArray, StepRecord
+from latentarm.untrusted.documents import MOST_BYTES, parse_object
+from latentarm.untrusted.opening import opened
+
+MOST_FILE_BYTES: Final = 128 << 20
+"""A file takes no more calls when it is as long as this."""
+
+_GZIP: Final = 31
+_CHECK_EVERY: Final = 100
+_MOST_WAITING: Final = 6000
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+
+@final
+class CallLog:
+    """Writes calls to a file in a thread of its own, so that nothing waits for the disk.
+
+    The file is gzip of one JSON document a line, each after a digest of all lines so far. It can be read
+    up to its last whole line at any time, also after a kill. Where it cannot be written, an error says so
+    once, and the calls after that are lost.
+
+    Args:
+        path: a new file.
+        limits: how much room it may take.
+        head: the first lines.
+
+    Attributes:
+        large: whether it is time for another file.
+    """
+
+    def __init__(self, path: Path, limits: JournalLimits, head: Sequence[dict[str, Any]]) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = path.open("xb", buffering=0)
+        self._watch = JournalWatch(path, limits)
+        self._room = limits.most_bytes // 2
+        self._packing, self._digest = zlib.compressobj(wbits=_GZIP), ""
+        self._writer = ThreadPoolExecutor(1, "incident")
+        self._asked = self._written = 0
+        self._lost = self._inside = self.large = False
+        self._seen: list[Any] = []
+        self._lines = list(head)
+        self.flush()
+
+    def watched(self, surroundings: Callable[[], FloatArray] | None) -> Callable[[], FloatArray] | None:
+        """The surroundings of a `Step`, which are recorded with the call that looks at them."""
+        if surroundings is None:
+            return None
+
+        def look() -> FloatArray:
+            poses = surroundings()
+            if self._inside:
+                self._seen.append(to_json(poses))
+            return poses
+
+        return look
+
+    def call(self, name: str, given: Sequence[object], made: Callable[[], _R]) -> _R:
+        """Make a call and record it; a call within another one is part of that.
+
+        Args:
+            name: of the method.
+            given: its arguments.
+            made: the call.
+        """
+        if self._inside:
+            return made()
+        self._inside, self._seen = True, []
+        # Before the call: a driver may use its arrays again.
+        line = {"call": name, "given": [_noted(one) for one in given], "answer": None, "seen": self._seen}
+        try:
+            result = made()
+            line["answer"] = answer_of(result)
+            return result
+        finally:
+            self._inside = False
+            self._lines.append(line)
+
+    def flush(self) -> None:
+        """Let the calls so far be written; returns at once."""
+        lines, self._lines = self._lines, []
+        if self._lost or not lines:
+            return
+        if self._asked - self._written > _MOST_WAITING:
+            self._lose("the disk is too slow")
+            return
+        self._asked += 1
+        self._writer.submit(self._write, lines)
+
+    def close(self) -> None:
+        """Write what is left, and that the file is complete."""
+        self._lines.append({"complete": True})
+        self.flush()
+        self._writer.shutdown()
+        self._file.close()
+
+    def _lose(self, why: str) -> None:
+        self._lost = True
+        sys.stderr.write(f"latentarm: the incident file {self._file.name} ends here: {why}.\n")
+
+    def _write(self, lines: Sequence[dict[str, Any]]) -> None:
+        if self._lost:
+            return
+        try:
+            if self._written % _CHECK_EVERY == 0:
+                self._watch.check()
+            for line in lines:
+                text = json.dumps(line, separators=(",", ":"))
+                self._digest = _digest(self._digest, text)
+                self._file.write(self._packing.compress(f"{self._digest} {text}\n".encode()))
+            self._file.write(self._packing.flush(zlib.Z_SYNC_FLUSH))
+            self._written += 1
+            self.large = self._file.tell() > self._room
+        except (OSError, UserError) as error:
+            self._lose(str(error))
+
+
+def _noted(value: object) -> Any:
+    try:
+        return to_json(value)
+    except Exception:  # noqa: BLE001 - whatever an interface gives: no recording stops an arm
+        return None
+
+
+class _Logged(Protocol):
+    @property
+    def calls(self) -> CallLog | None: ...
+
+
+_S = TypeVar("_S", bound=_Logged)
+
+
+def logged(method: Callable[Concatenate[_S, _P], _R]) -> Callable[Concatenate[_S, _P], _R]:
+    """A method whose calls are recorded where its object has a `CallLog`; arguments are given in order."""
+
+    @wraps(method)
+    def recorded(self: _S, *args: _P.args, **kwargs: _P.kwargs) -> _R:
+        if self.calls is None:
+            return method(self, *args, **kwargs)
+        given = (*args, *kwargs.values())
+        return self.calls.call(method.__name__, given, lambda: method(self, *args, **kwargs))
+
+    return recorded
+
+
+def answer_of(result: object) -> Any:
+    """What a call answered, as far as it leaves: the command, or why the arm may not move."""
+    return to_json(result.command if isinstance(result, StepRecord) else result)
+
+
+def read_calls(path: Path) -> Generator[dict[str, Any]]:
+    """The lines of an incident file; a last one that was cut off is left out.
+
+    Raises:
+        UserError: it is none, or is damaged.
+    """
+    unpacking, rest, digest, number = zlib.decompressobj(_GZIP), b"", "", 0
+    with opened(path, 2 * MOST_FILE_BYTES) as file:
+        while chunk := file.read(1 << 14):
+            try:
+                rest += unpacking.decompress(chunk)
+            except zlib.error as error:
+                raise UserError(_damaged(path, number)) from error
+            *lines, rest = rest.split(b"\n")
+            for line in lines:
+                said, _, text = line.partition(b" ")
+                digest = _digest(digest, text.decode(errors="replace"))
+                if said != digest.encode() or unpacking.unused_data:
+                    raise UserError(_damaged(path, number))
+                number += 1
+                yield parse_object(text, f"{path}, line {number}")
+            if len(rest) > MOST_BYTES:
+                raise UserError(_damaged(path, number))
+    if not number:
+        raise UserError(_damaged(path, 0))
+
+
+def _digest(before: str, text: str) -> str:
+    return hashlib.sha256(f"{before}{text}".encode()).hexdigest()[:16]
+
+
+def _damaged(path: Path, lines: int) -> str:
+    after = f"is damaged after line {lines}: copy it again" if lines else "is not an incident file"
+    return f"{path} {after}; `latentarm teleop` writes them to the folder incidents/ of its --out."
