@@ -13,12 +13,12 @@ from typing import Any, Concatenate, Final, ParamSpec, Protocol, TypeVar, final
 from latentarm.control.exact_json import to_json
 from latentarm.control.journal_limits import JournalLimits, JournalWatch
 from latentarm.errors import UserError
-from latentarm.types import FloatArray, StepRecord
+from latentarm.types import FloatArray, StepRecord, Stop
 from latentarm.untrusted.documents import MOST_BYTES, parse_object
 from latentarm.untrusted.opening import opened
 
 MOST_FILE_BYTES: Final = 128 << 20
-"""A file takes no more calls when it is as long as this."""
+"""Length from which a file takes no more calls."""
 
 _GZIP: Final = 31
 _CHECK_EVERY: Final = 100
@@ -29,11 +29,10 @@ _R = TypeVar("_R")
 
 @final
 class CallLog:
-    """Writes calls to a file in a thread of its own, so that nothing waits for the disk.
+    """Writes calls to a file in a thread of its own, so that the loop never waits for the disk.
 
-    The file is gzip of one JSON document a line, each after a digest of all lines so far. It can be read
-    up to its last whole line at any time, also after a kill. Where it cannot be written, an error says so
-    once, and the calls after that are lost.
+    The file is gzip of one JSON document a line, each after a digest of all lines so far. At any time it can
+    be read up to the last flush. When it cannot be written any more, that is said once on standard error.
 
     Args:
         path: a new file.
@@ -48,7 +47,7 @@ class CallLog:
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = path.open("xb", buffering=0)
         self._watch = JournalWatch(path, limits)
-        self._room = limits.most_bytes // 2
+        self._large_bytes = limits.most_bytes // 2
         self._packing, self._digest = zlib.compressobj(wbits=_GZIP), ""
         self._writer = ThreadPoolExecutor(1, "incident")
         self._asked = self._written = 0
@@ -58,49 +57,41 @@ class CallLog:
         self.flush()
 
     def watched(self, surroundings: Callable[[], FloatArray] | None) -> Callable[[], FloatArray] | None:
-        """The surroundings of a `Step`, which are recorded with the call that looks at them."""
+        """The surroundings of a `Step`, recorded with the call that looks at them."""
         if surroundings is None:
             return None
 
         def look() -> FloatArray:
             poses = surroundings()
-            if self._inside:
-                self._seen.append(to_json(poses))
+            self._seen.append(to_json(poses))
             return poses
 
         return look
 
     def call(self, name: str, given: Sequence[object], made: Callable[[], _R]) -> _R:
-        """Make a call and record it; a call within another one is part of that.
-
-        Args:
-            name: of the method.
-            given: its arguments.
-            made: the call.
-        """
+        """Make a call and record it; a call within another one is part of that."""
         if self._inside:
             return made()
         self._inside, self._seen = True, []
         # Before the call: a driver may use its arrays again.
-        line = {"call": name, "given": [_noted(one) for one in given], "answer": None, "seen": self._seen}
+        line = {"call": name, "given": [_noted(one) for one in given], "seen": self._seen}
         try:
             result = made()
             line["answer"] = answer_of(result)
             return result
         finally:
-            self._inside = False
+            # Who looks at the surroundings between calls is none of them.
+            self._inside, self._seen = False, []
             self._lines.append(line)
 
     def flush(self) -> None:
-        """Let the calls so far be written; returns at once."""
+        """Have the calls so far written; returns at once."""
         lines, self._lines = self._lines, []
-        if self._lost or not lines:
-            return
         if self._asked - self._written > _MOST_WAITING:
             self._lose("the disk is too slow")
-            return
-        self._asked += 1
-        self._writer.submit(self._write, lines)
+        if lines and not self._lost:
+            self._asked += 1
+            self._writer.submit(self._write, lines)
 
     def close(self) -> None:
         """Write what is left, and that the file is complete."""
@@ -110,12 +101,11 @@ class CallLog:
         self._file.close()
 
     def _lose(self, why: str) -> None:
+        if not self._lost:
+            sys.stderr.write(f"latentarm: the incident file {self._file.name} ends here: {why}.\n")
         self._lost = True
-        sys.stderr.write(f"latentarm: the incident file {self._file.name} ends here: {why}.\n")
 
     def _write(self, lines: Sequence[dict[str, Any]]) -> None:
-        if self._lost:
-            return
         try:
             if self._written % _CHECK_EVERY == 0:
                 self._watch.check()
@@ -125,16 +115,9 @@ class CallLog:
                 self._file.write(self._packing.compress(f"{self._digest} {text}\n".encode()))
             self._file.write(self._packing.flush(zlib.Z_SYNC_FLUSH))
             self._written += 1
-            self.large = self._file.tell() > self._room
+            self.large = self._file.tell() > self._large_bytes
         except (OSError, UserError) as error:
             self._lose(str(error))
-
-
-def _noted(value: object) -> Any:
-    try:
-        return to_json(value)
-    except Exception:  # noqa: BLE001 - whatever an interface gives: no recording stops an arm
-        return None
 
 
 class _Logged(Protocol):
@@ -146,7 +129,7 @@ _S = TypeVar("_S", bound=_Logged)
 
 
 def logged(method: Callable[Concatenate[_S, _P], _R]) -> Callable[Concatenate[_S, _P], _R]:
-    """A method whose calls are recorded where its object has a `CallLog`; arguments are given in order."""
+    """A method whose calls are recorded in its object's ``calls``."""
 
     @wraps(method)
     def recorded(self: _S, *args: _P.args, **kwargs: _P.kwargs) -> _R:
@@ -159,12 +142,22 @@ def logged(method: Callable[Concatenate[_S, _P], _R]) -> Callable[Concatenate[_S
 
 
 def answer_of(result: object) -> Any:
-    """What a call answered, as far as it leaves: the command, or why the arm may not move."""
-    return to_json(result.command if isinstance(result, StepRecord) else result)
+    """What a call decided: a command, with the code of its stop, or why the arm may not move."""
+    if isinstance(result, StepRecord):
+        command = result.command
+        return {**to_json(command)["fields"], "stop": answer_of(command.stop)}
+    return result.code or result.reason if isinstance(result, Stop) else None
+
+
+def _noted(value: object) -> Any:
+    try:
+        return to_json(value)
+    except Exception:  # noqa: BLE001 - whatever an interface gives, recording it stops no arm
+        return None
 
 
 def read_calls(path: Path) -> Generator[dict[str, Any]]:
-    """The lines of an incident file; a last one that was cut off is left out.
+    """The lines of an incident file, without a last one that was cut off.
 
     Raises:
         UserError: it is none, or is damaged.
@@ -173,18 +166,17 @@ def read_calls(path: Path) -> Generator[dict[str, Any]]:
     with opened(path, 2 * MOST_FILE_BYTES) as file:
         while chunk := file.read(1 << 14):
             try:
-                rest += unpacking.decompress(chunk)
+                *lines, rest = (rest + unpacking.decompress(chunk)).split(b"\n")
             except zlib.error as error:
                 raise UserError(_damaged(path, number)) from error
-            *lines, rest = rest.split(b"\n")
             for line in lines:
                 said, _, text = line.partition(b" ")
                 digest = _digest(digest, text.decode(errors="replace"))
-                if said != digest.encode() or unpacking.unused_data:
+                if said != digest.encode():
                     raise UserError(_damaged(path, number))
                 number += 1
                 yield parse_object(text, f"{path}, line {number}")
-            if len(rest) > MOST_BYTES:
+            if len(rest) > MOST_BYTES or unpacking.unused_data:
                 raise UserError(_damaged(path, number))
     if not number:
         raise UserError(_damaged(path, 0))
@@ -195,5 +187,5 @@ def _digest(before: str, text: str) -> str:
 
 
 def _damaged(path: Path, lines: int) -> str:
-    after = f"is damaged after line {lines}: copy it again" if lines else "is not an incident file"
-    return f"{path} {after}; `latentarm teleop` writes them to the folder incidents/ of its --out."
+    what = f"is damaged after line {lines}: copy it again" if lines else "is not an incident file"
+    return f"{path} {what}; `latentarm teleop` writes them to incidents/ in its --out."

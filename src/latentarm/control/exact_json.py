@@ -10,32 +10,29 @@ import numpy as np
 
 
 def to_json(value: object) -> Any:
-    """A value as JSON can hold it: records by their type's name, arrays as hexadecimal bytes.
+    """A value as JSON can hold it; None where no loop can use it.
 
-    Args:
-        value: anything; what no loop can use becomes None.
+    Arrays become hexadecimal bytes; records and mappings, their fields and their type's name.
     """
     match value:
+        case bool() | None:
+            return value
         case float():
             return float(value) if math.isfinite(value) else {"float": str(float(value))}
         case str():
             return value.encode(errors="replace").decode()[:1000]
-        case bool() | None:
-            return value
         case int():
             return value if abs(value) < 1 << 62 else None
-        case np.ndarray():
-            if value.dtype.kind not in "iuf":
-                return to_json(value.tolist())  # of no use to a loop, and so refused again
+        case np.ndarray() if value.dtype.kind in "iuf":
             return {"array": value.astype("<f8").tobytes().hex(), "shape": list(value.shape)}
-        case np.generic():
-            return to_json(value.item())
+        case np.generic() | np.ndarray():
+            return to_json(value.tolist())
         case tuple() | list():
             return [to_json(one) for one in value]
-        case Mapping():
-            return {"mapping": {str(key): to_json(one) for key, one in value.items()}}
         case Path():
-            return {"path": str(value)}
+            return str(value)
+        case Mapping():
+            return {"record": "dict", "fields": {str(key): to_json(one) for key, one in value.items()}}
         case _ if is_dataclass(value):
             named = {field.name: to_json(getattr(value, field.name)) for field in fields(value)}
             return {"record": type(value).__name__, "fields": named}
@@ -43,29 +40,25 @@ def to_json(value: object) -> Any:
             return None
 
 
-def of_json(document: Any, kinds: Mapping[str, type]) -> Any:
-    """What `to_json` was given; lists are tuples.
+def of_json(document: Any, *kinds: type) -> Any:
+    """What `to_json` was given; lists are tuples, and paths text.
 
     Args:
         document: untrusted.
-        kinds: the records that may be in it, by name.
+        kinds: the records that may be in it.
 
     Raises:
-        KeyError: a record is of another kind.
-        TypeError, ValueError, UserError: a record or an array is damaged.
+        TypeError, ValueError, UserError: a record is damaged or of another kind, or an array is damaged.
     """
     match document:
         case {"float": text}:
             return float(text)
         case {"array": content, "shape": shape}:
             return np.frombuffer(bytes.fromhex(content), "<f8").reshape(shape).astype(np.float64)
-        case {"mapping": entries}:
-            return {key: of_json(one, kinds) for key, one in entries.items()}
-        case {"path": text}:
-            return Path(text)
         case {"record": name, "fields": named}:
-            return kinds[name](**{key: of_json(one, kinds) for key, one in named.items()})
+            (kind,) = (kind for kind in (*kinds, dict) if kind.__name__ == name)
+            return kind(**{key: of_json(one, *kinds) for key, one in named.items()})
         case list():
-            return tuple(of_json(one, kinds) for one in document)
+            return tuple(of_json(one, *kinds) for one in document)
         case _:
             return document

@@ -277,7 +277,7 @@ class Drive:
             # A stick that is held would go on, with another meaning.
             self._neutral.demand()
         self._way_back.end()
-        self._setup.help.level = self._steering.help_now
+        self._setup.help.choose(self._steering.help_now)
         self._step.choose_mode(self._setup.mode_index(mode, self._steering.axes))
 
     def _choose_help(self, level: HelpLevel) -> None:
@@ -302,7 +302,7 @@ class Drive:
         # An episode is one motion of a person's.
         self._episodes.end()
         self._note_until_s = -math.inf
-        self._setup.help.level = "off"
+        self._setup.help.choose("off")
         self._to_pose.lead_to(goal)
         self._step.choose_mode(self._setup.way_back)
         self._way_back.begin(record.time_s, self._observed.q, goal, None if pose is None else pose.name)

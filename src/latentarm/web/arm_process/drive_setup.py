@@ -227,20 +227,6 @@ class DriveSetup:
         """Slow motions to a pose; to the start at first."""
         return ToPose(self.task.robot, self.start)
 
-    @property
-    def safety(self) -> SafetyConfig:
-        """The limits."""
-        return SafetyConfig(
-            joint_speed=self.spec.speeds.joint,
-            link_speed=self.spec.speeds.link,
-            input_timeout_s=INPUT_TIMEOUT_S,
-            input_grace_s=INPUT_GRACE_S,
-            release_fraction=RELEASE_FRACTION,
-            command_periods=COMMAND_PERIODS,
-            obstacles=self.obstacles,
-            zones=self.spec.zones,
-        )
-
     def surroundings(self, arm: Arm | None) -> Callable[[], FloatArray] | None:
         """What tells `step` where the things are that the controller looks at.
 
@@ -272,7 +258,16 @@ class DriveSetup:
         return Step(
             self.task.robot,
             JoinedController([self.controller, to_pose or self.to_pose()]),
-            self.safety,
+            SafetyConfig(
+                joint_speed=self.spec.speeds.joint,
+                link_speed=self.spec.speeds.link,
+                input_timeout_s=INPUT_TIMEOUT_S,
+                input_grace_s=INPUT_GRACE_S,
+                release_fraction=RELEASE_FRACTION,
+                command_periods=COMMAND_PERIODS,
+                obstacles=self.obstacles,
+                zones=self.spec.zones,
+            ),
             goals=self.task.goals,
             belief=BoltzmannBelief(goals, period_s=BELIEF_PERIOD_S) if self.task.goals else None,
             assistance=GoalBlending(goals, self.help) if self.task.goals else None,

@@ -28,22 +28,18 @@ class Help(Arbitration):
     """Help whose level can be changed while the arm is driven.
 
     Attributes:
+        level: how much.
         calls: where changes are recorded; None for nowhere.
     """
 
     def __init__(self) -> None:
         self.calls: CallLog | None = None
-        self._level: HelpLevel = "off"
+        self.level: HelpLevel = "off"
 
-    @property
-    def level(self) -> HelpLevel:
-        """How much."""
-        return self._level
-
-    @level.setter
     @logged
-    def level(self, level: HelpLevel) -> None:
-        self._level = level
+    def choose(self, level: HelpLevel) -> None:
+        """Help as much as this from now on."""
+        self.level = level
 
     @property
     def on(self) -> bool:

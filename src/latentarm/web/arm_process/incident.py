@@ -1,4 +1,4 @@
-"""Incident files: what an arm was told in the last minutes, with all that is needed to decide it again."""
+"""Incident files: what an arm was told, with all that is needed to decide it again."""
 
 import base64
 import hashlib
@@ -8,7 +8,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -30,51 +30,39 @@ from latentarm.web.arm_process.beginning import RobotOptions
 from latentarm.web.arm_process.drive_setup import DriveSetup, Spec, load_setup
 from latentarm.web.arm_process.speeds import Speeds
 
-SUFFIX: Final = ".incident.gz"
-
 KEPT_BYTES: Final = 512 << 20
 """Of all incident files in a folder; the oldest go first."""
 
+_SUFFIX: Final = ".incident.gz"
 _RUN: Final = "run"
 _LIMITS: Final = "limits"
 _PART_BYTES: Final = 30_000
-_KINDS: Final[dict[str, type]] = {
-    kind.__name__: kind
-    for kind in (Spec, JournalLimits, RobotOptions, Speeds, Zone, HalfSpace, Sphere, Capsule, Box)
-}
+_KINDS: Final = (Spec, JournalLimits, RobotOptions, Speeds, Zone, HalfSpace, Sphere, Capsule, Box)
 
 
 def begin_incident(setup: DriveSetup) -> CallLog | None:
-    """A new incident file for a drive that begins; None where nothing is to be kept, or it cannot be.
-
-    Args:
-        setup: what is driven.
-    """
-    spec = setup.spec
-    if not spec.incidents:
+    """A new incident file for a drive that begins; None where none is wanted, or it cannot be written."""
+    if not setup.spec.incidents:
         return None
-    folder = spec.out / "incidents"
-    limits = JournalLimits(MOST_FILE_BYTES, spec.journal.least_free_bytes)
+    folder = setup.spec.out / "incidents"
+    limits = JournalLimits(MOST_FILE_BYTES, setup.spec.journal.least_free_bytes)
     try:
         room = KEPT_BYTES - MOST_FILE_BYTES
-        for file in sorted(folder.glob(f"*{SUFFIX}"), reverse=True):
+        for file in sorted(folder.glob(f"*{_SUFFIX}"), reverse=True):
             room -= file.stat().st_size
             if room < 0:
                 file.unlink()
-        return CallLog(folder / f"{datetime.now(UTC):%Y%m%d-%H%M%S-%f}{SUFFIX}", limits, _head(setup))
+        return CallLog(folder / f"{datetime.now(UTC):%Y%m%d-%H%M%S-%f}{_SUFFIX}", limits, _head(setup))
     except (OSError, UserError) as error:
         sys.stderr.write(f"latentarm: no incident file is written: {error}.\n")
         return None
 
 
-def computer() -> dict[str, str]:
+def computer() -> str:
     """What the last bits of a result depend on."""
-    kernels = {f"{one['internal_api']} {one.get('architecture')}" for one in threadpool_info()}
-    versions = f"Python {platform.python_version()}, NumPy {np.__version__}"
-    return {
-        "latentarm": __version__,
-        "platform": f"{platform.system()} {platform.machine()}, {versions}, {', '.join(sorted(kernels))}",
-    }
+    kernels = {str(one.get("architecture")) for one in threadpool_info() if one["user_api"] == "blas"}
+    programs = f"latentarm {__version__}, Python {platform.python_version()}, NumPy {np.__version__}"
+    return f"{programs}, {platform.system()} {platform.machine()}, BLAS for {'/'.join(sorted(kernels))}"
 
 
 def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
@@ -89,46 +77,43 @@ def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
         UserError: something that it names is missing here, or differs.
     """
     try:
-        spec: Spec = of_json(head["spec"], _KINDS)
-        robot = spec.robot
-        if robot.limits is not None:
-            robot = replace(robot, limits=folder / _LIMITS)
-        spec = replace(spec, run=None if spec.run is None else folder / _RUN, robot=robot)
-        start, parts = of_json(head["start"], {}), dict[str, str](head["parts"])
+        spec: Spec = of_json(head["spec"], *_KINDS)
+        limits = None if spec.robot.limits is None else folder / _LIMITS
+        run = None if spec.run is None else folder / _RUN
+        spec = replace(spec, run=run, out=folder, robot=replace(spec.robot, limits=limits))
+        start, parts = of_json(head["start"]), dict[str, str](head["parts"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise UserError(f"{where} does not say what was driven: it is damaged.") from error
     setup = replace(load_setup(spec), start=start)
-    here = _parts(setup)
-    if differing := [name for name in here if here[name] != parts.get(name)]:
+    if differing := [name for name, digest in _parts(setup).items() if parts.get(name) != digest]:
         raise UserError(
-            f"{where} cannot be replayed: here its {' and '.join(differing)} differ from what was driven. Use"
-            f" latentarm {head.get('latentarm')} with the same robot's model and plug-ins."
+            f"{where} cannot be replayed here, where its {' and '.join(differing)} would be others: use"
+            f" {head.get('computer')}, with the same model of the robot and the same plug-ins."
         )
     return setup
 
 
 def unpack(line: Mapping[str, Any], folder: Path, where: str) -> None:
-    """Write a part of a copied file.
+    """Add a part to one of the copies.
 
     Args:
         line: of the file.
-        folder: where copies go.
+        folder: where its copies go.
         where: what errors call it.
 
     Raises:
-        UserError: it belongs elsewhere, or is damaged.
+        UserError: it does not belong there.
     """
-    name = PurePosixPath(str(line["file"]))
-    if name.parts[:1] not in ((_RUN,), (_LIMITS,)) or ".." in name.parts:
-        raise UserError(f"{where} holds {str(name)!r}, which is no file of a run: it is damaged.")
-    path = folder / name
+    path = (folder / str(line["file"])).resolve()
+    if not path.is_relative_to(folder.resolve()):
+        raise UserError(f"{where} holds {line['file']!r}, which is no file of a run: it is damaged.")
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("ab") as file:
         file.write(base64.b64decode(str(line.get("data"))))
 
 
 def _head(setup: DriveSetup) -> list[dict[str, Any]]:
-    """What was driven, then copies of the files that say so."""
+    """What is driven, then copies of the files that say so."""
     spec = setup.spec
     copied: dict[str, Path] = {} if spec.robot.limits is None else {_LIMITS: spec.robot.limits}
     if spec.run is not None:
@@ -136,35 +121,31 @@ def _head(setup: DriveSetup) -> list[dict[str, Any]]:
         if spec.profile is not None:
             kept += folder_of(spec.run, spec.profile).glob("*")
         copied |= {f"{_RUN}/{file.relative_to(spec.run).as_posix()}": file for file in kept}
-    named = replace(spec, run=spec.run and Path(spec.run.name), out=Path())
     first = {
         "incident": 1,
-        **computer(),
+        "computer": computer(),
         "began_utc": datetime.now(UTC).isoformat(timespec="seconds"),
-        "spec": to_json(named),
+        "spec": to_json(spec),
         "start": to_json(setup.start),
         "parts": _parts(setup),
     }
-    lines = [first]
-    for name, path in copied.items():
-        content = read_bytes(path, MOST_COPIED)
-        for at in range(0, len(content), _PART_BYTES):
-            data = base64.b64encode(content[at : at + _PART_BYTES]).decode()
-            lines.append({"file": name, "data": data})
-    return lines
+    contents = {name: read_bytes(path, MOST_COPIED) for name, path in copied.items()}
+    return [first] + [
+        {"file": name, "data": base64.b64encode(content[at : at + _PART_BYTES]).decode()}
+        for name, content in contents.items()
+        for at in range(0, len(content), _PART_BYTES)
+    ]
 
 
 def _parts(setup: DriveSetup) -> dict[str, str]:
     """Digests of what commands follow from, by what a person would call it."""
-    robot = setup.task.robot
-    arm = (robot.chain, robot.limits, robot.capsules, robot.self_pairs, robot.gripper, robot.home)
-    return {
-        "robot": _digest(arm),
-        "goals": _digest(setup.task.goals),
-        "safety limits": _digest(setup.safety),
-        "model": _digest((setup.run_fingerprint, setup.controller.modes, setup.controller.objects)),
+    robot, controller = setup.task.robot, setup.controller
+    parts: dict[str, object] = {
+        "robot": (robot.chain, robot.limits, robot.capsules, robot.self_pairs, robot.gripper),
+        "goals": setup.task.goals,
+        "safety limits": setup.step().safety,
+        "model": (setup.run_fingerprint, controller.modes, controller.objects),
     }
-
-
-def _digest(value: object) -> str:
-    return hashlib.sha256(json.dumps(to_json(value)).encode()).hexdigest()
+    return {
+        name: hashlib.sha256(json.dumps(to_json(part)).encode()).hexdigest() for name, part in parts.items()
+    }
