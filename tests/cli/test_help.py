@@ -32,6 +32,7 @@ COMMANDS = [
     "drive",
     "teleop",
     "export",
+    "replay",
     "reproduce",
     "study",
     "bench",

