@@ -13,11 +13,11 @@ from typing import Any, Concatenate, Final, ParamSpec, Protocol, TypeVar, final
 from latentarm.control.exact_json import to_json
 from latentarm.control.journal_limits import JournalLimits, JournalWatch
 from latentarm.errors import UserError
-from latentarm.types import FloatArray, StepRecord, Stop
+from latentarm.types import Command, FloatArray, StepRecord, Stop
 from latentarm.untrusted.documents import MOST_BYTES, parse_object
 from latentarm.untrusted.opening import opened
 
-MOST_FILE_BYTES: Final = 128 << 20
+MOST_FILE_BYTES: Final = 256 << 20
 """Length from which a file takes no more calls."""
 
 _GZIP: Final = 31
@@ -47,7 +47,7 @@ class CallLog:
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = path.open("xb", buffering=0)
         self._watch = JournalWatch(path, limits)
-        self._large_bytes = limits.most_bytes // 2
+        self._large_bytes = limits.most_bytes // 4
         self._packing, self._digest = zlib.compressobj(wbits=_GZIP), ""
         self._writer = ThreadPoolExecutor(1, "incident")
         self._asked = self._written = 0
@@ -74,10 +74,10 @@ class CallLog:
             return made()
         self._inside, self._seen = True, []
         # Before the call: a driver may use its arrays again.
-        line = {"call": name, "given": [_noted(one) for one in given], "seen": self._seen}
+        line: dict[str, Any] = {"call": name, "given": [_noted(one) for one in given], "seen": self._seen}
         try:
             result = made()
-            line["answer"] = answer_of(result)
+            line["answer"] = result.command if isinstance(result, StepRecord) else result
             return result
         finally:
             # Who looks at the surroundings between calls is none of them.
@@ -110,7 +110,7 @@ class CallLog:
             if self._written % _CHECK_EVERY == 0:
                 self._watch.check()
             for line in lines:
-                text = json.dumps(line, separators=(",", ":"))
+                text = json.dumps({**line, "answer": answer_of(line.get("answer"))}, separators=(",", ":"))
                 self._digest = _digest(self._digest, text)
                 self._file.write(self._packing.compress(f"{self._digest} {text}\n".encode()))
             self._file.write(self._packing.flush(zlib.Z_SYNC_FLUSH))
@@ -144,8 +144,9 @@ def logged(method: Callable[Concatenate[_S, _P], _R]) -> Callable[Concatenate[_S
 def answer_of(result: object) -> Any:
     """What a call decided: a command, with the code of its stop, or why the arm may not move."""
     if isinstance(result, StepRecord):
-        command = result.command
-        return {**to_json(command)["fields"], "stop": answer_of(command.stop)}
+        return answer_of(result.command)
+    if isinstance(result, Command):
+        return {**to_json(result)["fields"], "stop": answer_of(result.stop)}
     return result.code or result.reason if isinstance(result, Stop) else None
 
 

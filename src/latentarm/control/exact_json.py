@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -34,10 +35,15 @@ def to_json(value: object) -> Any:
         case Mapping():
             return {"record": "dict", "fields": {str(key): to_json(one) for key, one in value.items()}}
         case _ if is_dataclass(value):
-            named = {field.name: to_json(getattr(value, field.name)) for field in fields(value)}
+            named = {name: to_json(getattr(value, name)) for name in _names(type(value))}
             return {"record": type(value).__name__, "fields": named}
         case _:
             return None
+
+
+@cache
+def _names(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind))
 
 
 def of_json(document: Any, *kinds: type) -> Any:
