@@ -130,7 +130,7 @@ def rewritten(file, to, change):
             text = json.dumps(line)
             digest = hashlib.sha256(f"{digest}{text}".encode()).hexdigest()[:16]
             out.write(packing.compress(f"{digest} {text}\n".encode()))
-        out.write(packing.flush())
+        out.write(packing.flush(zlib.Z_SYNC_FLUSH))
     return to
 
 

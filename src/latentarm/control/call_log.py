@@ -14,13 +14,15 @@ from latentarm.control.exact_json import to_json
 from latentarm.control.journal_limits import JournalLimits, JournalWatch
 from latentarm.errors import UserError
 from latentarm.types import Command, FloatArray, StepRecord, Stop
-from latentarm.untrusted.documents import MOST_BYTES, parse_object
+from latentarm.untrusted.documents import parse_object
 from latentarm.untrusted.opening import opened
 
 MOST_FILE_BYTES: Final = 256 << 20
 """Length from which a file takes no more calls."""
 
 _GZIP: Final = 31
+_FLUSHED: Final = b"\0\0\xff\xff"
+_MOST_FLUSHED: Final = 1 << 28
 _CHECK_EVERY: Final = 100
 _MOST_WAITING: Final = 6000
 _P = ParamSpec("_P")
@@ -163,21 +165,28 @@ def read_calls(path: Path) -> Generator[dict[str, Any]]:
     Raises:
         UserError: it is none, or is damaged.
     """
-    unpacking, rest, digest, number = zlib.decompressobj(_GZIP), b"", "", 0
+    unpacking, part, rest, digest, number, vain = zlib.decompressobj(_GZIP), b"", b"", "", 0, 0
     with opened(path, 2 * MOST_FILE_BYTES) as file:
-        while chunk := file.read(1 << 14):
-            try:
-                *lines, rest = (rest + unpacking.decompress(chunk)).split(b"\n")
-            except zlib.error as error:
-                raise UserError(_damaged(path, number)) from error
-            for line in lines:
-                said, _, text = line.partition(b" ")
-                digest = _digest(digest, text.decode(errors="replace"))
-                if said != digest.encode():
+        while chunk := file.read(1 << 20):
+            # Each flush ends in whole lines: after one that does not, the rest only looks cut off.
+            *flushes, part = (part + chunk).split(_FLUSHED)
+            for flushed in flushes:
+                try:
+                    content = unpacking.decompress(flushed + _FLUSHED, _MOST_FLUSHED)
+                except zlib.error as error:
+                    raise UserError(_damaged(path, number)) from error
+                *lines, rest = (rest + content).split(b"\n")
+                vain = 0 if lines else vain + 1
+                if vain > 1 or unpacking.unconsumed_tail:
                     raise UserError(_damaged(path, number))
-                number += 1
-                yield parse_object(text, f"{path}, line {number}")
-            if len(rest) > MOST_BYTES or unpacking.unused_data:
+                for line in lines:
+                    said, _, text = line.partition(b" ")
+                    digest = _digest(digest, text.decode(errors="replace"))
+                    if said != digest.encode():
+                        raise UserError(_damaged(path, number))
+                    number += 1
+                    yield parse_object(text, f"{path}, line {number}")
+            if len(part) > _MOST_FLUSHED:
                 raise UserError(_damaged(path, number))
     if not number:
         raise UserError(_damaged(path, 0))

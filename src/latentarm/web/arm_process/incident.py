@@ -78,7 +78,8 @@ def rebuild(head: Mapping[str, Any], folder: Path, where: str) -> DriveSetup:
     """
     try:
         spec: Spec = of_json(head["spec"], *_KINDS)
-        limits = None if spec.robot.limits is None else folder / _LIMITS
+        named = spec.robot.limits
+        limits = None if named is None else folder / f"{_LIMITS}{Path(named).suffix}"
         run = None if spec.run is None else folder / _RUN
         spec = replace(spec, run=run, out=folder, robot=replace(spec.robot, limits=limits))
         start, parts = of_json(head["start"]), dict[str, str](head["parts"])
@@ -115,7 +116,8 @@ def unpack(line: Mapping[str, Any], folder: Path, where: str) -> None:
 def _head(setup: DriveSetup) -> list[dict[str, Any]]:
     """What is driven, then copies of the files that say so."""
     spec = setup.spec
-    copied: dict[str, Path] = {} if spec.robot.limits is None else {_LIMITS: spec.robot.limits}
+    limits = spec.robot.limits
+    copied: dict[str, Path] = {} if limits is None else {f"{_LIMITS}{limits.suffix}": limits}
     if spec.run is not None:
         kept = [spec.run / CONFIG_NAME, spec.run / WEIGHTS_NAME, *(spec.run / ROBOT).glob("*")]
         if spec.profile is not None:
