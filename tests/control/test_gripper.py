@@ -284,11 +284,23 @@ def test_what_opens_a_gripper_must_be_held_without_a_break(interruption: str) ->
     elif interruption == "let go":
         driven.tick()
     elif interruption == "stale":
-        driven.tick(age_s=1.0, opens=True)
+        for _ in range(7):
+            driven.tick(age_s=1.0, opens=True)
     else:
         driven.tick("close", opens=False)
     asked = driven.hold(0.9)
     assert all(one is not None and one.speed_m_s == 0.0 for one in asked)
+
+
+def test_inputs_that_are_missing_for_a_moment_let_the_fingers_wait_and_do_not_begin_the_second_anew() -> None:
+    driven = Driven()
+    driven.tick("close")
+    driven.step.stop("Stop.")
+    driven.hold(0.99)
+    missing = [driven.tick(age_s=0.06, opens=True).command.gripper for _ in range(4)]
+    assert all(one is not None and one.speed_m_s == 0.0 for one in missing)
+    opening = driven.tick(opens=True).command.gripper
+    assert opening == GripperCommand(WIDE, 0.05, 20.0)
 
 
 def test_a_clock_that_jumps_is_no_second_of_holding() -> None:
