@@ -3,6 +3,8 @@
 `python tests/arms/test_held_after_stop.py` prints the table of `docs/your-arm.md`.
 """
 
+import sys
+
 import mujoco
 import numpy as np
 import pytest
@@ -103,9 +105,9 @@ def test_what_is_caught_comes_free_by_holding_open_and_stays_held_when_the_arm_i
 
 
 if __name__ == "__main__":
-    print("| pressed when Stop came | 50 ms later | 1 s later |\n|---|---|---|")
+    sys.stdout.write("| pressed when Stop came | 50 ms later | 1 s later |\n|---|---|---|\n")
     for is_soft in (False, True):
         for met_s in (0.02, 0.06, 0.2, 1.0):
             first, later = Caught(soft=is_soft).stopped_after(met_s)
             what = f"{'soft' if is_soft else 'hard'}, touched for {met_s:g} s: {first:.1f}"
-            print(f"| {what} | {later[FIFTY_MS - 1]:.1f} | {later[-1]:.1f} |")
+            sys.stdout.write(f"| {what} | {later[FIFTY_MS - 1]:.1f} | {later[-1]:.1f} |\n")

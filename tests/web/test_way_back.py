@@ -9,7 +9,7 @@ from latentarm.control.journal import read_journal
 from latentarm.kinematics.obstacles import HalfSpace, Sphere
 from latentarm.tasks.place import ScenePlace
 from latentarm.web.arm_process.way_back import ARRIVED_RAD
-from latentarm.web.protocol.orders import ChooseMode, Enable, Record, Return
+from latentarm.web.protocol.orders import ChooseMode, Enable, Paced, Record, Return
 
 AWAY_S = 1.6
 """When the arm has been driven away and let go."""
@@ -24,6 +24,7 @@ class Away:
         self.u = (0.0, 0.0)
         self.gripper = None
         self.silent = False
+        self.pace = None
         desk.each_tick = self.tick
 
     def tick(self, now_s):
@@ -34,7 +35,10 @@ class Away:
             desk.order(Return(on=True))
         self.then(now_s)
         if not self.silent:
-            desk.give(*((1.0, 1.0) if 0.3 <= now_s < 1.3 else self.u), gripper=self.gripper)
+            newest = desk.reports[-1].nonce if desk.reports else ""
+            paced = None if self.pace is None else Paced(copilot=1, pace=self.pace(now_s), nonce=newest)
+            u = (1.0, 1.0) if 0.3 <= now_s < 1.3 else self.u
+            desk.give(*u, gripper=self.gripper, paced=paced)
 
     def reports(self, after_s=AWAY_S):
         return [report for report in self.desk.reports if report.time_s > after_s + 0.015]
@@ -47,6 +51,16 @@ def away(desk):
 
 def away_from_start(desk, report):
     return np.abs(np.array(report.q) - desk.setup.start).max()
+
+
+@pytest.mark.parametrize("pace", [0.0, 0.25])
+def test_a_copilots_pace_binds_the_way_back(desk, away, pace):
+    away.pace = lambda now_s: 1.0 if now_s < AWAY_S - 0.1 else pace
+    desk.run(3.6)
+    after = [record for record in desk.records if record.time_s > AWAY_S + 0.1]
+    fastest = max(np.abs(record.command.velocity).max() for record in after)
+    assert fastest <= pace * 0.5 + 1e-9
+    assert (fastest > 0.0) == (pace > 0.0)
 
 
 def test_it_arrives_slowly_and_says_so(desk, away):
