@@ -468,7 +468,8 @@ class Step:
             if stale is not None:
                 return stale
             u = np.asarray(given.u)
-            bool(given.switch_mode), bool(given.opens)
+            bool(given.switch_mode)
+            bool(given.opens)
             if not 0.0 <= float(given.pace) <= 1.0:
                 return _invalid("The input's pace is outside [0, 1].")
             if not self._gripper.known(given.gripper):
