@@ -135,6 +135,7 @@ class Desk:
         nonce: str | None = None,
         latched: bool = False,
         driver: int = 1,
+        device: int = 0,
         gripper: GripperAsk | None = None,
         paced: Paced | None = None,
     ) -> None:
@@ -147,6 +148,7 @@ class Desk:
             u=u,
             latched=latched,
             source="keyboard",
+            device=device,
             gripper=gripper and AskedGripper(ask=gripper, seq=self.sequence, nonce=known),
             paced=paced,
         )

@@ -1,4 +1,4 @@
-"""Inputs whose meaning has changed: they count as zero until the person has let go once."""
+"""Inputs whose meaning or device has changed: they count as zero until the person has let go once."""
 
 from dataclasses import replace
 from typing import final
@@ -12,7 +12,7 @@ from latentarm.web.arm_process.page_inputs import PageInputs
 
 @final
 class NeutralFirst(InputSource):
-    """The page's inputs, held at zero after a change of what they mean.
+    """The page's inputs, held at zero after a change of what they mean, or of the device that is deflected.
 
     Args:
         inputs: of the page.
@@ -23,6 +23,7 @@ class NeutralFirst(InputSource):
 
     def __init__(self, inputs: PageInputs) -> None:
         self._inputs = inputs
+        self._held_by: tuple[str, int] | None = None
         self.waiting = False
 
     def demand(self) -> None:
@@ -32,6 +33,9 @@ class NeutralFirst(InputSource):
     def latest(self, now_s: float) -> tuple[Input, float]:
         """See the base class. What is asked of the gripper passes: it means the same as before."""
         given, age_s = self._inputs.latest(now_s)
+        before, self._held_by = self._held_by, self._inputs.held_by
+        if before is not None and self._held_by not in (None, before):
+            self.demand()
         if self.waiting and self._inputs.fresh and not self._inputs.deflected:
             self.waiting = False
         return (replace(given, u=np.zeros_like(given.u)) if self.waiting else given), age_s

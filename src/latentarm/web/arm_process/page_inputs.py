@@ -19,7 +19,8 @@ INPUT_TIMEOUT_S: Final = 0.05
 stop's."""
 
 LATCH_MAX_S: Final = 10.0
-"""How long a latched input continues, s."""
+"""How long a deflection counts that is latched or does not change in the least, s: a stick that is held and one
+that is dead look alike."""
 
 COPILOT_TIMEOUT_S: Final = 0.5
 """How long what a co-pilot says counts, s: five times as long as their page takes to say it again."""
@@ -34,13 +35,14 @@ class PageInputs(InputSource):
         clock: the loop's.
         input_dim: axes of the controller.
         dead_zone: a smaller deflection is neutral.
-        stop: stops the arm: when a latched motion has lasted too long, another person starts to drive, or
-            the driver's co-pilot comes, goes, or is not heard of.
+        stop: stops the arm: when a deflection has lasted too long without a change, another person starts to
+            drive, or the driver's co-pilot comes, goes, or is not heard of.
 
     Attributes:
         driver: whose inputs are taken; -1 before the first.
         fresh: whether the newest input still counts.
         deflected: whether it is outside the dead zone.
+        held_by: kind and number of the device that is deflected; None for none.
         devices: kinds of device that have moved the arm or its gripper since this was last emptied.
     """
 
@@ -54,10 +56,12 @@ class PageInputs(InputSource):
         self._stop = stop
         self._version = slot.version
         self._port = InputPort(input_dim, clock)
-        self._latched_since_s = math.inf
+        self._same_since_s = math.inf
+        self._raw: tuple[float, ...] = ()
         self._paced: Paced | None = None
         self.driver = -1
         self.fresh = self.deflected = False
+        self.held_by: tuple[str, int] | None = None
         self.devices: set[str] = set()
 
     def latest(self, now_s: float) -> tuple[Input, float]:
@@ -66,8 +70,8 @@ class PageInputs(InputSource):
             self._take()
         given, age_s = self._port.latest(now_s)
         self.fresh = age_s <= INPUT_TIMEOUT_S
-        if now_s - self._latched_since_s > LATCH_MAX_S:
-            self._latched_since_s = math.inf
+        if now_s - self._same_since_s > LATCH_MAX_S:
+            self._same_since_s = math.inf
             self._stop(Notice(code="latch_ended", parameters={"seconds": round(LATCH_MAX_S)}))
         return replace(given, pace=self._pace()), age_s
 
@@ -95,7 +99,7 @@ class PageInputs(InputSource):
         if given.driver != self.driver:
             self.driver = given.driver
             self._port = InputPort(self._input_dim, self._clock)
-            self._latched_since_s = math.inf
+            self._same_since_s = math.inf
             self._stop(Notice(code="driver_changed"))
         if _copilot(given.paced) != _copilot(self._paced):
             self._stop(Notice(code="copilot_changed"))
@@ -110,12 +114,15 @@ class PageInputs(InputSource):
 
     def _note(self, given: Given) -> None:
         self.deflected = math.hypot(*given.u) > self._dead_zone
-        if self.deflected:
-            self._used(given.source)
-        if not (given.latched and self.deflected):
-            self._latched_since_s = math.inf
-        elif self._latched_since_s == math.inf:
-            self._latched_since_s = self._clock.now_s()
+        self.held_by = (given.source, given.device) if self.deflected else None
+        raw, before = given.u if given.raw is None else given.raw, self._raw
+        self._raw = raw
+        if not self.deflected:
+            self._same_since_s = math.inf
+            return
+        self._used(given.source)
+        if self._same_since_s == math.inf or not (given.latched or raw == before):
+            self._same_since_s = self._clock.now_s()
 
     def _used(self, device: str) -> None:
         if device:

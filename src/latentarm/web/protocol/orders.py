@@ -60,6 +60,8 @@ class Given(Message):
         u: entries in [-1, 1].
         latched: continues without being held, for a limited time.
         source: with what kind of device.
+        device: which one of that kind.
+        raw: what the device itself says; None where that is ``u``.
         gripper: the newest thing that this driver has asked of the gripper; None before the first.
         paced: the newest that the driver's co-pilot has said; None without a co-pilot.
         opens: what opens the gripper of an arm that is not enabled is held down.
@@ -71,6 +73,8 @@ class Given(Message):
     u: tuple[float, ...]
     latched: bool
     source: str = ""
+    device: int = 0
+    raw: tuple[float, ...] | None = None
     gripper: AskedGripper | None = None
     paced: Paced | None = None
     opens: bool = False

@@ -52,6 +52,8 @@ class DriverInput(Message):
         nonce: of the newest `State` that the page has seen.
         u: entries in [-1, 1], right and up positive; axes that are not named are zero.
         source: with what.
+        device: which one of several of that kind.
+        raw: right and up as the device says it, before it is shaped or smoothed; null where it is ``u``.
         latched: continues without being held, for at most `Limits.latch_max_s`.
         gripper: what is asked of the gripper with this input; only in the one input that asks.
         opens: what opens the gripper of an arm that is not enabled is held down.
@@ -63,6 +65,8 @@ class DriverInput(Message):
     u: Annotated[tuple[Deflection, ...], Field(min_length=1, max_length=8)]
     source: Literal["pointer", "keyboard", "dpad", "gamepad", "switch"]
     latched: bool
+    device: Annotated[int, Field(ge=0, le=255)] = 0
+    raw: tuple[Deflection, Deflection] | None = None
     gripper: GripperAsk | None = None
     opens: bool = False
 

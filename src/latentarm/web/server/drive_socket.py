@@ -364,6 +364,8 @@ class DriveSocket:
                 u=padded,
                 latched=message.latched,
                 source=message.source,
+                device=message.device,
+                raw=message.raw,
                 gripper=self._asked,
                 paced=self._sessions.copilot.paced,
                 opens=message.opens,

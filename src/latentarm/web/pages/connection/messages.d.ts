@@ -67,6 +67,8 @@ export interface DriverInput {
   u: number[];
   source: "pointer" | "keyboard" | "dpad" | "gamepad" | "switch";
   latched: boolean;
+  device?: number;
+  raw?: [number, number] | null;
   gripper?: "open" | "close" | "toggle" | null;
   opens?: boolean;
 }
