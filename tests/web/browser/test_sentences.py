@@ -216,7 +216,7 @@ def test_a_held_stick_does_nothing_in_a_new_mode_before_it_is_let_go(enabled, ar
         enabled.get_by_role("radio", name="Learned").check()
         arm.wait(lambda: arm.state["mode"] == "assisted")
     if arm.enabled:
-        reads(enabled, "^The stick does something new now. Let go of it first.$")
+        reads(enabled, "^Let go of everything first, then push again.$")
     arm.stays()
     enabled.keyboard.up("ArrowLeft")
     arm.wait(lambda: not arm.state["let_go_first"])

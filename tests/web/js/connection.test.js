@@ -30,10 +30,10 @@ test("an input echoes the newest nonce and is numbered upwards", () => {
   const socket = connect();
   socket.taken();
   socket.says(stateOf({ nonce: "a" }));
-  connection.sendInput([1, 0], "dpad", false);
+  connection.sendInput([1, 0], { source: "dpad", latched: false });
   socket.says(stateOf({ nonce: "b" }));
-  connection.sendInput([0, 0], "dpad", true, "close");
-  connection.sendInput([0, 0], "gamepad", false, null, true);
+  connection.sendInput([0, 0], { source: "dpad", latched: true }, "close");
+  connection.sendInput([0, 0], { source: "gamepad", latched: false }, null, true);
   assert.deepEqual(socket.taken(), [
     { type: "input", seq: 1, nonce: "a", u: [1, 0], source: "dpad", latched: false, gripper: null, opens: false },
     { type: "input", seq: 2, nonce: "b", u: [0, 0], source: "dpad", latched: true, gripper: "close", opens: false },
@@ -44,13 +44,13 @@ test("an input echoes the newest nonce and is numbered upwards", () => {
 test("no input goes out before a state has come, nor when the newest is stale", () => {
   const socket = connect();
   socket.taken();
-  connection.sendInput([1, 0], "dpad", false);
+  connection.sendInput([1, 0], { source: "dpad", latched: false });
   socket.says(stateOf());
   pass(250);
-  connection.sendInput([1, 0], "dpad", false);
+  connection.sendInput([1, 0], { source: "dpad", latched: false });
   assert.deepEqual(socket.taken(), []);
   socket.says(stateOf());
-  connection.sendInput([1, 0], "dpad", false);
+  connection.sendInput([1, 0], { source: "dpad", latched: false });
   assert.equal(socket.taken().length, 1);
 });
 
@@ -95,13 +95,13 @@ test("a lost connection is tried again, at ever longer intervals of up to 8 s, a
 
 test("inputs are numbered from one again on a new connection", () => {
   connect().says(stateOf());
-  connection.sendInput([0, 0], "pointer", false);
+  connection.sendInput([0, 0], { source: "pointer", latched: false });
   FakeSocket.newest.close();
   pass(500);
   FakeSocket.newest.opens();
   FakeSocket.newest.says(stateOf({ nonce: "new" }));
   FakeSocket.newest.taken();
-  connection.sendInput([0, 0], "pointer", false);
+  connection.sendInput([0, 0], { source: "pointer", latched: false });
   assert.equal(FakeSocket.newest.taken()[0].seq, 1);
 });
 

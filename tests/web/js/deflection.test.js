@@ -50,3 +50,30 @@ test("a slanted push presses two directions, a nearly straight one presses one",
   input.hold("pointer", -0.9, -0.1);
   assert.deepEqual(input.pressed, ["left"]);
 });
+
+test("a device that was pushed while another one drove counts only once it was let go", () => {
+  const input = new Deflection();
+  input.hold("gamepad", 1, 0, false, 1);
+  input.hold("keyboard", 0, 1);
+  input.hold("gamepad", 0, 1, false, 2);
+  assert.equal(input.device, 1);
+  input.release("gamepad", 1);
+  input.hold("keyboard", 1, 1);
+  input.hold("gamepad", 0, 1, false, 2);
+  assert.equal(input.source, null);
+  input.release("keyboard");
+  input.hold("keyboard", 1, 0);
+  assert.equal(input.source, "keyboard");
+});
+
+test("a device of which nobody knows since when it is so lets go, and counts once it was at rest", () => {
+  const input = new Deflection();
+  input.hold("gamepad", 1, 0);
+  input.distrust("gamepad", 0);
+  assert.deepEqual([input.x, input.source], [0, null]);
+  input.hold("gamepad", 1, 0);
+  assert.equal(input.source, null);
+  input.release("gamepad");
+  input.hold("gamepad", 1, 0);
+  assert.equal(input.source, "gamepad");
+});

@@ -12,10 +12,18 @@ let settings;
 let pads;
 let done;
 let scanning;
+let unrested;
 
-function plug(index = 0) {
-  const pad = { index, connected: true, axes: [0, 0], buttons: Array.from({ length: 6 }, () => ({ pressed: false })) };
+function appear(index = 0, id = "a") {
+  const pad = { index, id, connected: true, axes: [0, 0], buttons: Array.from({ length: 6 }, () => ({ pressed: false })) };
   pads[index] = pad;
+  return pad;
+}
+
+/** A gamepad that has been seen at rest. */
+function plug(index = 0) {
+  const pad = appear(index);
+  poll();
   return pad;
 }
 
@@ -45,7 +53,7 @@ beforeEach(() => {
       if (scanning && down) done.push(`switch ${number}`);
       return scanning;
     },
-  });
+  }, (names) => (unrested = names));
 });
 
 test("the stick moves the arm; up is up", () => {
@@ -136,12 +144,109 @@ test("another gamepad that is taken away stops nothing", () => {
   assert.deepEqual(done, []);
 });
 
-test("a second gamepad does not take over from the first", () => {
+test("the gamepad that is pushed drives, and an idle first one shadows nothing", () => {
   plug(0);
-  poll();
   plug(1).axes = [1, 0];
   poll();
+  assert.deepEqual([input.x, input.source, input.device], [1, "gamepad", 1]);
+});
+
+test("a second gamepad does not take over from the first, nor when that is let go", () => {
+  const [first, second] = [plug(0), plug(1)];
+  first.axes = [0, 1];
+  poll();
+  second.axes = [1, 0];
+  poll();
+  assert.deepEqual([input.x, input.device], [0, 0]);
+  first.axes = [0, 0];
+  poll();
   assert.equal(input.source, null);
+  second.axes = [0, 0];
+  poll();
+  second.axes = [1, 0];
+  poll();
+  assert.equal(input.device, 1);
+});
+
+test("a button that stops does so on every gamepad", () => {
+  plug(0);
+  press(plug(1), 1);
+  settings.change({ gamepadStop: "any" });
+  press(pads[1], 4);
+  press(pads[0], 0);
+  assert.deepEqual(done, ["stop", "stop", "stop"]);
+});
+
+for (const [what, axes] of [["pushed", [0.7, 0]], ["with an axis that rests at -1", [0, -1]]]) {
+  test(`a gamepad that appears ${what} moves nothing, is named, and leaves the keyboard alone, until it was let go`, () => {
+    const pad = appear();
+    pad.axes = axes;
+    poll();
+    poll();
+    assert.equal(input.source, null);
+    assert.deepEqual(unrested, ["a"]);
+    input.hold("keyboard", 0, 1);
+    assert.equal(input.source, "keyboard");
+    input.release("keyboard");
+    pad.axes = [0, 0];
+    poll();
+    assert.deepEqual(unrested, []);
+    pad.axes = [0.7, 0];
+    poll();
+    assert.equal(input.source, "gamepad");
+  });
+}
+
+test("a gamepad that is pushed when inputs begin to flow, or when all let go, moves nothing until it was let go", () => {
+  const pad = plug();
+  input.flowing = false;
+  pad.axes = [0.7, 0];
+  pass(100);
+  assert.equal(input.source, "gamepad");
+  for (const begins of [() => (input.flowing = true), () => input.neutral()]) {
+    begins();
+    poll();
+    assert.equal(input.source, null);
+    assert.deepEqual(unrested, ["a"]);
+    pad.axes = [0, 0];
+    poll();
+    pad.axes = [0.7, 0];
+    poll();
+    assert.equal(input.source, "gamepad");
+  }
+});
+
+test("an axis that reports nonsense ends a push, and does not count as let go", () => {
+  const pad = plug();
+  for (const axis of [0.7, Number.NaN, 0.7]) {
+    pad.axes = [axis, 0];
+    poll();
+  }
+  assert.equal(input.source, null);
+});
+
+test("an axis beyond its range counts as full", () => {
+  plug().axes = [1.3, -Infinity];
+  poll();
+  assert.deepEqual([input.x, input.y], [1, 1]);
+});
+
+test("of the buttons of a gamepad that appears only Stop counts", () => {
+  const pad = appear();
+  for (const button of pad.buttons) button.pressed = true;
+  poll();
+  assert.deepEqual(done, ["stop"]);
+});
+
+test("where more is ignored, a stick that rests off its middle drives", () => {
+  settings.change({ deadZone: 0.3 });
+  const pad = appear();
+  pad.axes = [0.25, 0];
+  poll();
+  poll();
+  pad.axes = [0.7, 0];
+  poll();
+  assert.equal(input.source, "gamepad");
 });
 
 test("buttons are noticed within 0.1 s before the arm is enabled, but not on a hidden page", () => {

@@ -83,14 +83,42 @@ for (const [latchS, most, ends] of [[3, 10, 3000], [10, 5, 5000]]) {
   });
 }
 
-test("what is held does not end, and a motion that was let go does not end the next", () => {
+test("a push that does not change ends before the server would stop the arm, which is said 3 s before", () => {
+  settings.change({ latchS: 2 });
+  const input = new Deflection();
+  const said = [];
+  attachLatchLimit(input, connection, settings, (ends) => said.push(ends));
+  for (const source of ["keyboard", "dpad", "pointer", "gamepad"]) {
+    // As a gamepad, which is read again and again.
+    for (let passed = 0; passed < 4750; passed += 10) {
+      input.hold(source, 0.7, 0);
+      assert.equal(input.source, source);
+      pass(10);
+      if (passed === 1700) assert.ok(!said.includes(true));
+      if (passed === 1800) assert.equal(said.at(-1), true);
+    }
+    assert.equal(input.source, null);
+    assert.equal(said.at(-1), true);
+    input.neutral();
+    assert.equal(said.at(-1), false);
+    said.length = 0;
+  }
+});
+
+test("a push that changes goes on", () => {
+  const input = new Deflection();
+  attachLatchLimit(input, connection, settings);
+  for (let times = 0; times < 6; times += 1) {
+    input.hold("gamepad", 0.7 + 1e-6 * times, 0);
+    pass(4000);
+  }
+  assert.equal(input.source, "gamepad");
+});
+
+test("a motion that was let go does not end the next", () => {
   settings.change({ latchS: 2 });
   const input = new Deflection();
   attachLatchLimit(input, connection, settings);
-  input.hold("dpad", 1, 0);
-  pass(5000);
-  assert.equal(input.source, "dpad");
-  input.release("dpad");
   input.hold("switch", 1, 0, true);
   pass(1500);
   input.release("switch");

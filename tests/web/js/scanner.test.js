@@ -21,7 +21,7 @@ beforeEach(() => {
   newBrowser();
   input = new Deflection();
   settings = new Settings();
-  settings.change({ panel: "switch", dwellS: 1 });
+  settings.change({ panel: "switch", dwellS: 1, acceptS: 0, releaseS: 0 });
   done = [];
   scanner = new Scanner(input, settings);
   scanner.offer(choices("up", "down", "mode", "stop"));

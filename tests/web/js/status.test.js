@@ -118,7 +118,7 @@ const MINE = { code: "stop_pressed_by", parameters: { name: "Guest 114", page: "
 for (const [who, fields, words, page] of [
   [DRIVER, { phase: "ready" }, "Enabled: push to move."],
   [WATCHER, { phase: "ready" }, "Ada can move the arm now. You are watching."],
-  [DRIVER, { phase: "ready", let_go_first: true }, "The stick does something new now. Let go of it first."],
+  [DRIVER, { phase: "ready", let_go_first: true }, "Let go of everything first, then push again."],
   [DRIVER, { phase: "moving" }, "Moving."],
   [WATCHER, { phase: "moving" }, "Ada is moving the arm."],
   [DRIVER, { phase: "moving", held_back: "clearance" }, "Moving slower than you ask: it is close to something."],

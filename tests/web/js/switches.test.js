@@ -4,12 +4,16 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { Deflection } from "#pages/inputs/deflection.js";
+import { attachChatterGuard } from "#pages/inputs/chatter.js";
 import { isSwitch } from "#pages/inputs/keys.js";
 import { groupOf } from "#pages/inputs/scanning.js";
 import { Scanner } from "#pages/inputs/scanner.js";
 import { attachSpeech } from "#pages/inputs/speech.js";
-import { Settings } from "#pages/settings/settings.js";
+import { DEFAULTS, Settings } from "#pages/settings/settings.js";
 import { newBrowser, pass } from "./browser.js";
+
+/** What counts without anybody having set anything. */
+const REAL = { acceptS: DEFAULTS.acceptS, releaseS: DEFAULTS.releaseS };
 
 let fakes;
 let input;
@@ -35,9 +39,9 @@ function set(values) {
 
 beforeEach(() => {
   fakes = newBrowser();
-  input = new Deflection();
+  input = Object.assign(new Deflection(), { halt: () => input.neutral() });
   settings = new Settings();
-  set({ panel: "switch", dwellS: 1 });
+  set({ panel: "switch", dwellS: 1, acceptS: 0, releaseS: 0 });
   done = [];
   scanner = new Scanner(input, settings);
   scanner.offer(choices("first", "second", "up", "stop"));
@@ -47,6 +51,7 @@ test("a press counts only if it is held for the acceptance time", () => {
   set({ acceptS: 0.3 });
   press(290);
   assert.deepEqual(done, []);
+  pass(20);
   down();
   pass(299);
   assert.deepEqual(done, []);
@@ -57,17 +62,134 @@ test("a press counts only if it is held for the acceptance time", () => {
   assert.deepEqual(done, ["first"]);
 });
 
-test("after a release nothing counts for the release time", () => {
+test("nothing counts until the switch has been left alone for the release time", () => {
   set({ releaseS: 0.5, dwellS: 5 });
   press(20);
-  for (let bounce = 0; bounce < 4; bounce += 1) {
-    pass(100);
-    press(10);
+  for (let again = 0; again < 6; again += 1) {
+    pass(490);
+    press(20);
   }
   assert.deepEqual(done, ["first"]);
-  pass(100);
+  pass(500);
   press(20);
   assert.deepEqual(done, ["first", "first"]);
+});
+
+test("contacts that bounce, as a press begins and as it ends, make one press of it", () => {
+  scanner.offer(choices("up", "stop"));
+  pass(200);
+  set({ ...REAL, dwellS: 5 });
+  for (const ms of [2, 3, 1]) {
+    press(ms);
+    pass(1);
+  }
+  press(80);
+  pass(3);
+  press(2);
+  assert.equal(scanner.moving, "up");
+});
+
+for (const [what, downMs, upMs] of [
+  ["chatters at 20 Hz", 25, 25], ["chatters at 20 Hz, mostly closed", 45, 5], ["presses every 150 ms", 75, 75],
+  ["presses every 150 ms, shortly", 20, 130], ["presses every 150 ms, mostly closed", 145, 5],
+]) {
+  for (const times of [7, 8, 100]) {
+    test(`a switch that ${what}, ${times} times, leaves nothing moving`, () => {
+      attachChatterGuard(input);
+      set(REAL);
+      scanner.offer(choices("up", "down", "left", "right"));
+      pass(1000);
+      let movedMs = 0;
+      const go = (ms) => {
+        for (let passed = 0; passed < ms; passed += 1, pass(1)) movedMs += input.source === null ? 0 : 1;
+      };
+      for (let time = 0; time < times; time += 1) {
+        down();
+        go(downMs);
+        up();
+        go(upMs);
+      }
+      assert.equal(input.source, null);
+      assert.ok(movedMs <= 300, `${movedMs} ms`);
+    });
+  }
+}
+
+test("quick presses of a person count: 80 ms long, three in a second", () => {
+  set({ ...REAL, switches: "2" });
+  for (let times = 0; times < 6; times += 1) {
+    press(80, 1);
+    pass(250);
+  }
+  assert.equal(lit(), "up");
+});
+
+test("a press that ends a motion counts at once, however soon after the last, and says that the switch chatters", () => {
+  const halted = [];
+  input.halt = (why) => halted.push(why);
+  attachChatterGuard(input);
+  scanner.offer(choices("up", "stop"));
+  pass(500);
+  set(REAL);
+  press(80);
+  assert.equal(scanner.moving, "up");
+  pass(15);
+  down();
+  assert.equal(scanner.moving, null);
+  assert.deepEqual(halted, ["switch_chatters"]);
+  up();
+  pass(400);
+  press(80);
+  pass(400);
+  press(80);
+  assert.equal(scanner.moving, null);
+  assert.deepEqual(halted, ["switch_chatters"]);
+});
+
+test("what has been lit for less time than it takes to see it is not chosen, and a little later it is", () => {
+  scanner.offer(choices("up", "down", "left"));
+  for (const [seenMs, moves] of [[170, null], [230, "down"]]) {
+    pass(1000 + seenMs);
+    assert.equal(lit(), "down");
+    press(20);
+    assert.equal(scanner.moving, moves);
+    scanner.offer(choices("other"));
+    scanner.offer(choices("up", "down", "left"));
+  }
+});
+
+test("inverse: letting go sooner than what is lit can have been seen chooses nothing", () => {
+  set({ scan: "inverse" });
+  scanner.offer(choices("up", "down", "left"));
+  for (const [seenMs, moves] of [[170, null], [230, "down"]]) {
+    pass(300);
+    press(1000 + seenMs);
+    assert.equal(scanner.moving, moves);
+    scanner.offer(choices("other"));
+    scanner.offer(choices("up", "down", "left"));
+  }
+});
+
+test("a list that another one replaces is not chosen from before it can have been seen", () => {
+  set({ switches: "2" });
+  scanner.offer(choices("enable", "mode"));
+  pass(150);
+  press(20);
+  assert.deepEqual(done, []);
+  pass(100);
+  press(20);
+  assert.deepEqual(done, ["enable"]);
+});
+
+test("Stop counts where it was lit a moment ago, and where it is lit since a moment ago", () => {
+  for (const ids of [["stop", "up"], ["up", "stop"]]) {
+    scanner.offer(choices(...ids));
+    pass(1100);
+    press(20);
+    scanner.offer(choices("other"));
+    pass(300);
+  }
+  assert.deepEqual(done, ["stop", "stop"]);
 });
 
 test("a press that began in the release time does not count later", () => {
@@ -81,6 +203,7 @@ test("a press that began in the release time does not count later", () => {
 test("a motion ends at once with a press, however long a press must be to choose", () => {
   set({ acceptS: 0.5, dwellS: 1 });
   scanner.offer(choices("up", "stop"));
+  pass(300);
   press(500);
   assert.equal(scanner.moving, "up");
   pass(300);
@@ -97,6 +220,7 @@ test("holding the second switch moves the light on every repeat time, and withou
   press(3000, 1);
   assert.equal(lit(), "second");
   set({ repeatS: 0.4 });
+  pass(20);
   press(850, 1);
   assert.equal(lit(), "first");
   pass(5000);
@@ -135,6 +259,7 @@ test("step: each press moves the light, and waiting chooses", () => {
   assert.deepEqual(done, []);
   press(100);
   assert.equal(lit(), "first");
+  pass(20);
   press(100);
   assert.equal(lit(), "second");
   pass(890);
@@ -153,7 +278,7 @@ test("step: holding moves the light on every repeat time", () => {
 
 test("hold to move: with automatic scanning the arm moves while the switch is held", () => {
   set({ switchMotion: "hold" });
-  pass(2000);
+  pass(2300);
   down();
   assert.deepEqual([scanner.moving, input.latched], ["up", false]);
   pass(4000);
@@ -166,15 +291,18 @@ for (const scan of ["inverse", "step"]) {
   test(`hold to move: with ${scan} scanning a direction waits to be held, moves meanwhile, and is forgotten`, () => {
     set({ switchMotion: "hold", scan });
     scanner.offer(choices("up", "stop"));
+    pass(300);
     press(500);
     if (scan === "step") pass(1000);
     assert.deepEqual([scanner.ready, scanner.moving], ["up", null]);
     assert.equal(input.source, null);
+    pass(20);
     down();
     assert.deepEqual([scanner.moving, input.latched], ["up", false]);
     pass(3000);
     up();
     assert.deepEqual([scanner.ready, scanner.moving, input.source], [null, null, null]);
+    pass(20);
     press(500);
     if (scan === "step") pass(1000);
     pass(7000);
@@ -192,6 +320,7 @@ test("hold to move: a click without anything held latches, and what latches ends
 test("a switch that is taken away ends what was held, and not what goes on by itself", () => {
   set({ switchMotion: "hold" });
   scanner.offer(choices("up"));
+  pass(300);
   down();
   scanner.lost();
   assert.equal(input.source, null);

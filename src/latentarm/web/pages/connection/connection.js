@@ -8,7 +8,7 @@
 
 import { OwnPages } from "./own_pages.js";
 
-/** @import {ClientMessage, Poses, Refused, ServerMessage, State, Welcome, LearningState} from "./messages.js" */
+/** @import {ClientMessage, DriverInput, Poses, Refused, ServerMessage, State, Welcome, LearningState} from "./messages.js" */
 
 /** How old the newest state may be before inputs are held back, ms: the server would not take them anyway. */
 const STALE_MS = 200;
@@ -69,16 +69,15 @@ export class Connection extends EventTarget {
    * An input, stamped with the newest nonce and a growing number.
    *
    * @param {number[]} u in [-1, 1]
-   * @param {import("../inputs/deflection.js").Source} source
-   * @param {boolean} latched
+   * @param {Pick<DriverInput, "source" | "device" | "raw" | "latched">} held what it comes from
    * @param {"open" | "close" | "toggle" | null} [gripper] what is asked of the gripper
    * @param {boolean} [opens] whether what opens the gripper of an arm that is not enabled is held down
    * @returns {boolean} whether it went out.
    */
-  sendInput(u, source, latched, gripper = null, opens = false) {
+  sendInput(u, held, gripper = null, opens = false) {
     if (!this.fresh || !this.state) return false;
     this._sequence += 1;
-    return this.send({ type: "input", seq: this._sequence, nonce: this.state.nonce, u, source, latched, gripper, opens });
+    return this.send({ type: "input", seq: this._sequence, nonce: this.state.nonce, u, ...held, gripper, opens });
   }
 
   /** Another person sits here now: another page to the server. @param {import("../settings/settings.js").Person | null} person */

@@ -27,6 +27,7 @@ const REFUSED_MS = 4000;
  * @property {boolean} canConnect whether it has a button that connects a lost arm again
  * @property {boolean} unconfirmed whether there are points to confirm before Enable does anything
  * @property {WordKey | null} refused why a press did nothing a moment ago
+ * @property {boolean} pushAgain whether a push is about to end, or has ended, and a new one is asked for
  * @property {Reader["late"]} late what was too slow, where an input of this page came late
  */
 
@@ -69,7 +70,7 @@ export function statusOf({ open, state, silenceMs, engaged, drove, own, welcome 
  * @param {PageState} page
  * @param {Reader} reader
  */
-function driverWords({ phase, note, reason, held_back, zone, returning, bound_for, let_go_first, copilot, guiding, lost }, { canEnable, canConnect, unconfirmed }, reader) {
+function driverWords({ phase, note, reason, held_back, zone, returning, bound_for, let_go_first, copilot, guiding, lost }, { canEnable, canConnect, unconfirmed, pushAgain }, reader) {
   if (guiding === "on") return say("status.guided");
   if (concerns(note, true)) return sayTo(note, reader);
   const parameters = { reason: reason === null ? "" : sayTo(reason, reader) };
@@ -78,6 +79,7 @@ function driverWords({ phase, note, reason, held_back, zone, returning, bound_fo
     return cause === null ? say("status.to_pose", { pose: bound_for }) : say("status.to_pose_held_back", { pose: bound_for, cause });
   }
   if (returning) return cause === null ? say("status.returning") : say("status.returning_held_back", { cause });
+  if (pushAgain && (phase === "ready" || phase === "moving")) return say("status.push_again");
   switch (phase) {
     case "ready":
       if (copilot?.pace === 0) return say("status.copilot_holds", { name: sayName(copilot.name) });
@@ -129,6 +131,7 @@ export function attachStatus(parts, connection) {
   let halted = null;
   let turnedAway = "";
   let wanted = "";
+  let pushAgain = false;
   let refusedUntil = -Infinity;
   /** @type {WordKey} */
   let why = "halted.not_enabled";
@@ -156,7 +159,7 @@ export function attachStatus(parts, connection) {
     // What this page did counts for nothing once somebody else drives.
     if (state !== null && !state.you) halted = null;
     const refused = performance.now() < refusedUntil ? why : null;
-    const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, canConnect, unconfirmed: unconfirmed(), refused, late });
+    const { phase, text } = statusOf(connection, { halted, turnedAway, canEnable, canConnect, unconfirmed: unconfirmed(), refused, pushAgain, late });
     parts.line.toggleAttribute("data-trouble", isTrouble(state));
     if (parts.line.dataset.phase !== phase) parts.line.dataset.phase = phase;
     if (text === wanted) return;
@@ -187,6 +190,11 @@ export function attachStatus(parts, connection) {
     refused(because = "halted.not_enabled") {
       why = because;
       refusedUntil = performance.now() + REFUSED_MS;
+      show();
+    },
+    /** @param {boolean} is whether a push is about to end, or has ended, and a new one is asked for */
+    asksToPushAgain(is) {
+      pushAgain = is;
       show();
     },
     /** What a press was refused for is so no longer. */

@@ -4,11 +4,12 @@ import { attachEnableButton, enableButtonOf } from "../connection/enable_button.
 import { attachLostArm } from "../connection/lost_arm.js";
 import { attachDialogs, dialogIsOpen } from "../inputs/dialogs.js";
 import { attachCard } from "../card/card.js";
+import { attachChatterGuard } from "../inputs/chatter.js";
 import { attachCopilot } from "../connection/copilot.js";
 import { DIRECTIONS } from "../inputs/deflection.js";
 import { attachDpad } from "../inputs/dpad.js";
 import { DriveInput } from "../inputs/drive_input.js";
-import { attachGamepad } from "../inputs/gamepad.js";
+import { attachGamepad, sayUnrested } from "../inputs/gamepad.js";
 import { attachGripper } from "../inputs/gripper.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
@@ -64,7 +65,8 @@ const shaped = (/** @type {number} */ x, /** @type {number} */ y) =>
   modeInput(settings.values, connection.state, connection.welcome, x, y);
 
 const input = new DriveInput(connection, shaped, attachTremor(settings));
-attachLatchLimit(input, connection, settings);
+attachLatchLimit(input, connection, settings, status.asksToPushAgain);
+attachChatterGuard(input);
 input.addEventListener("halted", (event) => status.halted(/** @type {CustomEvent} */ (event).detail));
 status.watch(() => input.lateness.wasSlow);
 attachDialogs(input);
@@ -154,7 +156,7 @@ const scanner = attachScanning({
 attachKeyboard(input, settings, { enable, nextMode: modes.next, axes: modes.axes, gripper: () => gripper.toggle("keyboard") });
 attachGamepad(input, settings, {
   enable, stop, gripper: () => gripper.toggle("gamepad"), nextMode: modes.next, press: (number, down) => scanner.press(number, down),
-});
+}, (names) => sayUnrested(byId("unrested"), names));
 attachInputChoice(input, settings);
 
 const belief = attachBelief({

@@ -2,7 +2,7 @@
 
 /** @typedef {import("../connection/messages.js").DriverInput["source"]} Source */
 /** @typedef {"up" | "down" | "left" | "right"} Direction */
-/** @typedef {"focus_lost" | "page_closed" | "page_hidden" | "pointer_lost" | "gamepad_lost" | "dialog_opened" | "input_changed"} HaltReason */
+/** @typedef {"focus_lost" | "page_closed" | "page_hidden" | "pointer_lost" | "gamepad_lost" | "dialog_opened" | "input_changed" | "switch_chatters"} HaltReason */
 /** @typedef {import("./drive_input.js").DriveInput | import("../personalise/answer_input.js").AnswerInput | import("./whole_page.js").StillInput} PersonInput */
 
 /** Full deflections: right, up. @type {Record<Direction, [number, number]>} */
@@ -25,6 +25,10 @@ export class Deflection extends EventTarget {
     this.latched = false;
     /** @type {Source | null} */
     this.source = null;
+    /** Which one of several of that kind. */
+    this.device = 0;
+    /** Devices that count for nothing until they were let go. @type {Set<string>} */
+    this._waiting = new Set();
   }
 
   /** The directions that are pressed now. @returns {Direction[]} */
@@ -37,27 +41,45 @@ export class Deflection extends EventTarget {
   }
 
   /**
-   * A source is deflected, or back at rest with (0, 0). While one is deflected the others wait.
+   * A device is deflected, or back at rest with (0, 0). While one is deflected the others wait, and a device that was
+   * deflected meanwhile counts only once it was let go.
    *
    * @param {Source} source
    * @param {number} x to the right, in [-1, 1]
    * @param {number} y up, in [-1, 1]
    * @param {boolean} [latched] stays without being held
+   * @param {number} [device] which one of several of that kind
    */
-  hold(source, x, y, latched = false) {
-    if (this.source !== null && this.source !== source) return;
-    const turned = (this.source === null) !== (x === 0 && y === 0);
+  hold(source, x, y, latched = false, device = 0) {
+    const rests = x === 0 && y === 0;
+    const holds = this._holds(source, device);
+    if (rests) this._waiting.delete(nameOf(source, device));
+    else if (this.source !== null && !holds) this._waiting.add(nameOf(source, device));
+    if (!holds && (rests || this.source !== null || this.waits(source, device))) return;
+    const turned = holds === rests;
     this.x = x;
     this.y = y;
     this.latched = latched;
-    this.source = x === 0 && y === 0 ? null : source;
+    this.source = rests ? null : source;
+    this.device = device;
     if (turned) this.dispatchEvent(new CustomEvent("turned", { detail: source }));
     this.dispatchEvent(new Event("change"));
   }
 
-  /** @param {Source} source */
-  release(source) {
-    if (this.source === source) this.hold(source, 0, 0);
+  /** @param {Source} source @param {number} [device] */
+  release(source, device = 0) {
+    this.hold(source, 0, 0, false, device);
+  }
+
+  /** Nobody knows since when a device is as it is: it must be let go before it counts. @param {Source} source @param {number} device */
+  distrust(source, device) {
+    if (this._holds(source, device)) this.release(source, device);
+    this._waiting.add(nameOf(source, device));
+  }
+
+  /** Whether a device must be let go before it counts. @param {Source} source @param {number} device */
+  waits(source, device) {
+    return this._waiting.has(nameOf(source, device));
   }
 
   /** Forget what is pressed; every source hears of it and lets go. */
@@ -65,7 +87,18 @@ export class Deflection extends EventTarget {
     this.x = this.y = 0;
     this.latched = false;
     this.source = null;
+    this._waiting.clear();
     this.dispatchEvent(new Event("dropped"));
     this.dispatchEvent(new Event("change"));
   }
+
+  /** @param {Source} source @param {number} device */
+  _holds(source, device) {
+    return this.source === source && this.device === device;
+  }
+}
+
+/** @param {Source} source @param {number} device */
+function nameOf(source, device) {
+  return `${source} ${device}`;
 }

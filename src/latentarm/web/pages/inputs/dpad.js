@@ -3,6 +3,7 @@
 import { setText } from "../layout/dom.js";
 import { say, sayNumber } from "../layout/words.js";
 import { DIRECTIONS } from "./deflection.js";
+import { attachHeldPointer } from "./held_pointer.js";
 
 /** @import {Direction, PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */
@@ -16,8 +17,7 @@ import { DIRECTIONS } from "./deflection.js";
  */
 export function attachDpad(element, help, inputs, settings, refused) {
   const buttons = /** @type {HTMLButtonElement[]} */ ([...element.querySelectorAll("button")]);
-  /** @type {{pointer: number, button: HTMLButtonElement} | null} */
-  let held = null;
+  let holding = false;
   /** @type {HTMLButtonElement | null} */
   let latched = null;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -32,7 +32,8 @@ export function attachDpad(element, help, inputs, settings, refused) {
   };
   const letGo = () => {
     clearTimeout(timer);
-    held = latched = null;
+    holding = false;
+    latched = null;
     inputs.release("dpad");
     show(null);
   };
@@ -55,27 +56,26 @@ export function attachDpad(element, help, inputs, settings, refused) {
   };
 
   for (const button of buttons) {
-    button.addEventListener("pointerdown", (event) => {
-      if (held !== null || event.button !== 0) return;
-      if (!inputs.live) refused();
-      else if (settings.values.press === "step") step(button);
-      else if (settings.values.press === "latch") toggle(button);
-      else {
-        held = { pointer: event.pointerId, button };
-        button.setPointerCapture(event.pointerId);
-        begin(button);
-      }
-    });
-    button.addEventListener("pointerup", (event) => {
-      if (event.pointerId === held?.pointer) letGo();
-    });
-    for (const lost of ["pointercancel", "lostpointercapture"]) {
-      button.addEventListener(lost, (event) => {
-        if (/** @type {PointerEvent} */ (event).pointerId !== held?.pointer) return;
+    const forget = attachHeldPointer(button, {
+      begins: () => {
+        if (holding) return false;
+        if (!inputs.live) refused();
+        else if (settings.values.press === "step") step(button);
+        else if (settings.values.press === "latch") toggle(button);
+        else {
+          holding = true;
+          begin(button);
+        }
+        return holding;
+      },
+      ends: letGo,
+      missed: letGo,
+      lost: () => {
         letGo();
         inputs.halt("pointer_lost");
-      });
-    }
+      },
+    });
+    inputs.addEventListener("dropped", forget);
     // A click without a pointer comes from Enter or from a switch or a screen reader: there is nothing to hold.
     button.addEventListener("click", (event) => {
       if (event.detail !== 0) return;
@@ -83,7 +83,6 @@ export function attachDpad(element, help, inputs, settings, refused) {
       else if (settings.values.press === "latch") toggle(button);
       else step(button);
     });
-    button.addEventListener("contextmenu", (event) => event.preventDefault());
   }
   inputs.addEventListener("dropped", letGo);
   const explain = () => {

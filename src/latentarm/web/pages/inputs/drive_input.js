@@ -93,7 +93,7 @@ export class DriveInput extends Deflection {
    */
   ask(gripper, source) {
     if (!this.live) return false;
-    return this._connection.sendInput(this._meant(), this.source ?? source, this.latched, gripper);
+    return this._connection.sendInput(this._meant(), this._held(this.source ?? source), gripper);
   }
 
   /**
@@ -109,7 +109,7 @@ export class DriveInput extends Deflection {
     clearInterval(this._opening);
     this._opening = setInterval(() => {
       const opens = held() && may();
-      this._connection.sendInput(this._shaped(0, 0), source, false, null, opens);
+      this._connection.sendInput(this._shaped(0, 0), { source, latched: false }, null, opens);
       if (!opens) clearInterval(this._opening);
     }, PERIOD_MS);
     return true;
@@ -147,7 +147,12 @@ export class DriveInput extends Deflection {
   /** @param {Source} source */
   _send(source) {
     if (!this.flowing || !this._connection.driving) return;
-    this._connection.sendInput(this._meant(), source, this.latched);
+    this._connection.sendInput(this._meant(), this._held(source));
+  }
+
+  /** @param {Source} source */
+  _held(source) {
+    return { source, device: this.device, raw: /** @type {[number, number]} */ ([this.x, this.y]), latched: this.latched };
   }
 
   _meant() {

@@ -66,6 +66,10 @@ export function attachGripper(parts, connection, input, refused) {
     return begins;
   };
   for (const end of ["keyup", "pointerup", "pointercancel", "blur"]) window.addEventListener(end, () => (holding = null));
+  // Some browsers lose the release; then the pointer moves with no button down.
+  window.addEventListener("pointermove", ({ buttons }) => {
+    if (holding === "pointer" && buttons === 0) holding = null;
+  });
   parts.open.addEventListener("pointerdown", () => {
     if (widest() !== null) hold("pointer");
   });

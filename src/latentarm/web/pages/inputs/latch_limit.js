@@ -1,27 +1,41 @@
-/** Motion that goes on without being held ends after the time that its person has set, or the server's where that is shorter. */
+/**
+ * A push that does not change ends, held or not: after the time that its person has set for one that goes on by itself,
+ * and before the server would stop the arm. Somebody who holds a stick and a stick that is dead look alike.
+ */
 
 /** @import {Connection} from "../connection/connection.js" */
 /** @import {Settings} from "../settings/settings.js" */
 /** @import {DriveInput} from "./drive_input.js" */
 
+/** So long before is said that it ends, s. */
+const SAID_S = 3;
+/** A push that is held ends so long before the server's time, s, so that the arm stays enabled. */
+const EARLY_S = 0.25;
+
 /**
  * @param {DriveInput} input
  * @param {Connection} connection
  * @param {Settings} settings
+ * @param {(ends: boolean) => void} [said] told whether a push is about to end, or has ended, and a new one is asked for
  */
-export function attachLatchLimit(input, connection, settings) {
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
+export function attachLatchLimit(input, connection, settings, said = () => {}) {
+  /** @type {ReturnType<typeof setTimeout>[]} */
+  let timers = [];
+  let held = "";
   input.addEventListener("change", () => {
-    if (!input.latched || input.source === null) {
-      clearTimeout(timer);
-      timer = undefined;
-      return;
-    }
-    const longestS = Math.min(settings.values.latchS, connection.welcome?.limits.latch_max_s ?? Infinity);
-    timer ??= setTimeout(() => {
-      timer = undefined;
+    const { source, device, x, y, latched } = input;
+    const now = source === null ? "" : `${source} ${device} ${latched || [x, y]}`;
+    if (now === held) return;
+    held = now;
+    timers.forEach(clearTimeout);
+    said(false);
+    if (source === null) return;
+    const mostS = connection.welcome?.limits.latch_max_s ?? settings.values.latchS;
+    const longestS = latched ? Math.min(settings.values.latchS, mostS) : mostS - EARLY_S;
+    timers = [setTimeout(() => said(true), 1000 * (longestS - SAID_S)), setTimeout(() => {
       input.neutral();
-    }, 1000 * longestS);
+      said(true);
+    }, 1000 * longestS)];
   });
+  input.addEventListener("dropped", () => said(false));
 }

@@ -7,6 +7,7 @@
  */
 
 import { DIRECTIONS } from "./deflection.js";
+import { REACTION_MS } from "./reaction.js";
 import { SwitchTiming } from "./switch_timing.js";
 
 /** @import {Direction, PersonInput} from "./deflection.js" */
@@ -50,6 +51,10 @@ export class Scanner extends EventTarget {
     /** Ids of the choices that were opened, the outermost first. @type {string[]} */
     this._path = [];
     this._movedUntil = -Infinity;
+    /** When something was last lit by itself, and what was lit before. */
+    this._litAt = -Infinity;
+    /** @type {Choice | undefined} */
+    this._litBefore = undefined;
     /** Whether the person is going through the choices, where that begins with a press. */
     this._going = false;
     /** Whether the press under way has ended a motion, and means no more. */
@@ -60,7 +65,7 @@ export class Scanner extends EventTarget {
     const nothing = () => {};
     this._switches = [
       new SwitchTiming(times, {
-        pressed: () => this._pressed(), released: () => this._released(), repeated: () => this._repeated(),
+        pressed: (downAt) => this._pressed(downAt), released: () => this._released(), repeated: () => this._repeated(),
       }),
       new SwitchTiming(times, { pressed: () => this._next(), released: nothing, repeated: () => this._next() }),
     ];
@@ -131,9 +136,13 @@ export class Scanner extends EventTarget {
     if (!this.on || number >= Number(this._settings.values.switches)) return false;
     const one = this._switches[number];
     if (!down) one.up();
-    else if (number === 0) one.down(this.moving !== null);
-    else one.down();
+    else one.down(this._ends(number));
     return true;
+  }
+
+  /** What cannot hold a switch presses it, as a screen reader does. @param {number} number */
+  tap(number) {
+    this._switches[number].tap(this._ends(number));
   }
 
   /** A switch was taken away: nothing is chosen by that, and nothing goes on that was held. */
@@ -142,18 +151,34 @@ export class Scanner extends EventTarget {
     if (this.moving !== null && !this._input.latched) this._rest();
   }
 
-  _pressed() {
+  /** Whether a press would end a motion. @param {number} number */
+  _ends(number) {
+    return number === 0 && this.moving !== null;
+  }
+
+  /** @param {number} downAt ms */
+  _pressed(downAt) {
     this._spent = this.moving !== null;
     if (this._spent) this._rest();
     else if (this.ready !== null) this._move(this.ready, false);
-    else if (this.style === "auto" || this.style === "two") this.choose();
+    else if (this.style === "auto" || this.style === "two") this._take(downAt);
     else this._go();
+  }
+
+  /**
+   * Take what is lit, unless nobody can have seen it by then. Stop counts all the same, also where it was lit before.
+   *
+   * @param {number} at when the person acted, ms
+   */
+  _take(at) {
+    if (at - this._litAt >= REACTION_MS) this.choose();
+    else [this._litBefore, this.choices[this.lit]].find((one) => one?.id === "stop")?.act?.();
   }
 
   _released() {
     if (this._spent) return;
     if (this.moving !== null && !this._input.latched) this._rest();
-    else if (this.style === "inverse" && this._going) this.choose();
+    else if (this.style === "inverse" && this._going) this._take(performance.now());
   }
 
   _repeated() {
@@ -186,6 +211,7 @@ export class Scanner extends EventTarget {
     this._input.hold("switch", ...DIRECTIONS[/** @type {Direction} */ (direction)], latched);
     // Another way of pressing may have been first.
     if (this._input.source === "switch") this.moving = direction;
+    else this._input.release("switch");
     this.ready = null;
     this._changed();
     this._restart();
@@ -222,6 +248,7 @@ export class Scanner extends EventTarget {
   _show(choices) {
     const [ids, before] = [choices, this.choices].map((all) => all.map(({ id }) => id).join());
     const renamed = choices.some(({ label }, index) => label !== this.choices[index]?.label);
+    if (ids !== before && before) this._litByItself();
     this.choices = choices;
     if (ids !== before) {
       this.lit = 0;
@@ -230,6 +257,11 @@ export class Scanner extends EventTarget {
     }
     if (ids !== before || renamed) this._changed();
     if (ids !== before) this._restart();
+  }
+
+  _litByItself() {
+    this._litAt = performance.now();
+    this._litBefore = this.choices[this.lit];
   }
 
   _forget() {
@@ -250,9 +282,13 @@ export class Scanner extends EventTarget {
     const { dwellS, firstS } = this._settings.values;
     if (!this.on || this.moving !== null) return;
     const waitMs = 1000 * (dwellS + (this.lit === 0 ? firstS : 0));
+    const goOn = () => {
+      this._litByItself();
+      this.next();
+    };
     if (this.ready !== null) this._timer = setTimeout(() => this._rest(), READY_MS);
-    else if (this.style === "auto") this._timer = setTimeout(() => this.next(), waitMs);
-    else if (this.style === "inverse" && this._going) this._timer = setTimeout(() => this.next(), waitMs);
+    else if (this.style === "auto") this._timer = setTimeout(goOn, waitMs);
+    else if (this.style === "inverse" && this._going) this._timer = setTimeout(goOn, waitMs);
     else if (this.style === "step" && this._going) this._timer = setTimeout(() => this.choose(), waitMs);
   }
 

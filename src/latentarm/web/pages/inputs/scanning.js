@@ -3,6 +3,7 @@
 import { create, setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
 import { DIRECTION_NAMES } from "./deflection.js";
+import { attachHeldPointer } from "./held_pointer.js";
 import { isInteractive } from "./keyboard.js";
 import { keyWords } from "./keys.js";
 import { Scanner } from "./scanner.js";
@@ -81,29 +82,21 @@ export function attachScanning(
     paint();
   };
   const button = (/** @type {HTMLButtonElement} */ element, /** @type {number} */ number) => {
-    /** @type {number | null} */
-    let pointer = null;
-    element.addEventListener("pointerdown", (event) => {
-      if (event.button !== 0 || pointer !== null) return;
-      pointer = event.pointerId;
-      element.setPointerCapture(pointer);
-      scanner.press(number, true);
+    const lost = () => scanner.lost();
+    attachHeldPointer(element, {
+      begins: () => {
+        scanner.press(number, true);
+        return true;
+      },
+      ends: () => scanner.press(number, false),
+      // What it would have chosen was lit some time ago.
+      missed: lost,
+      lost,
     });
-    for (const ends of ["pointerup", "pointercancel", "lostpointercapture"]) {
-      element.addEventListener(ends, (event) => {
-        if (/** @type {PointerEvent} */ (event).pointerId !== pointer) return;
-        pointer = null;
-        if (ends === "pointerup") scanner.press(number, false);
-        else scanner.lost();
-      });
-    }
     // A click without a pointer comes from a screen reader: there is nothing to hold.
     element.addEventListener("click", (event) => {
-      if (event.detail !== 0) return;
-      if (number === 0) scanner.choose();
-      else scanner.next();
+      if (event.detail === 0) scanner.tap(number);
     });
-    element.addEventListener("contextmenu", (event) => event.preventDefault());
   };
   button(parts.press, 0);
   button(parts.next, 1);

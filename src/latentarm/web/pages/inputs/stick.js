@@ -2,6 +2,7 @@
 
 import { setText } from "../layout/dom.js";
 import { say } from "../layout/words.js";
+import { attachHeldPointer } from "./held_pointer.js";
 
 /** @import {Direction, PersonInput} from "./deflection.js" */
 /** @import {Settings} from "../settings/settings.js" */
@@ -20,8 +21,6 @@ const CELLS = 8;
  */
 export function attachStick(element, spoken, inputs, settings) {
   const drawing = draw(element);
-  /** @type {number | null} */
-  let pointer = null;
 
   const push = (/** @type {PointerEvent} */ event) => {
     const box = element.getBoundingClientRect();
@@ -30,44 +29,29 @@ export function attachStick(element, spoken, inputs, settings) {
     const y = clamp(-(event.clientY - box.top - box.height / 2) / unit);
     inputs.hold("pointer", x, y, settings.values.press === "latch");
   };
-  const letGo = () => {
-    pointer = null;
-    inputs.release("pointer");
-  };
+  const letGo = () => inputs.release("pointer");
 
-  element.addEventListener("pointerdown", (event) => {
-    if (pointer !== null || event.button !== 0) return;
-    event.preventDefault();
-    element.focus({ preventScroll: true });
-    // A second press on a stick that stays where it was put takes it back.
-    if (inputs.source === "pointer") {
-      letGo();
-      return;
-    }
-    pointer = event.pointerId;
-    element.setPointerCapture(pointer);
-    push(event);
+  const forget = attachHeldPointer(element, {
+    begins: (event) => {
+      event.preventDefault();
+      element.focus({ preventScroll: true });
+      // A second press on a stick that stays where it was put takes it back.
+      if (inputs.source === "pointer") {
+        letGo();
+        return false;
+      }
+      push(event);
+      return true;
+    },
+    moves: push,
+    ends: () => {
+      const stays = settings.values.press === "latch" && inputs.live && inputs.source === "pointer";
+      if (!stays) letGo();
+    },
+    missed: letGo,
+    lost: () => inputs.halt("pointer_lost"),
   });
-  element.addEventListener("pointermove", (event) => {
-    if (event.pointerId === pointer) push(event);
-  });
-  element.addEventListener("pointerup", (event) => {
-    if (event.pointerId !== pointer) return;
-    if (settings.values.press === "latch" && inputs.live) pointer = null;
-    else letGo();
-  });
-  for (const lost of ["pointercancel", "lostpointercapture"]) {
-    element.addEventListener(lost, (event) => {
-      // After an ordinary release the capture is lost too, and nothing is held any more.
-      if (/** @type {PointerEvent} */ (event).pointerId !== pointer) return;
-      pointer = null;
-      inputs.halt("pointer_lost");
-    });
-  }
-  element.addEventListener("contextmenu", (event) => event.preventDefault());
-  inputs.addEventListener("dropped", () => {
-    pointer = null;
-  });
+  inputs.addEventListener("dropped", forget);
   const show = () => {
     const [x, y] = [inputs.x, inputs.y];
     drawing.knob.setAttribute("transform", `translate(${x * REACH} ${-y * REACH})`);

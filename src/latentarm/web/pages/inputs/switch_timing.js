@@ -1,15 +1,18 @@
 /**
- * One switch as its person's hand needs it: a press counts once it has been held long enough, nothing counts for a
- * while after a release, and holding repeats.
+ * One switch as its person's hand needs it: a press counts once it has been held long enough, nothing counts until the
+ * switch has been left alone for a while, and holding repeats.
  */
 
 /**
  * @typedef {object} Times all in s
  * @property {number} acceptS how long a press must be held before it counts
- * @property {number} releaseS for how long nothing counts after a release
+ * @property {number} releaseS how long the switch must have been up before a press counts again
  * @property {number} repeatS how often a press that is held counts again; 0 for never
  */
-/** @typedef {{pressed: () => void, released: () => void, repeated: () => void}} Meanings */
+/** @typedef {{pressed: (downAt: number) => void, released: () => void, repeated: () => void}} Meanings `downAt` is when it went down, ms */
+
+/** Contacts bounce for 1.6 ms on average, and nearly all for less than this, ms (Ganssle, A Guide to Debouncing, 2008). */
+const BOUNCE_MS = 10;
 
 export class SwitchTiming {
   /** @param {() => Times} times @param {Meanings} means */
@@ -18,14 +21,9 @@ export class SwitchTiming {
     this._means = means;
     this._down = false;
     this._accepted = false;
-    this._deafUntil = -Infinity;
+    this._downAt = this._upAt = -Infinity;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this._timer = undefined;
-  }
-
-  /** Whether a press that begins now would be heard. */
-  get hears() {
-    return !this._down && performance.now() >= this._deafUntil;
   }
 
   /** Whether a press that counts is under way. */
@@ -33,12 +31,16 @@ export class SwitchTiming {
     return this._accepted;
   }
 
-  /** The switch goes down. @param {boolean} [atOnce] counts without being held: what ends a motion must not wait */
-  down(atOnce = false) {
-    if (!this.hears) return;
+  /** The switch goes down. @param {boolean} [ends] ends a motion, which counts always and at once */
+  down(ends = false) {
+    const now = performance.now();
+    if (this._down || now - this._upAt < BOUNCE_MS) return;
     this._down = true;
-    const { acceptS } = this._times();
-    if (acceptS === 0 || atOnce) this._accept();
+    this._downAt = now;
+    const { acceptS, releaseS } = this._times();
+    if (ends) this._accept();
+    else if (now - this._upAt < 1000 * releaseS) return;
+    else if (acceptS === 0) this._accept();
     else this._timer = setTimeout(() => this._accept(), 1000 * acceptS);
   }
 
@@ -47,21 +49,32 @@ export class SwitchTiming {
     if (!this._down) return;
     const accepted = this._accepted;
     this.forget();
-    if (!accepted) return;
-    this._deafUntil = performance.now() + 1000 * this._times().releaseS;
-    this._means.released();
+    const now = performance.now();
+    if (accepted || now - this._downAt >= BOUNCE_MS) this._upAt = now;
+    if (accepted) this._means.released();
+  }
+
+  /** It was pressed by something that cannot hold it. @param {boolean} ends see `down` */
+  tap(ends) {
+    this.down(ends);
+    if (this._timer !== undefined && !this._accepted) {
+      clearTimeout(this._timer);
+      this._accept();
+    }
+    this.up();
   }
 
   /** A press under way comes to nothing, as when the page has lost the focus. */
   forget() {
     clearTimeout(this._timer);
+    this._timer = undefined;
     this._down = this._accepted = false;
   }
 
   _accept() {
     this._accepted = true;
     this._repeatLater();
-    this._means.pressed();
+    this._means.pressed(this._downAt);
   }
 
   _repeatLater() {

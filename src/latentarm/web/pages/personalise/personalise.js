@@ -1,7 +1,7 @@
 /** The Personalise page: motions are shown, the stick answers, and what was learned can be tried and kept. */
 
 import { attachDpad } from "../inputs/dpad.js";
-import { attachGamepad } from "../inputs/gamepad.js";
+import { attachGamepad, sayUnrested } from "../inputs/gamepad.js";
 import { attachInputChoice } from "../inputs/input_choice.js";
 import { buttonChoice, linkChoices, moreChoices } from "../inputs/page_choices.js";
 import { attachKeyboard } from "../inputs/keyboard.js";
@@ -58,7 +58,8 @@ const scanner = attachScanning({
   help: byId("scan-help"),
 }, input, settings, offered);
 attachKeyboard(input, settings, { enable: answer, nextMode: () => {}, axes: () => {}, gripper: () => {} });
-attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) });
+attachGamepad(input, settings, { enable: answer, stop, gripper: () => {}, nextMode: () => {}, press: (number, down) => scanner.press(number, down) },
+  (names) => sayUnrested(byId("unrested"), names));
 attachInputChoice(input, settings);
 
 /** What a switch reaches at each step: the step's own buttons, and then the pages and settings. @returns {Choice[]} */

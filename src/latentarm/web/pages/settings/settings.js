@@ -22,7 +22,7 @@ import * as storage from "./storage.js";
  * @property {number} dwellS how long a choice stays lit, s
  * @property {number} firstS how much longer the first one does, s
  * @property {number} acceptS how long a switch must be held before that counts, s
- * @property {number} releaseS for how long nothing counts after a switch was let go, s
+ * @property {number} releaseS how long a switch must have been up before a press counts, s
  * @property {number} repeatS how often a switch that is held counts again, s; 0 for never
  * @property {boolean} speak whether what is lit is spoken
  * @property {number} speakVolume in [0, 1]
@@ -60,8 +60,9 @@ export const DEFAULTS = Object.freeze({
   switchMotion: "latch",
   dwellS: 1.2,
   firstS: 0,
-  acceptS: 0,
-  releaseS: 0,
+  // Of 168,000 people a key press takes 116 ms with an SD of 24 (Dhakal et al., CHI 2018): 0.05 s is nearly three below.
+  acceptS: 0.05,
+  releaseS: 0.2,
   repeatS: 0,
   speak: false,
   speakVolume: 0.8,

@@ -10,11 +10,12 @@ import { NO_PROFILE } from "./settings.js";
 /** @import {Settings, Values} from "./settings.js" */
 
 const seconds = (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 1) });
+const hundredths = (/** @type {number} */ value) => say("unit.seconds", { value: sayNumber(value, 2) });
 
 /** The text next to a slider. @type {Record<string, (value: number) => string>} */
 const TEXTS = {
   sensitivity: sayPercent, deadZone: sayPercent, speakVolume: sayPercent, stepS: seconds, latchS: seconds, dwellS: seconds,
-  firstS: seconds, acceptS: seconds, releaseS: seconds,
+  firstS: seconds, acceptS: hundredths, releaseS: hundredths,
   repeatS: (value) => (value === 0 ? say("settings.never") : seconds(value)),
 };
 
