@@ -19,8 +19,8 @@ INPUT_TIMEOUT_S: Final = 0.05
 stop's."""
 
 LATCH_MAX_S: Final = 10.0
-"""How long a deflection counts that is latched or does not change in the least, s: a stick that is held and one
-that is dead look alike."""
+"""How long a deflection counts that is latched or does not change at all, s: a held stick and a dead one look
+alike."""
 
 COPILOT_TIMEOUT_S: Final = 0.5
 """How long what a co-pilot says counts, s: five times as long as their page takes to say it again."""
