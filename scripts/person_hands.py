@@ -11,7 +11,8 @@ from person_page import Direction, choices, look, moving
 KEYS: Final = {"Up": "ArrowUp", "Down": "ArrowDown", "Left": "ArrowLeft", "Right": "ArrowRight"}
 WAYS: Final = {"Up": (0, 1), "Down": (0, -1), "Left": (-1, 0), "Right": (1, 0)}
 PAIRS: Final = ("Across", "Height, turn", "Tilt")
-TAP_S: Final = 0.06
+TAP_S: Final = 0.08
+RELEASE_S: Final = 0.22
 """How long a key or a button is down where it need not be held, s."""
 
 LOOKS_S: Final = 0.03
@@ -342,7 +343,8 @@ class TwoSwitchesHand(SwitchHand):
     def go_on(self) -> None:
         """See the base class."""
         self.press("Backspace")
-        time.sleep(TAP_S)
+        # The page counts no press sooner after the last.
+        time.sleep(RELEASE_S)
 
 
 HANDS: Final[dict[str, type[Hand]]] = {

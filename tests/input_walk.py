@@ -289,9 +289,13 @@ class Walk:
         *(("reconnect", 0.3), ("hang", 0.3), ("long_hold", 0.25), ("start_again", 0.5)),
     )
 
-    def go(self, events: int) -> None:
+    def go(self, events: int, longest_s: float = math.inf) -> None:
+        """So many events, or as many as fit in the time."""
+        end_s = time.monotonic() + longest_s
         names, weights = zip(*self.WEIGHTS, strict=True)
         for number in range(events):
+            if time.monotonic() > end_s:
+                break
             name = self.rng.choices(names, weights)[0]
             if not self.watcher.enabled and self.rng.random() < 0.4:
                 name = "enable"
@@ -414,6 +418,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("address")
     parser.add_argument("--events", type=int, default=20_000)
+    parser.add_argument("--minutes", type=float, default=math.inf)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--chromium", default="/usr/bin/chromium")
     parser.add_argument("--log", type=Path, default=Path("input_walk.log"))
@@ -424,7 +429,7 @@ def main() -> int:
         browser = playwright.chromium.launch(executable_path=given.chromium, args=without)
         page = browser.new_page(viewport={"width": 1100, "height": 720})
         with walking(page, given.address, given.seed, lambda line: print(line, file=log, flush=True)) as walk:
-            walk.go(given.events)
+            walk.go(given.events, 60.0 * given.minutes)
             words, faults = report(walk)
         browser.close()
     sys.stdout.write(f"{words}\n")

@@ -113,7 +113,7 @@ def test_a_gamepad_that_is_pulled_out_stops_the_arm(open_page, seat, arm, press_
     page.get_by_role("status").get_by_text("gamepad was disconnected").wait_for()
 
 
-def test_an_arm_that_was_stopped_needs_a_stick_at_rest_to_be_enabled(
+def test_a_gamepad_that_is_pushed_when_the_arm_is_enabled_moves_nothing_until_it_was_let_go(
     open_page, seat, arm, press_enable, tilt
 ):
     page = seat(open_page(GAMEPAD), arm)
@@ -121,8 +121,10 @@ def test_an_arm_that_was_stopped_needs_a_stick_at_rest_to_be_enabled(
     tilt(page)
     page.keyboard.press("Space")
     arm.comes_to_rest()
-    page.get_by_role("button", name="Enable", exact=True).click()
-    page.get_by_role("status").get_by_text("Let go of the stick").wait_for()
+    press_enable(page, arm)
+    page.get_by_role("status").get_by_text("is not at rest").wait_for()
     arm.stays()
     page.evaluate("pad.axes = [0, 0]")
+    page.wait_for_timeout(200)
     press_enable(page, arm)
+    tilt(page)

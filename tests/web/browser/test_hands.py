@@ -16,6 +16,12 @@ TRIES = 6
 """A busy computer stops the arm now and then; a person presses again."""
 
 
+def press_switch(page, key):
+    """As a person does, and not sooner than the page counts one after the last."""
+    page.wait_for_timeout(220)
+    page.keyboard.press(key, delay=80)
+
+
 @pytest.fixture
 def go(arm, press_until_moving):
     """Press, again where a busy computer has stopped the arm, until the tool is 2 cm away; its way, m."""
@@ -94,9 +100,9 @@ def test_two_switches_drive_the_arm(page, arm):
         # What there is to choose from changes when the arm is enabled, and when it has stopped.
         for _ in range(8):
             if lit.inner_text() == name:
-                page.keyboard.press(SWITCH_KEY)
+                press_switch(page, SWITCH_KEY)
                 return
-            page.keyboard.press(NEXT_KEY)
+            press_switch(page, NEXT_KEY)
 
     def drive():
         if not arm.enabled:
@@ -109,7 +115,7 @@ def test_two_switches_drive_the_arm(page, arm):
 
     page.get_by_role("button", name="Switch", exact=True).focus()
     assert any(drive() for _ in range(TRIES)), arm.state["reason"]
-    page.keyboard.press(SWITCH_KEY)
+    press_switch(page, SWITCH_KEY)
     arm.is_let_go()
 
 

@@ -14,6 +14,12 @@ PATIENCE_MS = 30_000
 """Twice as long as the light takes to go once round the longest list."""
 
 
+def press_switch(page, key):
+    """As a person does, and not sooner than the page counts one after the last."""
+    page.wait_for_timeout(220)
+    page.keyboard.press(key, delay=80)
+
+
 def scan(page, **settings):
     """Choose the settings of a switch user, and steer with the switch."""
     page.get_by_role("button", name="Settings").click()
@@ -41,10 +47,10 @@ def choose_by_two(page, name):
     """Go on until it is lit, and choose it."""
     for _ in range(40):
         if page.locator("#scan li[aria-current=true]").inner_text() == name:
-            page.keyboard.press("Enter")
+            press_switch(page, "Enter")
             page.wait_for_timeout(150)
             return
-        page.keyboard.press("Backspace")
+        press_switch(page, "Backspace")
     raise AssertionError(f"{name} is never lit: {offered(page)}")
 
 
@@ -52,7 +58,7 @@ def choose_by_one(page, name):
     """Wait until it is lit, and press."""
     lit = page.locator("#scan li[aria-current=true]", has_text=name)
     lit.wait_for(timeout=PATIENCE_MS)
-    page.keyboard.press("Enter")
+    press_switch(page, "Enter")
     page.wait_for_timeout(150)
 
 
@@ -89,7 +95,7 @@ def test_what_is_lit_is_spoken(open_page, seat, arm):
     page.get_by_role("button", name="Switch", exact=True).focus()
     page.evaluate("spoken.length = 0")
     for _ in range(3):
-        page.keyboard.press("Backspace")
+        press_switch(page, "Backspace")
     assert page.evaluate("spoken") == [[text, "en", 0.5] for text in ("Other mode", "Next task", "More …")]
 
 
@@ -106,7 +112,7 @@ def test_space_as_a_switch_does_not_stop_and_escape_does(page, arm, press_enable
     press_enable(page, arm)
     page.locator("#scan li[data-choice=up]").wait_for()
     stopped = arm.state["reason"]
-    page.keyboard.press("Backspace")
+    press_switch(page, "Backspace")
     page.keyboard.press("Space")
     arm.wait(lambda: arm.state["phase"] == "moving" or not arm.enabled)
     assert "stop_pressed" not in str((arm.state["reason"] or stopped or {}).get("code"))

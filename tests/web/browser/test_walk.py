@@ -52,6 +52,12 @@ WITHOUT_TYPING = """(all) => all
   .map((one) => one.getAttribute("aria-label") ?? one.textContent.trim())"""
 
 
+def press_switch(page, key):
+    """As a person does, and not sooner than the page counts one after the last."""
+    page.wait_for_timeout(220)
+    page.keyboard.press(key, delay=80)
+
+
 @pytest.fixture(scope="module")
 def served(start_server, tmp_path_factory):
     with start_server(tmp_path_factory.mktemp("walk"), "--task", "entree") as address:
@@ -165,7 +171,7 @@ def go_to(page, number):
     for _ in range(60):
         if page.locator("#scan li").nth(number).get_attribute("aria-current"):
             return
-        page.keyboard.press("Backspace")
+        press_switch(page, "Backspace")
     raise AssertionError(f"{offered(page)[number]} is never lit")
 
 
@@ -182,11 +188,11 @@ def scanned(page, names):
         expect(lit).to_have_count(1)
         names.append(name)
         if name.endswith(" …") and lit.evaluate("one => one.matches('section, article, form, fieldset, li')"):
-            page.keyboard.press("Enter")
+            press_switch(page, "Enter")
             page.wait_for_timeout(150)
             scanned(page, names)
             go_to(page, offered(page).index("Back"))
-            page.keyboard.press("Enter")
+            press_switch(page, "Enter")
             page.wait_for_timeout(150)
 
 
@@ -201,10 +207,10 @@ def test_two_switches_reach_everything_that_can_be_pressed(open_path, path):
     assert set(wanted) <= set(names)
     # And away again.
     go_to(page, offered(page).index("Other page …"))
-    page.keyboard.press("Enter")
+    press_switch(page, "Enter")
     page.wait_for_timeout(150)
     go_to(page, offered(page).index("Drive"))
-    page.keyboard.press("Enter")
+    press_switch(page, "Enter")
     page.locator("#enable").wait_for()
 
 
@@ -216,7 +222,7 @@ def test_a_dialog_is_scanned_too(open_path):
     names = offered(page)
     assert names[-1] == "Stop"
     go_to(page, names.index("Keep everything"))
-    page.keyboard.press("Enter")
+    press_switch(page, "Enter")
     expect(page.get_by_role("dialog")).to_be_hidden()
     page.wait_for_timeout(300)
     assert len(offered(page)) > 3
