@@ -12,7 +12,6 @@ KEYS: Final = {"Up": "ArrowUp", "Down": "ArrowDown", "Left": "ArrowLeft", "Right
 WAYS: Final = {"Up": (0, 1), "Down": (0, -1), "Left": (-1, 0), "Right": (1, 0)}
 PAIRS: Final = ("Across", "Height, turn", "Tilt")
 TAP_S: Final = 0.08
-RELEASE_S: Final = 0.22
 """How long a key or a button is down where it need not be held, s."""
 
 LOOKS_S: Final = 0.03
@@ -343,8 +342,7 @@ class TwoSwitchesHand(SwitchHand):
     def go_on(self) -> None:
         """See the base class."""
         self.press("Backspace")
-        # The page counts no press sooner after the last.
-        time.sleep(RELEASE_S)
+        time.sleep(3 * TAP_S)  # The page counts no press sooner.
 
 
 HANDS: Final[dict[str, type[Hand]]] = {

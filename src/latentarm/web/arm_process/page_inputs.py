@@ -19,8 +19,7 @@ INPUT_TIMEOUT_S: Final = 0.05
 stop's."""
 
 LATCH_MAX_S: Final = 10.0
-"""How long a deflection counts that is latched or does not change at all, s: a held stick and a dead one look
-alike."""
+"""How long a deflection counts that is latched, or that does not change at all as a dead stick's, s."""
 
 COPILOT_TIMEOUT_S: Final = 0.5
 """How long what a co-pilot says counts, s: five times as long as their page takes to say it again."""

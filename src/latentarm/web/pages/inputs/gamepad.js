@@ -60,9 +60,8 @@ export function attachGamepad(input, settings, actions, unrested = () => {}) {
     });
     const [x, y] = [pad.axes[0] ?? 0, pad.axes[1] ?? 0].map((axis) => Math.min(Math.max(axis, -1), 1));
     const rests = Math.hypot(x, y) <= Math.max(REST, settings.values.deadZone);
-    const sane = !Number.isNaN(x + y);
-    if (!before || !sane) input.distrust("gamepad", index);
-    if (sane) input.hold("gamepad", rests ? 0 : x, rests ? 0 : -y, false, index);
+    if (!before || Number.isNaN(x + y)) input.distrust("gamepad", index);
+    if (!Number.isNaN(x + y)) input.hold("gamepad", rests ? 0 : x, rests ? 0 : -y, false, index);
     return input.waits("gamepad", index);
   };
   const stops = (/** @type {number} */ number) => ["any", String(number)].includes(settings.values.gamepadStop);
