@@ -194,6 +194,11 @@ class Demonstrations:
         """Number of joints n."""
         return len(self.joint_names)
 
+    @property
+    def warnings(self) -> list[str]:
+        """What importing warned of, now or before."""
+        return [said for subject, said in self.import_record.items() if subject.endswith("warning")]
+
 
 @dataclass(frozen=True)
 class Pairs:

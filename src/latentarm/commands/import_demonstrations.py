@@ -13,7 +13,10 @@ from latentarm.commands.output import note, print_renderables, say, show
 def import_demonstrations(
     source: Annotated[
         Positional[Path],
-        arg(metavar="SRC", help=".npz, .csv, .hdf5, or a folder of LeRobot (v2.0 to v3.0) or HARMONIC."),
+        arg(
+            metavar="SRC",
+            help=".npz, .csv (.gz), .hdf5, .bag, .mcap, .db3, a folder of these, or of LeRobot or HARMONIC.",
+        ),
     ],
     destination: Annotated[Positional[Path], arg(metavar="DST", help="New folder for the dataset.")],
     robot: RobotName = "panda",
@@ -53,6 +56,23 @@ def import_demonstrations(
     clip_rad: Annotated[
         float, arg(help="Move positions up to this far outside a joint's limits to the limit, rad.")
     ] = 0.0,
+    leave_out: Annotated[
+        tuple[str, ...], arg(metavar="EPISODE", help="Episodes that are not imported, by name.")
+    ] = (),
+    gaps: Annotated[
+        Literal["refuse", "split", "keep"],
+        arg(
+            help="What becomes of episodes with gaps: each part an episode, or motion across taken for even."
+        ),
+    ] = "refuse",
+    resample_hz: Annotated[
+        float | None, arg(help="Bring all episodes to this rate, joints by linear interpolation.")
+    ] = None,
+    time_unit: Annotated[
+        Literal["s", "ms", "us", "ns"] | None,
+        arg(help="Unit of a CSV file's timestamps; known from their spacing by default."),
+    ] = None,
+    topic: Annotated[str | None, arg(help="Topic of a bag's joints, if it has several.")] = None,
     json: Json = False,
 ) -> int:
     """Turn recorded demonstrations into a native dataset (LeRobotDataset v3.0).
@@ -80,8 +100,14 @@ def import_demonstrations(
         gripper_starts=gripper_starts,
         recorded_on=recorded_on,
         clip_rad=clip_rad,
+        leave_out=leave_out,
+        gaps=gaps,
+        resample_hz=resample_hz,
+        time_unit=time_unit,
+        topic=topic,
     )
     write_options(destination, "import")
+    note(demonstrations.warnings)
     if json:
         show(summary(demonstrations).rows(), json)
         for subject, decision in demonstrations.import_record.items():

@@ -128,6 +128,7 @@ def inspect(
     unknown = why_unknown(demonstrations, str(dataset))
     if unknown:
         note([unknown])
+    note(demonstrations.warnings)
     figure = draw(demonstrations, out or dataset.with_name(f"{dataset.name}-figures"))
     write_options(figure.parent, "inspect")
     show(summary(demonstrations).rows(), json, *summary_tables(demonstrations))

@@ -44,7 +44,13 @@ LimitsFile = Annotated[
     Path | None,
     arg(metavar="FILE", help="TOML or YAML file that states the robot's limits, see docs/arms.md."),
 ]
-Dataset = Annotated[Path, arg(metavar="DST", help="Folder of a native dataset.")]
+Datasets = Annotated[
+    tuple[Path, ...],
+    arg(
+        metavar="DST ...",
+        help="Folders of native datasets; several of one robot are joined in the run's folder.",
+    ),
+]
 MovedDataset = Annotated[
     Path | None, arg(metavar="DST", help="Where the run's dataset is now, if it was moved and is needed.")
 ]

@@ -8,14 +8,14 @@ from tyro.conf import arg
 
 from latentarm.commands.choices import ModelName, TaskName
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import Dataset, EndEffector, Json, Seed
-from latentarm.commands.output import say, show
+from latentarm.commands.options import Datasets, EndEffector, Json, Seed
+from latentarm.commands.output import note, say, show
 from latentarm.context import FeatureName
 from latentarm.models.catalogue import DEFAULT_MODEL
 
 
 def train(
-    demonstrations: Dataset,
+    demonstrations: Datasets,
     model: Annotated[ModelName, arg(help="The latent action model.")] = DEFAULT_MODEL,
     latent_dim: Annotated[int, arg(help="d, the number of axes of the person's interface.")] = 2,
     context: Annotated[
@@ -72,10 +72,13 @@ def train(
     """
     from latentarm.models.training import epoch_bar
     from latentarm.runs.advice import model_advice
+    from latentarm.runs.joined import joined_dataset
     from latentarm.runs.training import TrainConfig, train_run
 
+    names = "-".join(one.resolve().name for one in demonstrations)
+    out = out or Path("runs") / f"{names}-{model}"
     config = TrainConfig(
-        demonstrations=demonstrations,
+        demonstrations=joined_dataset(demonstrations, out),
         model=model,
         latent_dim=latent_dim,
         context=context,
@@ -92,13 +95,14 @@ def train(
         device=device,
         end_effector=end_effector,
         task=task,
-        out=out or Path("runs") / f"{demonstrations.resolve().name}-{model}",
+        out=out,
         resume=resume,
     )
     with epoch_bar(not json and sys.stderr.isatty()) as report:
         training = train_run(config, report)
 
     write_options(config.out, "train")
+    note(training.import_warnings)
     show(training.rows, json)
     if advice := model_advice(model, training.episodes):
         say(advice, json)

@@ -1,29 +1,45 @@
 """Importing tables in plain text (CSV), one line per sample.
 
-The first line names the columns: ``episode`` (any label; its lines lie together), ``timestamp`` (s,
-growing within an episode, from any origin), one column per joint with its position in rad, and
-where wanted ``action.JOINT`` for every joint with its commanded velocity in rad/s, ``task``, and ``robot``,
-the name of the robot that was recorded. With a robot whose joint names are all among the columns,
-those are read, and a gripper's; otherwise every column that is not named above.
+The first line names the columns: ``timestamp`` (s, growing within an episode, from any origin), one column
+per joint with its position in rad, and where wanted ``episode`` (any label; its lines lie together),
+``action.JOINT`` for every joint with its commanded velocity in rad/s, ``task``, and ``robot``, the name of
+the robot that was recorded. Without ``episode`` the file is one episode. With a robot whose joint names are
+all among the columns, those are read, and a gripper's; otherwise every column that is not named above.
+
+What ``rostopic echo -p`` prints of a topic of ``sensor_msgs/JointState`` can be read too.
 """
 
-import math
 from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
-from typing import Final, final
+from typing import Final, Literal, final
 
 import numpy as np
 
 from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_EPISODES
 from latentarm.demonstrations.columns import is_gripper
-from latentarm.demonstrations.csv_lines import read_lines
+from latentarm.demonstrations.csv_lines import CsvTable
+from latentarm.demonstrations.source import SourceData
+from latentarm.demonstrations.timing import typical_rate_hz
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
 
 ACTION_PREFIX: Final = "action."
 RESERVED_COLUMNS: Final = frozenset({"episode", "timestamp", "task", "robot"})
+
+TimeUnit = Literal["s", "ms", "us", "ns"]
+SECONDS: Final[dict[str, float]] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+
+_LEAST_STEP: Final[dict[str, float]] = {"ns": 1e6, "us": 1e3, "ms": 5.0}
+"""No recording has so few samples a second that its timestamps would advance by this in any longer unit."""
+
+_ROSTOPIC: Final = "%time"
+"""First column of what ``rostopic echo -p`` prints."""
+
+_ROS_NAME: Final = "field.name"
+_ROS_POSITION: Final = "field.position"
 
 
 @final
@@ -42,34 +58,83 @@ def read_csv(
     joint_names: Sequence[str] = (),
     rate_hz: float | None = None,
     task: str | None = None,
-) -> Demonstrations:
+    time_unit: TimeUnit | None = None,
+) -> SourceData:
     """Read demonstrations from a CSV file.
 
     Args:
         source: the file.
         joint_names: the robot's joints, where a robot is known.
-        rate_hz: nominal sampling rate; by default the mean rate of the timestamps.
+        rate_hz: nominal sampling rate; by default that of the timestamps.
         task: what was done, where the file has no such column; the file's name by default.
+        time_unit: of the timestamps; by default s, or a shorter one where steps are too long for s.
 
     Raises:
         UserError: naming the file and the line that cannot be understood.
     """
-    lines = read_lines(source)
-    header = [name.strip() for name in next(lines, (0, []))[1]]
+    table = CsvTable(source)
+    header, rows = table.header, table.rows()
+    if _ROSTOPIC in header:
+        header, rows = _joint_states(header, rows, source)
     joints = _joints(header, joint_names, source)
     actions = [f"{ACTION_PREFIX}{joint}" for joint in joints]
     recorded = all(action in header for action in actions)
     columns = ["timestamp", *joints, *(actions if recorded else [])]
-    default_task = source.stem if task is None else task
-    runs = _runs(lines, header, columns, default_task, source)
-    episodes = tuple(_episode(run, len(joints), len(columns)) for run in runs)
-    if not episodes:
-        raise UserError(f"{source} has no line after its header.")
-    rate = _mean_rate(episodes) if rate_hz is None else rate_hz
+    runs = _runs(table, header, rows, columns, source.name.split(".")[0] if task is None else task)
     robots = sorted({run.robot for run in runs})
     if len(robots) > 1:
         raise UserError(f"{source} holds episodes of different robots ({', '.join(robots)}): split the file.")
-    return Demonstrations(episodes=episodes, rate_hz=rate, joint_names=joints, robot=robots[0])
+    tables: list[FloatArray] = [np.frombuffer(run.numbers).reshape(-1, len(columns)) for run in runs]
+    steps = np.concatenate([np.diff(one[:, 0]) for one in tables])
+    step = float(np.median(steps)) if len(steps) else 0.0
+    unit = time_unit or next((unit for unit, least in _LEAST_STEP.items() if step >= least), "s")
+    record = {"timestamps": f"taken for {unit}, as they advance by {step:.6g}"}
+    width = 1 + len(joints)
+    episodes = tuple(
+        Episode(
+            timestamp=(numbers[:, 0] - numbers[0, 0]) * SECONDS[unit],
+            state=numbers[:, 1:width].copy(),
+            action=numbers[:, width:].copy() if recorded else None,
+            task=run.task,
+        )
+        for run, numbers in zip(runs, tables, strict=True)
+    )
+    return SourceData(
+        Demonstrations(
+            episodes=episodes,
+            rate_hz=typical_rate_hz(episodes) if rate_hz is None else rate_hz,
+            joint_names=joints,
+            robot=robots[0],
+        ),
+        layout="CSV",
+        in_rad=True,
+        names=tuple(run.label for run in runs),
+        record=record if unit != "s" and time_unit is None else {},
+    )
+
+
+def _joint_states(
+    header: list[str], rows: Iterator[tuple[int, list[str]]], source: Path
+) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+    """The positions in what ``rostopic echo -p`` printed, under the joints' names."""
+    positions = [name for name in header if name.startswith(_ROS_POSITION)]
+    labels = [name.replace(_ROS_POSITION, _ROS_NAME) for name in positions]
+    if not positions or not set(labels) <= set(header):
+        raise UserError(
+            f"{source} was printed by rostopic, but not from a topic of sensor_msgs/JointState: print that"
+            " topic with `rostopic echo -b BAG -p TOPIC`, or import the bag."
+        )
+    named, kept = ([header.index(name) for name in some] for some in (labels, [_ROSTOPIC, *positions]))
+    number, first = next(rows)
+    names = [first[index] for index in named]
+
+    def picked() -> Iterator[tuple[int, list[str]]]:
+        for line, fields in chain([(number, first)], rows):
+            if [fields[index] for index in named] != names:
+                raise UserError(f"{source}: line {line} names other joints than line {number}.")
+            yield line, [fields[index] for index in kept]
+
+    return ["timestamp", *names], picked()
 
 
 def _joints(header: list[str], joint_names: Sequence[str], source: Path) -> tuple[str, ...]:
@@ -78,9 +143,8 @@ def _joints(header: list[str], joint_names: Sequence[str], source: Path) -> tupl
     repeated = sorted({name for name in header if header.count(name) > 1})
     if repeated:
         raise UserError(f"{source}: the column {repeated[0]!r} occurs twice.")
-    for name in ("episode", "timestamp"):
-        if name not in header:
-            raise UserError(f"{source} has no column {name!r}; its first line must name the columns.")
+    if "timestamp" not in header:
+        raise UserError(f"{source} has no column 'timestamp'; its first line must name the columns.")
     joints = tuple(
         name for name in header if name not in RESERVED_COLUMNS and not name.startswith(ACTION_PREFIX)
     )
@@ -93,50 +157,29 @@ def _joints(header: list[str], joint_names: Sequence[str], source: Path) -> tupl
 
 
 def _runs(
-    lines: Iterator[tuple[int, list[str]]], header: list[str], columns: list[str], task: str, source: Path
+    table: CsvTable,
+    header: list[str],
+    rows: Iterator[tuple[int, list[str]]],
+    columns: list[str],
+    task: str,
 ) -> list[_Run]:
     place = {name: index for index, name in enumerate(header)}
     wanted = [place[name] for name in columns]
     runs: list[_Run] = []
     seen: set[str] = set()
-    for number, fields in lines:
-        if len(fields) != len(header):
-            raise UserError(
-                f"{source}: line {number} is ragged: {len(fields)} fields under {len(header)} columns."
-            )
-        label = fields[place["episode"]]
+    for number, fields in rows:
+        told = {name: fields[place[name]] for name in ("episode", "task", "robot") if name in place}
+        label = told.get("episode", "0")
         if not runs or runs[-1].label != label:
             if label in seen:
-                raise UserError(f"{source}: line {number} goes back to episode {label!r}, which had ended.")
-            if len(seen) == MAX_EPISODES:
-                raise UserError(f"{source} has more than {MAX_EPISODES:,} episodes; split the file.")
-            seen.add(label)
-            told = {name: fields[place[name]] for name in ("task", "robot") if name in place}
-            runs.append(_Run(label, told.get("task", task), told.get("robot", "")))
-        for name, index in zip(columns, wanted, strict=True):
-            try:
-                runs[-1].numbers.append(float(fields[index]))
-            except ValueError as error:
                 raise UserError(
-                    f"{source}: line {number}, column {name!r}: {fields[index][:40]!r} is not a number."
-                ) from error
+                    f"{table.source}: line {number} goes back to episode {label!r}, which had ended."
+                )
+            if len(seen) == MAX_EPISODES:
+                raise UserError(f"{table.source} has more than {MAX_EPISODES:,} episodes; split the file.")
+            seen.add(label)
+            runs.append(_Run(label, told.get("task", task), told.get("robot", "")))
+        runs[-1].numbers.extend(
+            table.number(fields[index], number, name) for name, index in zip(columns, wanted, strict=True)
+        )
     return runs
-
-
-def _episode(run: _Run, dof: int, width: int) -> Episode:
-    numbers: FloatArray = np.frombuffer(run.numbers).reshape(-1, width).copy()
-    return Episode(
-        timestamp=numbers[:, 0] - numbers[0, 0],
-        state=numbers[:, 1 : 1 + dof],
-        action=numbers[:, 1 + dof :] if width > 1 + dof else None,
-        task=run.task,
-    )
-
-
-def _mean_rate(episodes: Sequence[Episode]) -> float:
-    """Samples per second over all episodes, a whole number where it is within 1 % of one."""
-    steps = sum(len(episode.timestamp) - 1 for episode in episodes)
-    elapsed = sum(float(episode.timestamp[-1]) for episode in episodes)
-    rate = steps / elapsed if elapsed > 0 else 0.0
-    whole = math.floor(rate + 0.5) if math.isfinite(rate) else 0
-    return float(whole) if abs(rate - whole) < 0.01 * rate else rate

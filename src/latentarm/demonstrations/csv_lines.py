@@ -1,14 +1,24 @@
-"""The records of CSV files that others wrote, within bounds."""
+"""The records of CSV files that others wrote, within bounds.
+
+The first line decides what separates fields: commas, semicolons or tabs, whichever it has most of. A comma
+within a number is a decimal comma. Files may be packed with gzip.
+"""
 
 import csv
+import gzip
 import io
+import zlib
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Final, TextIO, final
 
 from latentarm.demonstrations.bounds import MAX_LINE, MAX_TEXT_BYTES
 from latentarm.errors import UserError
 from latentarm.untrusted.opening import opened
+
+GZIP: Final = b"\x1f\x8b"
+"""Begins every file that gzip packed."""
 
 MAX_RECORD_LINES: Final = 100
 """Lines that one record may have, where its texts hold line breaks."""
@@ -21,16 +31,71 @@ def read_lines(source: Path) -> Iterator[tuple[int, list[str]]]:
         UserError: the file cannot be read, is too large, or is no CSV file in UTF-8.
     """
     with opened(source, MAX_TEXT_BYTES) as stream:
-        lines = _Lines(io.TextIOWrapper(stream, encoding="utf-8-sig", newline=""), source)
-        reader = csv.reader(lines, strict=True)
+        packed = stream.read(len(GZIP)) == GZIP
+        stream.seek(0)
+        content = gzip.GzipFile(fileobj=stream) if packed else stream
+        lines = _Lines(io.TextIOWrapper(content, encoding="utf-8-sig", newline=""), source)
         try:
+            first = next(lines, "")
+            delimiter = max(",;\t", key=first.count)
+            reader = csv.reader(chain([first], lines), delimiter=delimiter, strict=True)
             for fields in reader:
                 lines.in_record = 0
                 if fields:
                     yield reader.line_num, fields
-        except (UnicodeDecodeError, csv.Error) as error:
+        except (UnicodeDecodeError, csv.Error, EOFError, zlib.error) as error:
             raise UserError(
-                f"{source} is not a readable CSV file in UTF-8, from about line {reader.line_num + 1} on."
+                f"{source} is not a readable CSV file in UTF-8, from about line {lines.number + 1} on."
+            ) from error
+
+
+@final
+class CsvTable:
+    """A table whose first line names its columns.
+
+    Args:
+        source: the file.
+
+    Attributes:
+        header: names of the columns.
+
+    Raises:
+        UserError: see `read_lines`.
+    """
+
+    def __init__(self, source: Path) -> None:
+        self.source = source
+        self._lines = read_lines(source)
+        self.header = [name.strip() for name in next(self._lines, (0, []))[1]]
+
+    def rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Line numbers and fields of all further records.
+
+        Raises:
+            UserError: there is none, or one has more or fewer fields than the header.
+        """
+        number = 0
+        for number, fields in self._lines:
+            if len(fields) != len(self.header):
+                raise UserError(
+                    f"{self.source}: line {number} is ragged: {len(fields)} fields under {len(self.header)}"
+                    " columns."
+                )
+            yield number, fields
+        if not number:
+            raise UserError(f"{self.source} has no line after its header.")
+
+    def number(self, text: str, line: int, column: str) -> float:
+        """A field's number.
+
+        Raises:
+            UserError: it is none.
+        """
+        try:
+            return float(text if "." in text else text.replace(",", ".", 1))
+        except ValueError as error:
+            raise UserError(
+                f"{self.source}: line {line}, column {column!r}: {text[:40]!r} is not a number."
             ) from error
 
 
@@ -43,13 +108,15 @@ class _Lines:
         source: its path.
 
     Attributes:
+        number: lines so far.
         in_record: lines since this was last set to zero; a text in quotation marks may go over several.
     """
 
     def __init__(self, stream: TextIO, source: Path) -> None:
         self._stream = stream
         self._source = source
-        self._number = 0
+        self._characters = 0
+        self.number = 0
         self.in_record = 0
 
     def __iter__(self) -> "_Lines":
@@ -59,13 +126,16 @@ class _Lines:
         line = self._stream.readline(MAX_LINE + 1)
         if not line:
             raise StopIteration
-        self._number += 1
+        self.number += 1
         self.in_record += 1
+        self._characters += len(line)
+        if self._characters > MAX_TEXT_BYTES:  # a packed file can hold a thousand times its size
+            raise UserError(f"{self._source} holds more than {MAX_TEXT_BYTES:,} characters; split it.")
         if len(line) > MAX_LINE:
-            raise UserError(f"{self._source}: line {self._number} has more than {MAX_LINE:,} characters.")
+            raise UserError(f"{self._source}: line {self.number} has more than {MAX_LINE:,} characters.")
         if self.in_record > MAX_RECORD_LINES:
             raise UserError(
-                f"{self._source}: the text that begins in line {self._number - MAX_RECORD_LINES} has no end;"
+                f"{self._source}: the text that begins in line {self.number - MAX_RECORD_LINES} has no end;"
                 " a quotation mark is missing."
             )
         return line

@@ -22,9 +22,10 @@ from typing import Final, cast
 import numpy as np
 
 from latentarm.demonstrations.bounds import MAX_EPISODES, check_values
-from latentarm.demonstrations.csv_lines import read_lines
+from latentarm.demonstrations.csv_lines import CsvTable
 from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.things import ENVIRONMENT
+from latentarm.demonstrations.timing import typical_rate_hz
 from latentarm.errors import UserError
 from latentarm.kinematics.pose_rows import stored_rows
 from latentarm.types import Demonstrations, Episode, FloatArray, Pose
@@ -77,7 +78,7 @@ def read_harmonic(runs: Sequence[Path], rate_hz: float | None = None, task: str 
 
     Args:
         runs: folders, see `harmonic_runs`.
-        rate_hz: nominal sampling rate; by default the mean rate of the timestamps.
+        rate_hz: nominal sampling rate; by default that of the timestamps.
         task: what was done; the stated goal by default.
 
     Raises:
@@ -95,14 +96,13 @@ def read_harmonic(runs: Sequence[Path], rate_hz: float | None = None, task: str 
         check_values(run, "with the runs before it", count)
     if not episodes:
         raise UserError(f"{runs[0]}: no run has the poses of all three morsels.")
-    steps = sum(len(one.timestamp) - 1 for one in episodes)
-    elapsed_s = sum(float(one.timestamp[-1]) for one in episodes)
-    if rate_hz is None and not elapsed_s > 0:
+    typical_hz = typical_rate_hz(episodes)
+    if rate_hz is None and not typical_hz:
         raise UserError(f"{runs[0]}: its timestamps do not grow; say the sampling rate.")
     return SourceData(
         Demonstrations(
             episodes=tuple(episodes),
-            rate_hz=steps / elapsed_s if rate_hz is None else rate_hz,
+            rate_hz=typical_hz if rate_hz is None else rate_hz,
             joint_names=JOINTS,
             robot="mico",
             objects=MORSELS,
@@ -155,21 +155,12 @@ class _Table:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        lines = read_lines(path)
-        self._header = [name.strip() for name in next(lines, (0, []))[1]]
-        self._rows = [(number, fields) for number, fields in lines]
-        if not self._rows:
-            raise UserError(f"{path} has no line after its header.")
-        for number, fields in self._rows:
-            if len(fields) != len(self._header):
-                raise UserError(
-                    f"{path}: line {number} is ragged: {len(fields)} fields under {len(self._header)}"
-                    " columns."
-                )
+        self._csv = CsvTable(path)
+        self._rows = list(self._csv.rows())
 
     def has(self, name: str) -> bool:
         """Whether there is a column of that name."""
-        return name in self._header
+        return name in self._csv.header
 
     def columns(self, names: Sequence[str]) -> FloatArray:
         """Columns by name, (T, k).
@@ -178,20 +169,15 @@ class _Table:
             UserError: there is no such column, or it holds something else than numbers.
         """
         for name in names:
-            if self._header.count(name) != 1:
+            if self._csv.header.count(name) != 1:
                 raise UserError(f"{self.path} must have one column {name!r}, as runs of HARMONIC have.")
-        places = [self._header.index(name) for name in names]
-        values = np.empty((len(self._rows), len(names)))
-        for row, (number, fields) in enumerate(self._rows):
-            for column, (name, place) in enumerate(zip(names, places, strict=True)):
-                try:
-                    values[row, column] = float(fields[place])
-                except ValueError as error:
-                    raise UserError(
-                        f"{self.path}: line {number}, column {name!r}: {fields[place][:40]!r} is not a"
-                        " number."
-                    ) from error
-        return values
+        places = [(name, self._csv.header.index(name)) for name in names]
+        return np.array(
+            [
+                [self._csv.number(fields[place], number, name) for name, place in places]
+                for number, fields in self._rows
+            ]
+        )
 
 
 def _held(path: Path, names: Sequence[str], time_s: FloatArray) -> FloatArray:

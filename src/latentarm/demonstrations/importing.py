@@ -6,8 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final, TypedDict, Unpack
 
+from latentarm.demonstrations.aloha import is_aloha, read_aloha
+from latentarm.demonstrations.bag_file import MCAP, ROS1, read_bag
 from latentarm.demonstrations.bounds import MAX_FILE_BYTES
-from latentarm.demonstrations.csv_file import read_csv
+from latentarm.demonstrations.csv_file import TimeUnit, read_csv
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.demonstrations.gripper import GripperStart
@@ -18,7 +20,8 @@ from latentarm.demonstrations.npz_file import read_npz
 from latentarm.demonstrations.plausibility import check_rate, speed_warning
 from latentarm.demonstrations.robomimic import read_robomimic
 from latentarm.demonstrations.robot_names import is_so_arm
-from latentarm.demonstrations.source import SourceData
+from latentarm.demonstrations.source import SourceData, join_files
+from latentarm.demonstrations.timing import Gaps, check_one_rate, resampled, split_at_gaps
 from latentarm.demonstrations.translation import ActionChoice, Translation, translate
 from latentarm.demonstrations.validation import validate
 from latentarm.errors import UserError
@@ -33,6 +36,13 @@ FOREIGN: Final = {
     b"PAR1": "a single Parquet file; give the dataset's folder",
     b"SQLite format 3": "a SQLite database; export it to a dataset first",
 }
+
+
+FILES: Final = (".csv", ".csv.gz", ".npz", ".hdf5", ".h5", ".bag", ".mcap", ".db3")
+"""Ends of the names of the files that are read in a folder."""
+
+BAG_INFO: Final = "metadata.yaml"
+"""In the folder of a bag of ROS 2."""
 
 
 class ImportOptions(TypedDict, total=False):
@@ -50,6 +60,12 @@ class ImportOptions(TypedDict, total=False):
             toggled; open by default.
         recorded_on: the file's word for the robot, where that is another than the robot's name.
         clip_rad: positions that lie up to this far outside a joint's limits are moved to the limit.
+        leave_out: names of episodes that are not imported: what a CSV file calls them, ``demo_0`` and so on
+            in HDF5 files, the file's name in a folder of files, else their number from 0.
+        gaps: what becomes of an episode with a gap, see `Gaps`; refused by default.
+        resample_hz: the rate that every episode is brought to, see `resampled`.
+        time_unit: of a CSV file's timestamps; known from their spacing by default.
+        topic: of a bag's joints, if it has several.
     """
 
     rate_hz: float | None
@@ -61,6 +77,11 @@ class ImportOptions(TypedDict, total=False):
     gripper_starts: GripperStart | None
     recorded_on: str | None
     clip_rad: float
+    leave_out: Sequence[str]
+    gaps: Gaps
+    resample_hz: float | None
+    time_unit: TimeUnit | None
+    topic: str | None
 
 
 def import_demonstrations(
@@ -69,8 +90,8 @@ def import_demonstrations(
     """Read demonstrations from a file or folder of any known kind, and check them.
 
     The format is recognised by content: a folder with a LeRobot layout (v2.0, v2.1, v3.0) or with runs of
-    HARMONIC, a NumPy archive, an HDF5 file in robomimic's layout, or a CSV file. What was decided about its
-    columns and units is in the result's ``import_record``.
+    HARMONIC, a NumPy archive, an HDF5 file in robomimic's or ALOHA's layout, a bag of ROS 1 or ROS 2, an MCAP
+    or a CSV file, or a folder of such files. What was decided is in the result's ``import_record``.
 
     Args:
         source: the file or folder.
@@ -84,32 +105,39 @@ def import_demonstrations(
     source = Path(source)
     where = str(source)
     data = _read(source, robot, options)
+    if leave_out := options.get("leave_out", ()):
+        data = data.without(leave_out, where)
+    data = split_at_gaps(data, options.get("gaps", "refuse"), where)
     actions = options.get("actions", "known")
     if actions != "known" and any(one.action is None for one in data.demonstrations.episodes):
         raise UserError(f"{source} has no 'action' for the columns of its states.")
     if robot is None:
         demonstrations = _without_robot(data, actions, source)
-        validate(demonstrations, where)
-        check_rate(demonstrations, where)
-        return demonstrations
-    told = Translation(
-        units=options.get("units", ()),
-        joints=options.get("joints", ()),
-        gripper=options.get("gripper"),
-        gripper_starts=options.get("gripper_starts"),
-        recorded_on=options.get("recorded_on"),
-        actions=actions,
-        clip_rad=options.get("clip_rad", 0.0),
-    )
-    demonstrations = translate(data, robot, told, where)
-    validate(demonstrations, where, robot.limits)
-    check_rate(demonstrations, where)
-    warning = speed_warning(demonstrations, robot, where)
-    if not warning:
-        return demonstrations
+    else:
+        told = Translation(
+            units=options.get("units", ()),
+            joints=options.get("joints", ()),
+            gripper=options.get("gripper"),
+            gripper_starts=options.get("gripper_starts"),
+            recorded_on=options.get("recorded_on"),
+            actions=actions,
+            clip_rad=options.get("clip_rad", 0.0),
+        )
+        demonstrations = translate(data, robot, told, where)
+    names = data.episode_names
+    validate(demonstrations, where, None if robot is None else robot.limits, names)
     record = dict(demonstrations.import_record)
-    record["warning"] = "; ".join(filter(None, (record.get("warning"), warning)))
-    return replace(demonstrations, import_record=record)
+    rate_hz = options.get("resample_hz")
+    if rate_hz is None:
+        check_one_rate(demonstrations, names, where)
+    else:
+        demonstrations = resampled(demonstrations, rate_hz, names, where)
+        record["resampled"] = f"to {rate_hz:g} Hz: joints by linear interpolation, all else as recorded last"
+    check_rate(demonstrations, where)
+    if robot is not None:
+        warnings = record.get("warning"), speed_warning(demonstrations, robot, where, names)
+        record["warning"] = "; ".join(filter(None, warnings))
+    return replace(demonstrations, import_record={subject: said for subject, said in record.items() if said})
 
 
 def import_to(
@@ -143,36 +171,48 @@ def _read(source: Path, robot: Robot | None, options: ImportOptions) -> SourceDa
         raise UserError(f"The sampling rate is {rate_hz:g} Hz; it must be a finite number above zero.")
     start, size = _beginning(source)
     if start is None:
-        return _read_folder(source, options)
+        return _read_folder(source, robot, options)
     if not start:
         raise UserError(f"{source} is an empty file.")
-    for magic, what in FOREIGN.items():
-        if start.startswith(magic):
-            raise UserError(f"{source} is {what}.")
     with bounded_memory(str(source), size):
         return _read_file(source, start, robot, options)
 
 
 def _read_file(source: Path, start: bytes, robot: Robot | None, options: ImportOptions) -> SourceData:
     rate_hz, task = options.get("rate_hz"), options.get("task")
+    if start.startswith((ROS1, MCAP)) or source.suffix == ".db3":
+        return read_bag([source], options.get("topic"), rate_hz, task)
+    for magic, what in FOREIGN.items():
+        if start.startswith(magic):
+            raise UserError(f"{source} is {what}.")
     if start.startswith(b"PK"):
         return SourceData(read_npz(source, rate_hz, task), "NumPy archive", in_rad=True)
     if start.startswith(b"\x89HDF\r\n\x1a\n"):
+        if is_aloha(source):
+            return read_aloha(source, rate_hz, task)
         known = options.get("actions", "known") != "joint_velocity"
-        read = read_robomimic(source, rate_hz, task, "known" if known else "joint_velocity")
-        return SourceData(read, "robomimic HDF5", in_rad=True)
+        return read_robomimic(source, rate_hz, task, "known" if known else "joint_velocity")
     if source.suffix.lower() in {".npz", ".hdf5", ".h5"}:
         raise UserError(f"{source} does not hold what its name says; it is truncated or damaged.")
     names = () if robot is None or options.get("joints") else robot.joint_names
-    return SourceData(read_csv(source, names, rate_hz, task), "CSV", in_rad=True)
+    return read_csv(source, names, rate_hz, task, options.get("time_unit"))
 
 
-def _read_folder(source: Path, options: ImportOptions) -> SourceData:
-    rate_hz = options.get("rate_hz")
-    runs = harmonic_runs(source) if is_missing(source / INFO_PATH) else ()
-    if runs:
-        return read_harmonic(runs, rate_hz, options.get("task"))
-    return _at_rate(read_lerobot(source), rate_hz)
+def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> SourceData:
+    rate_hz, task = options.get("rate_hz"), options.get("task")
+    if not is_missing(source / INFO_PATH):
+        return _at_rate(read_lerobot(source), rate_hz)
+    if runs := harmonic_runs(source):
+        return read_harmonic(runs, rate_hz, task)
+    entries = sorted(source.iterdir())
+    files = [entry for entry in entries if entry.name.lower().endswith(FILES)]
+    if not is_missing(source / BAG_INFO):
+        with bounded_memory(str(source), sum(file.stat().st_size for file in files)):
+            return read_bag(files, options.get("topic"), rate_hz, task)
+    files += [entry for entry in entries if not is_missing(entry / BAG_INFO)]
+    if not files:
+        return read_lerobot(source)  # which says what is missing
+    return join_files({file.name: _read(file, robot, options) for file in files}, str(source))
 
 
 def _at_rate(data: SourceData, rate_hz: float | None) -> SourceData:

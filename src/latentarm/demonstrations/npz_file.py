@@ -102,6 +102,8 @@ def _read_arrays(source: Path) -> dict[str, NDArray[np.generic]]:
     try:
         with opened(source, MAX_FILE_BYTES) as stream, zipfile.ZipFile(stream) as archive:
             members = [member for member in archive.infolist() if member.filename.endswith(".npy")]
+            if not members:
+                raise UserError(f"{source} is a .zip of other files: unpack it and import what is in it.")
             if len(members) > MAX_ARRAYS:
                 raise UserError(f"{source} holds {len(members):,} arrays, over the limit of {MAX_ARRAYS}.")
             count = sum(_declared_count(archive, member, source) for member in members)

@@ -1,5 +1,6 @@
 """Detects implausible rates and speeds, and speeds beyond this arm's limits."""
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -44,13 +45,14 @@ def check_rate(demonstrations: Demonstrations, source: str) -> None:
         )
 
 
-def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str) -> str:
+def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str, names: Sequence[str]) -> str:
     """Refuse impossible speeds; report those beyond the robot's limits.
 
     Args:
         demonstrations: validated, of the robot.
         robot: that was recorded.
         source: the file, for the message.
+        names: of the episodes.
 
     Returns:
         A sentence about the joint that is furthest beyond its limit, or "" where none is.
@@ -60,12 +62,12 @@ def speed_warning(demonstrations: Demonstrations, robot: Robot, source: str) -> 
     """
     limit = robot.limits.velocity
     peak, over, count = np.zeros(robot.dof), 0, 0
-    for number, episode in enumerate(demonstrations.episodes):
+    for name, episode in zip(names, demonstrations.episodes, strict=True):
         speed = np.abs(np.diff(episode.state, axis=0)) / np.diff(episode.timestamp)[:, None]
         wild = (speed > IMPLAUSIBLE_RAD_S) & (speed > limit) & ~robot.chain.slide
         for sample, joint in np.argwhere(wild)[:1]:
             raise UserError(
-                f"{source}: episode {number}, sample {sample + 1}: joint {robot.joint_names[joint]} moves at"
+                f"{source}: episode {name}, sample {sample + 1}: joint {robot.joint_names[joint]} moves at"
                 f" {speed[sample, joint]:.0f} rad/s, which no arm can do: look for lost samples, wrong"
                 f" units (--units) or a"
                 " wrong rate (--rate-hz)."

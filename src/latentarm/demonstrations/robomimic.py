@@ -10,9 +10,6 @@ The gripper is ``obs/robot0_gripper_qpos`` (robosuite) or ``obs/gripper_states``
 gripper of the Panda has two fingers that slide from 0 to 0.04 m, the second one negative, and takes the last
 entry of an action as open (below zero) or close (above): its opening and where it is going are kept in m.
 Joints of other grippers are kept as they were recorded.
-
-The HDF5 library is not hardened: a file that was damaged on purpose may end the whole process. Even then the
-destination of an import stays empty, because it is written only after everything was read.
 """
 
 import math
@@ -24,18 +21,16 @@ from typing import Any, Final, Literal, cast
 import h5py
 import numpy as np
 
-from latentarm.demonstrations.bounds import MAX_FILE_BYTES, check_values
+from latentarm.demonstrations.bounds import check_values
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER, GRIPPER_WIDTH, going_to
+from latentarm.demonstrations.hdf5_tables import group, member, opened_hdf5, path_in, table
 from latentarm.demonstrations.info import MAX_RATE_HZ, default_joint_names
+from latentarm.demonstrations.source import SourceData
 from latentarm.errors import UserError
 from latentarm.types import Demonstrations, Episode, FloatArray
 from latentarm.untrusted.documents import parse_object
-from latentarm.untrusted.opening import check_file
 
 STATE_KEYS: Final = ("robot0_joint_pos", "joint_states")
-MAX_CHUNKS: Final = 100_000
-"""Of one table; each is looked up by itself."""
-
 SECOND_ARM_KEY: Final = "robot1_joint_pos"
 GRIPPER_KEYS: Final = ("robot0_gripper_qpos", "gripper_states")
 _PANDAS: Final = frozenset({"Panda", "MountedPanda", "OnTheGroundPanda"})
@@ -48,7 +43,7 @@ def read_robomimic(
     rate_hz: float | None = None,
     task: str | None = None,
     actions: Literal["known", "joint_velocity"] = "known",
-) -> Demonstrations:
+) -> SourceData:
     """Read demonstrations from a robomimic HDF5 file.
 
     Args:
@@ -61,31 +56,32 @@ def read_robomimic(
     Raises:
         UserError: the file is damaged, or not of this layout.
     """
-    check_file(source, MAX_FILE_BYTES)
-    try:
-        with h5py.File(source, "r") as file:
-            data = _group(file, "data", source)
-            arguments = _environment(data, source)
-            demos = (re.fullmatch(r"demo_(\d+)", str(name)) for name in data)
-            numbers = sorted(int(demo[1]) for demo in demos if demo)
-            if not numbers:
-                raise UserError(f"{source} has no demonstrations: there is no group data/demo_0.")
-            demonstrated = [_group(data, f"demo_{number}", source) for number in numbers]
-            check_values(source, "it", sum(_declared_count(demo) for demo in demonstrated))
-            rate = _rate(arguments, source) if rate_hz is None else rate_hz
-            scale = 1.0 if actions == "joint_velocity" else _velocity_scale(arguments)
-            what = task or str(arguments.get("env_name", source.stem))
-            panda = _has_panda_gripper(arguments)
-            episodes = tuple(
-                _episode(demo, index, rate, what, scale, panda, source)
-                for index, demo in enumerate(demonstrated)
+    with opened_hdf5(source) as file:
+        data = group(file, "data", source)
+        arguments = _environment(data, source)
+        demos = (re.fullmatch(r"demo_(\d+)", str(name)) for name in data)
+        names = [f"demo_{number}" for number in sorted(int(demo[1]) for demo in demos if demo)]
+        if not names:
+            raise UserError(f"{source} has no demonstrations: there is no group data/demo_0.")
+        demonstrated = [group(data, name, source) for name in names]
+        check_values(source, "it", sum(_declared_count(demo) for demo in demonstrated))
+        if "obs" not in demonstrated[0] and "states" in demonstrated[0]:
+            raise UserError(
+                f"{source} was recorded by robosuite and holds the simulator's states, not the robot's: add"
+                " observations with robomimic's script dataset_states_to_obs.py, then import its file."
             )
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError, OverflowError) as error:
-        raise UserError(f"{source} is not a whole HDF5 file; it is truncated or damaged.") from error
+        rate = _rate(arguments, source) if rate_hz is None else rate_hz
+        scale = 1.0 if actions == "joint_velocity" else _velocity_scale(arguments)
+        what = task or str(arguments.get("env_name", source.stem))
+        panda = _has_panda_gripper(arguments)
+        episodes = tuple(
+            _episode(demo, index, rate, what, scale, panda, source) for index, demo in enumerate(demonstrated)
+        )
     width = episodes[0].state.shape[1]
-    return Demonstrations(
+    demonstrations = Demonstrations(
         episodes=episodes, rate_hz=rate, joint_names=default_joint_names(width), robot=_robot(arguments)
     )
+    return SourceData(demonstrations, "robomimic HDF5", in_rad=True, names=tuple(names))
 
 
 def _robot(arguments: Mapping[str, Any]) -> str:
@@ -95,42 +91,13 @@ def _robot(arguments: Mapping[str, Any]) -> str:
     return " and ".join(dict.fromkeys(name for name in listed if isinstance(name, str)))
 
 
-def _group(parent: h5py.Group, name: str, source: Path) -> h5py.Group:
-    group = _member(parent, name)
-    if not isinstance(group, h5py.Group):
-        raise UserError(f"{source} has no group {_path(parent, name)}; it is not a robomimic file.")
-    return group
-
-
-def _member(parent: h5py.Group, name: str) -> object:
-    """A member that lies in this file itself: links could lead to any other file."""
-    return parent[name] if isinstance(parent.get(name, getlink=True), h5py.HardLink) else None
-
-
-def _path(parent: h5py.Group, name: str) -> str:
-    return f"{parent.name}/{name}".lstrip("/")
-
-
-def _array(parent: h5py.Group, name: str, source: Path) -> FloatArray | None:
-    """A plain dataset of numbers (T, k), or None where there is none."""
-    member = _member(parent, name)
-    if not isinstance(member, h5py.Dataset):
-        return None
-    if member.is_virtual or member.external or member.dtype.kind not in "fiu" or member.ndim != 2:
-        raise UserError(f"{source}: {_path(parent, name)} is not a plain table of numbers.")
-    pieces = zip(member.shape, member.chunks or member.shape, strict=True)
-    if math.prod(-(-length // max(chunk, 1)) for length, chunk in pieces) > MAX_CHUNKS:
-        raise UserError(f"{source}: {_path(parent, name)} has over {MAX_CHUNKS:,} chunks: repack the file.")
-    return np.asarray(member[()], dtype=np.float64)
-
-
 def _declared_count(demo: h5py.Group) -> int:
     """Numbers that one demonstration's tables declare, whatever lies behind them."""
-    observations = _member(demo, "obs")
-    members = [_member(demo, "actions")]
+    observations = member(demo, "obs")
+    found = [member(demo, "actions")]
     if isinstance(observations, h5py.Group):
-        members += [_member(observations, key) for key in (*STATE_KEYS, SECOND_ARM_KEY, *GRIPPER_KEYS)]
-    return sum(math.prod(member.shape or ()) for member in members if isinstance(member, h5py.Dataset))
+        found += [member(observations, key) for key in (*STATE_KEYS, SECOND_ARM_KEY, *GRIPPER_KEYS)]
+    return sum(math.prod(one.shape or ()) for one in found if isinstance(one, h5py.Dataset))
 
 
 def _environment(data: h5py.Group, source: Path) -> Mapping[str, Any]:
@@ -180,14 +147,14 @@ def _has_panda_gripper(arguments: Mapping[str, Any]) -> bool:
 
 def _gripper(demo: h5py.Group, panda: bool, source: Path) -> dict[str, FloatArray]:
     """Features of one arm's gripper; none where nothing was recorded."""
-    found = (_array(_group(demo, "obs", source), key, source) for key in GRIPPER_KEYS)
+    found = (table(group(demo, "obs", source), key, source) for key in GRIPPER_KEYS)
     joints = next((values for values in found if values is not None), None)
     if joints is None:
         return {}
     if not panda or joints.shape[1] != 2:
         return {GRIPPER: joints}
     width_m = np.maximum(joints[:, 0] - joints[:, 1], 0.0)
-    recorded = _array(demo, "actions", source)
+    recorded = table(demo, "actions", source)
     if recorded is None or len(recorded) != len(width_m):
         return {GRIPPER_WIDTH: width_m[:, None]}
     asked = recorded[:, -1]
@@ -200,12 +167,14 @@ def _gripper(demo: h5py.Group, panda: bool, source: Path) -> dict[str, FloatArra
 def _episode(
     demo: h5py.Group, index: int, rate_hz: float, task: str, scale: float | None, panda: bool, source: Path
 ) -> Episode:
-    observations = _group(demo, "obs", source)
-    found = (_array(observations, key, source) for key in STATE_KEYS)
+    observations = group(demo, "obs", source)
+    found = (table(observations, key, source) for key in STATE_KEYS)
     state = next((values for values in found if values is not None), None)
     if state is None:
-        raise UserError(f"{source}: {_path(demo, 'obs')} has no joint positions ({' or '.join(STATE_KEYS)}).")
-    second = _array(observations, SECOND_ARM_KEY, source)
+        raise UserError(
+            f"{source}: {path_in(demo, 'obs')} has no joint positions ({' or '.join(STATE_KEYS)})."
+        )
+    second = table(observations, SECOND_ARM_KEY, source)
     if second is not None:
         if len(second) != len(state):
             raise UserError(
@@ -214,7 +183,7 @@ def _episode(
         state = np.concatenate([state, second], axis=1)
     action = None
     if scale is not None and second is None:
-        recorded = _array(demo, "actions", source)
+        recorded = table(demo, "actions", source)
         action = None if recorded is None else recorded[:, : state.shape[1]] * scale
     return Episode(
         state=state,

@@ -19,13 +19,12 @@ from latentarm.demonstrations.gripper import (
 from latentarm.demonstrations.robot_names import is_so_arm, may_be
 from latentarm.demonstrations.source import SourceData
 from latentarm.demonstrations.toggles import widths_from_toggles
-from latentarm.demonstrations.units import Conversion, Unit, conversion, parse_units
+from latentarm.demonstrations.turns import unwrapped
+from latentarm.demonstrations.unit_evidence import check_degrees, radians_after_all
+from latentarm.demonstrations.units import TARGET_POSITION, Conversion, Unit, conversion, parse_units
 from latentarm.errors import UserError
 from latentarm.robots.robot import Robot
-from latentarm.types import Demonstrations, Episode, FloatArray
-
-TARGET_POSITION: Final = "action.target_position"
-"""Joint positions that were commanded, rad."""
+from latentarm.types import Demonstrations, Episode
 
 PER_JOINT: Final = ("observation.velocity", "observation.effort", "action.human", "action.assist")
 LEROBOT_SUFFIX: Final = ".pos"
@@ -34,9 +33,6 @@ LEROBOT_SUFFIX: Final = ".pos"
 _OLD_PREFIX: Final = "main_"
 _EARLIER: Final = "before: "
 """Marks what an earlier import decided, in a dataset of ours that is imported again."""
-
-_MOST_RAD: Final = 2.0 * np.pi
-_READABLE: Final = 1e6
 
 ActionChoice = Literal["known", "joint_velocity", "joint_position"]
 
@@ -104,6 +100,7 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
     found = None if columns.gripper is None else _gripper_feature(names[columns.gripper], motors, robot)
     gripper, per_unit = found or ("", 1.0)
     episodes = tuple(_episode(one, columns, turned, kind, gripper, per_unit) for one in given.episodes)
+    episodes, turns = unwrapped(episodes, robot)
     episodes, clipped = _clipped(episodes, robot, told.clip_rad)
     episodes, opening = widths_from_toggles(episodes, robot.gripper, told.gripper_starts, source)
     record = {
@@ -115,15 +112,15 @@ def translate(data: SourceData, robot: Robot, told: Translation, source: str) ->
         "columns left out": ", ".join(names[index] for index in columns.dropped) or "none",
         "actions": _action_text(given.episodes[0], kind) if given.episodes else "none",
     }
-    if clipped:
-        record["clipped"] = clipped
+    record |= {subject: said for subject, said in (("turns", turns), ("clipped", clipped)) if said}
+    record |= data.record
     record |= {
         subject if subject.startswith(_EARLIER) else f"{_EARLIER}{subject}": decision
         for subject, decision in given.import_record.items()
     }
-    warning = _radians_after_all(given, columns, units, robot)
+    warning = radians_after_all(given, columns.joints, units, robot)
     if warning:
-        record["warning"] = warning
+        record["warning"] = "; ".join(filter(None, (record.get("warning"), warning)))
     return replace(
         given,
         episodes=episodes,
@@ -163,7 +160,7 @@ def _units(
         how = "as told"
     else:
         how = "said by the file or its layout" if data.in_rad else "assumed: the file does not say"
-    _check_degrees(data.demonstrations, columns, units, robot, source)
+    check_degrees(data.demonstrations, columns.joints, units, robot, source)
     named = (
         units[0]
         if len(set(units)) == 1
@@ -175,51 +172,6 @@ def _units(
         if is_so_arm(data.demonstrations.robot):
             text += ", and a full turn for wrist_roll, as LeRobot calibrates it"
     return units, text
-
-
-def _positions(demonstrations: Demonstrations, columns: Columns) -> FloatArray | None:
-    """(N, n), as recorded; None where they are not readable as numbers, which validation refuses later."""
-    states = [one.state for one in demonstrations.episodes if one.state.ndim == 2]
-    if not states:
-        return None
-    values = np.concatenate(states)[:, columns.joints]
-    readable = values.size > 0 and bool(np.all(np.abs(values) < _READABLE))
-    return values if readable else None
-
-
-def _check_degrees(
-    demonstrations: Demonstrations, columns: Columns, units: Sequence[Unit], robot: Robot, source: str
-) -> None:
-    """Refuse degrees that are taken for radians."""
-    values = _positions(demonstrations, columns)
-    hinges = np.array([unit == "rad" for unit in units]) & ~robot.chain.slide
-    if values is None or not hinges.any():
-        return
-    outside = robot.limits.violation(values)[:, hinges].max()
-    in_degrees = robot.limits.violation(np.where(hinges, np.deg2rad(values), values))[:, hinges].max()
-    if outside > 1.0 and in_degrees < 0.2:
-        raise UserError(
-            f"{source}: positions go up to {np.abs(values[:, hinges]).max():.4g}, far outside the"
-            f" joint limits in rad and"
-            " within them in degrees: pass --units deg."
-        )
-
-
-def _radians_after_all(
-    demonstrations: Demonstrations, columns: Columns, units: Sequence[Unit], robot: Robot
-) -> str:
-    """A warning where positions that are said to be in degrees look like radians; "" elsewhere."""
-    values = _positions(demonstrations, columns)
-    if values is None or any(unit == "rad" for unit in units):
-        return ""
-    largest = float(np.abs(values).max())
-    if (
-        largest < _MOST_RAD
-        and robot.limits.violation(values).max() < 0.2
-        and np.ptp(values, axis=0).max() > 0.1
-    ):
-        return f"no position is beyond {largest:.3g}: they look like rad, not {units[0]}"
-    return ""
 
 
 def _gripper_feature(column: str, motors: bool, robot: Robot) -> tuple[str, float]:

@@ -3,7 +3,7 @@
 Episodes and samples are counted from zero, as in the dataset's ``episode_index`` and ``frame_index``.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import astuple
 from typing import Final
 
@@ -35,13 +35,19 @@ RESERVED_FEATURES: Final = frozenset(
 )
 
 
-def validate(demonstrations: Demonstrations, source: str, limits: JointLimits | None = None) -> None:
+def validate(
+    demonstrations: Demonstrations,
+    source: str,
+    limits: JointLimits | None = None,
+    episode_names: Sequence[str] = (),
+) -> None:
     """Check everything about demonstrations that the rest of the package relies on.
 
     Args:
         demonstrations: what to check.
         source: the file or folder it came from, for the message.
         limits: the robot's joint limits; states may pass them by `LIMIT_TOLERANCE_RAD`.
+        episode_names: what messages call the episodes; their numbers by default.
 
     Raises:
         UserError: one sentence naming the source, the episode and the sample.
@@ -66,8 +72,9 @@ def validate(demonstrations: Demonstrations, source: str, limits: JointLimits | 
     if demonstrations.objects:
         check_things(demonstrations.objects, first, source)
     for index, episode in enumerate(demonstrations.episodes):
-        validate_episode(episode, index, names, source, limits)
-        check_same_features(first, episode, index, source)
+        called = episode_names[index] if episode_names else index
+        validate_episode(episode, called, names, source, limits)
+        check_same_features(first, episode, called, source)
     rate = demonstrations.rate_hz
     if not (np.isfinite(rate) and rate > 0):
         raise UserError(f"{source}: the sampling rate is {rate:g} Hz; it must be a finite number above zero.")
@@ -75,7 +82,7 @@ def validate(demonstrations: Demonstrations, source: str, limits: JointLimits | 
 
 def validate_episode(
     episode: Episode,
-    index: int,
+    index: int | str,
     joint_names: tuple[str, ...],
     source: str,
     limits: JointLimits | None = None,
@@ -106,7 +113,7 @@ def validate_episode(
         _check_limits(episode.state, joint_names, limits, where)
 
 
-def check_same_features(first: Episode, other: Episode, index: int, source: str) -> None:
+def check_same_features(first: Episode, other: Episode, index: int | str, source: str) -> None:
     """Check that two episodes record the same things: a dataset has one set of features.
 
     Raises:
@@ -149,7 +156,9 @@ def _check_shapes(episode: Episode, dof: int, where: str) -> None:
     if samples == 0:
         raise UserError(f"{where} is empty.")
     if samples == 1:
-        raise UserError(f"{where} has a single sample; a motion needs at least two.")
+        raise UserError(
+            f"{where} has a single sample; a motion needs at least two: import the rest with --leave-out."
+        )
     if width != dof:
         raise UserError(f"{where}: its states have {width} joints where {dof} are expected.")
     if episode.timestamp.shape != (samples,):

@@ -49,6 +49,9 @@ class Defaults:
 
 HINGE = Defaults(range=2.0 * np.pi, velocity=1.0, acceleration=10.0, jerk=1000.0)
 SLIDE = Defaults(range=1.0, velocity=0.25, acceleration=2.5, jerk=250.0)
+LONGEST_LINK_M = 5.0
+"""A link of an arm is shorter; one of 5 mm, taken for m, is not."""
+
 TOOL_SPEED_LIMIT = 1.0
 """Assumed largest speed of the tool, m/s."""
 
@@ -96,6 +99,7 @@ def _loaded(path: Path, urdf: Urdf | None, end_effector: str | None) -> Robot:
         reading = read(model, [tool])
         if reading.chain.dof > MOST_JOINTS:
             raise UserError(f"it has {reading.chain.dof} joints, but an arm may have at most {MOST_JOINTS}.")
+        _check_meshes(model)
         limits = _limits(model, reading, {} if urdf is None else urdf.velocity)
         home = _home(model, reading, limits)
         whole_path = str(path.resolve())
@@ -104,6 +108,26 @@ def _loaded(path: Path, urdf: Urdf | None, end_effector: str | None) -> Robot:
         raise AmbiguousEndEffectorError(f"{path}: {error.why}", error.choices) from error
     except UserError as error:
         raise UserError(f"{path}: {error}") from error
+
+
+def _check_meshes(model: mujoco.MjModel) -> None:
+    """Refuse links as long as no arm has them: their meshes are in mm.
+
+    Raises:
+        UserError: naming the mesh and its link.
+    """
+    for geom in np.flatnonzero(
+        (model.geom_type == mujoco.mjtGeom.mjGEOM_MESH) & (model.body_weldid[model.geom_bodyid] > 0)
+    ):
+        mesh = model.mesh(int(model.geom_dataid[geom]))
+        points = model.mesh_vert[int(mesh.vertadr[0]) :][: int(mesh.vertnum[0])]
+        length_m = float(np.ptp(points, axis=0).max())
+        if length_m > LONGEST_LINK_M:
+            link = model.body(int(model.geom_bodyid[geom])).name
+            raise UserError(
+                f"the mesh {mesh.name} of link {link} is {length_m:.4g} m long: if its file is in mm, give"
+                ' it scale="0.001 0.001 0.001".'
+            )
 
 
 def _as_mjcf(spec: mujoco.MjSpec, path: Path) -> str:

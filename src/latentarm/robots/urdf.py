@@ -43,10 +43,14 @@ def prepare_urdf(path: Path, root: Xml.Element) -> Urdf:
 
     Raises:
         UserError: the file still contains xacro, a collision mesh is missing or in a format that
-            MuJoCo cannot read, or a velocity limit is no number.
+            MuJoCo cannot read, a velocity limit is no number, or a joint's name occurs twice.
     """
     if any(element.tag.startswith("xacro:") for element in root.iter()):
         raise UserError(f"{path} is a xacro file: expand it first, with `xacro {path.name} > robot.urdf`.")
+    names = [joint.get("name") for joint in root.findall("joint")]
+    for name in names:
+        if names.count(name) > 1:  # MuJoCo would silently name the second one itself
+            raise UserError(f"{path} has two joints named {name!r}: give each a name of its own.")
     mesh_bytes = 0
     for link in root.findall("link"):
         for visual in link.findall("visual"):

@@ -97,10 +97,12 @@ class Training:
     Attributes:
         rows: the normalised loss on the validation episodes: mean and SD over seeds.
         episodes: of the dataset.
+        import_warnings: what importing the dataset warned of.
     """
 
     rows: list[Row]
     episodes: int
+    import_warnings: list[str]
 
 
 def train_run(config: TrainConfig, report: Report | None = None) -> Training:
@@ -137,7 +139,7 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
             checkpoint=checkpoint,
             report=report,
         )
-    said = [str(warning.message) for warning in caught]
+    said = [*demonstrations.warnings, *(str(warning.message) for warning in caught)]
     run = Run(
         folder=config.out,
         demonstrations=config.demonstrations,
@@ -166,7 +168,7 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
     loss = model.validation_loss_
     spread = float(loss.std(ddof=1)) if len(loss) > 1 else None
     row = Row("train", "validation_loss", "1", float(loss.mean()), spread, len(loss), model=config.model)
-    return Training([row], len(demonstrations.episodes))
+    return Training([row], len(demonstrations.episodes), demonstrations.warnings)
 
 
 def _model(config: TrainConfig) -> LatentActionModel:

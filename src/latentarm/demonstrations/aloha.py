@@ -1,0 +1,64 @@
+"""Importing HDF5 files as ALOHA and ACT record them: one file is one episode of two arms of six joints.
+
+``observations/qpos`` has each arm's joints, rad, and its gripper, and ``action`` where they are to go. The
+files do not say the sampling rate; ALOHA records at 50 Hz.
+"""
+
+import math
+from pathlib import Path
+from typing import Final
+
+import h5py
+import numpy as np
+
+from latentarm.demonstrations.bounds import check_values
+from latentarm.demonstrations.hdf5_tables import group, member, opened_hdf5, table
+from latentarm.demonstrations.info import default_joint_names
+from latentarm.demonstrations.source import SourceData
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations, Episode
+
+_ARM: Final = ("waist", "shoulder", "elbow", "forearm_roll", "wrist_angle", "wrist_rotate", "gripper")
+COLUMNS: Final = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in _ARM)
+"""What ALOHA's own ``qpos`` holds."""
+
+
+def is_aloha(source: Path) -> bool:
+    """Whether an HDF5 file is in this layout.
+
+    Raises:
+        UserError: it cannot be read.
+    """
+    with opened_hdf5(source) as file:
+        observations = member(file, "observations")
+        return isinstance(observations, h5py.Group) and "qpos" in observations
+
+
+def read_aloha(source: Path, rate_hz: float | None = None, task: str | None = None) -> SourceData:
+    """Read one episode.
+
+    Args:
+        source: the file.
+        rate_hz: sampling rate.
+        task: what was done; the folder's name by default.
+
+    Raises:
+        UserError: no rate is given, or the file is damaged.
+    """
+    if rate_hz is None:
+        raise UserError(f"{source} is of ALOHA and does not say its rate: pass --rate-hz 50, ALOHA's own.")
+    with opened_hdf5(source) as file:
+        observations = group(file, "observations", source)
+        tables = [member(observations, "qpos"), member(file, "action")]
+        check_values(
+            source, "it", sum(math.prod(one.shape) for one in tables if isinstance(one, h5py.Dataset))
+        )
+        state, action = table(observations, "qpos", source), table(file, "action", source)
+    if state is None:
+        raise UserError(f"{source}: observations/qpos is no table of joint positions.")
+    episode = Episode(
+        state, np.arange(len(state)) / rate_hz, action, source.parent.name if task is None else task
+    )
+    width = state.shape[1]
+    names = COLUMNS if width == len(COLUMNS) else default_joint_names(width)
+    return SourceData(Demonstrations((episode,), rate_hz, names), "ALOHA HDF5", True, "position")

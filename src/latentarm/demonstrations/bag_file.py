@@ -1,0 +1,124 @@
+"""Importing ROS 1 bags, ROS 2 bags (SQLite and MCAP) and MCAP files: each is one episode.
+
+Only topics of ``sensor_msgs/JointState`` are read, by the definition of that message that comes with
+`rosbags`: definitions in the file would be made into code. Only the file itself is opened: what a bag's
+``metadata.yaml`` names is not looked at.
+"""
+
+import importlib
+import sqlite3
+import struct
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from latentarm.demonstrations.bounds import MAX_COLUMNS, MAX_FILE_BYTES, check_values
+from latentarm.demonstrations.source import SourceData
+from latentarm.demonstrations.timing import typical_rate_hz
+from latentarm.errors import UserError
+from latentarm.types import Demonstrations, Episode, FloatArray
+from latentarm.untrusted.opening import check_file
+
+ROS1: Final = b"#ROSBAG V"
+MCAP: Final = b"\x89MCAP"
+"""How these files begin."""
+
+JOINT_STATE: Final = "sensor_msgs/msg/JointState"
+
+_DAMAGE: Final = (
+    ArithmeticError,
+    AssertionError,
+    EOFError,
+    LookupError,
+    OSError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+    sqlite3.Error,
+    struct.error,
+)
+
+
+def read_bag(
+    files: Sequence[Path], topic: str | None = None, rate_hz: float | None = None, task: str | None = None
+) -> SourceData:
+    """Read the joints' positions of one recording.
+
+    A topic may tell of some joints in some messages and of others in others, as where arm and gripper have
+    drivers of their own. Every message of the largest kind is a sample, with what was said last of the rest.
+
+    Args:
+        files: of the recording, in their order.
+        topic: where the joints are told, if there are several such topics.
+        rate_hz: nominal sampling rate; by default that of the timestamps.
+        task: what was done; the file's name by default.
+
+    Raises:
+        UserError: `rosbags` is not installed, the topic must be named, or a file is damaged.
+    """
+    source = files[0]
+    messages = [message for file in files for message in _messages(file, topic)]
+    names = list(dict.fromkeys(name for _, positions in messages for name in positions))
+    if not names or len(names) > MAX_COLUMNS:
+        raise UserError(f"{source} tells of {len(names)} joints; there must be 1 to {MAX_COLUMNS:,}.")
+    kinds = Counter(frozenset(positions) for _, positions in messages)
+    main = max(kinds, key=lambda kind: (len(kind), kinds[kind]))
+    latest = dict[str, float]()
+    times, rows = list[float](), list[list[float]]()
+    for time_s, positions in messages:
+        latest |= positions
+        if positions.keys() == main and len(latest) == len(names):
+            times.append(time_s)
+            rows.append([latest[name] for name in names])
+            check_values(source, "its topic", len(rows) * len(names))
+    if not rows:
+        raise UserError(f"{source} never tells of all of {', '.join(names[:20])}.")
+    stamps: FloatArray = np.array(times)
+    episode = Episode(np.array(rows), stamps - stamps[0], task=source.stem if task is None else task)
+    rate = typical_rate_hz([episode]) if rate_hz is None else rate_hz
+    return SourceData(Demonstrations((episode,), rate, tuple(names)), "bag of ROS", in_rad=True)
+
+
+def _messages(source: Path, topic: str | None) -> list[tuple[float, dict[str, float]]]:
+    """Times, s, and positions by joint."""
+    check_file(source, MAX_FILE_BYTES)
+    try:
+        rosbag1, rosbag2, serde, typesys = (
+            importlib.import_module(f"rosbags.{name}") for name in ("rosbag1", "rosbag2", "serde", "typesys")
+        )
+    except ModuleNotFoundError as error:
+        raise UserError(f"{source} is a bag of ROS: pip install 'latentarm[bags]' to read it.") from error
+    first = source.suffix == ".bag"
+    try:
+        with (rosbag1.Reader if first else rosbag2.Reader)(source) as reader:
+            types = typesys.get_typestore(getattr(typesys.Stores, "ROS1_NOETIC" if first else "ROS2_HUMBLE"))
+            read = types.deserialize_ros1 if first else types.deserialize_cdr
+            connections = _connections(reader.connections, topic, source)
+            return [
+                _positions(read(raw, JOINT_STATE), received_ns, source)
+                for _, received_ns, raw in reader.messages(connections)
+            ]
+    except (*_DAMAGE, rosbag1.ReaderError, rosbag2.ReaderError, serde.SerdeError) as error:
+        raise UserError(f"{source} is not a whole bag of ROS; it is truncated or damaged.") from error
+
+
+def _connections(connections: Sequence[Any], topic: str | None, source: Path) -> list[Any]:
+    """Those of the one topic of joint states that is meant."""
+    topics = sorted({one.topic for one in connections if one.msgtype == JOINT_STATE})
+    if (topic is not None and topic not in topics) or (len(topics) != 1 and topic is None):
+        told = f"has these topics of {JOINT_STATE}: {', '.join(topics) or 'none'}"
+        raise UserError(f"{source} {told}" + ("; choose one with --topic." if topics else "."))
+    return [one for one in connections if one.topic == (topic or topics[0])]
+
+
+def _positions(message: Any, received_ns: int, source: Path) -> tuple[float, dict[str, float]]:
+    names, positions = list(message.name), message.position.tolist()
+    if len(names) != len(positions) or len(set(names)) != len(names):
+        raise UserError(
+            f"{source}: a message has {len(positions)} positions for the joints {', '.join(names)}."
+        )
+    stamp_ns = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+    return (stamp_ns or received_ns) * 1e-9, dict(zip(names, positions, strict=True))

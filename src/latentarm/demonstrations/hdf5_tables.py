@@ -1,0 +1,76 @@
+"""Tables in HDF5 files that others wrote: plain ones of this file, within bounds.
+
+The HDF5 library is not hardened: a file that was damaged on purpose may end the whole process. Even then the
+destination of an import stays empty, because it is written only after everything was read.
+"""
+
+import math
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Final
+
+import h5py
+import numpy as np
+
+from latentarm.demonstrations.bounds import MAX_FILE_BYTES
+from latentarm.errors import UserError
+from latentarm.types import FloatArray
+from latentarm.untrusted.opening import check_file
+
+MAX_CHUNKS: Final = 100_000
+"""Of one table; each is looked up by itself."""
+
+
+@contextmanager
+def opened_hdf5(source: Path) -> Generator[h5py.File]:
+    """Open a file.
+
+    Raises:
+        UserError: it is missing, too large or damaged; also for what the library raises within.
+    """
+    check_file(source, MAX_FILE_BYTES)
+    try:
+        with h5py.File(source, "r") as file:
+            yield file
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, OverflowError) as error:
+        raise UserError(f"{source} is not a whole HDF5 file; it is truncated or damaged.") from error
+
+
+def group(parent: h5py.Group, name: str, source: Path) -> h5py.Group:
+    """A group of this file.
+
+    Raises:
+        UserError: there is none of that name.
+    """
+    found = member(parent, name)
+    if not isinstance(found, h5py.Group):
+        raise UserError(f"{source} has no group {path_in(parent, name)}.")
+    return found
+
+
+def member(parent: h5py.Group, name: str) -> object:
+    """A member that lies in this file itself: links could lead to any other file."""
+    return parent[name] if isinstance(parent.get(name, getlink=True), h5py.HardLink) else None
+
+
+def path_in(parent: h5py.Group, name: str) -> str:
+    """Where a member lies, for messages."""
+    return f"{parent.name}/{name}".lstrip("/")
+
+
+def table(parent: h5py.Group, name: str, source: Path) -> FloatArray | None:
+    """A plain dataset of numbers (T, k), or None where there is none.
+
+    Raises:
+        UserError: it is no plain table, or in too many pieces.
+    """
+    found = member(parent, name)
+    if not isinstance(found, h5py.Dataset):
+        return None
+    if found.is_virtual or found.external or found.dtype.kind not in "fiu" or found.ndim != 2:
+        raise UserError(f"{source}: {path_in(parent, name)} is not a plain table of numbers.")
+    pieces = zip(found.shape, found.chunks or found.shape, strict=True)
+    if math.prod(-(-length // max(chunk, 1)) for length, chunk in pieces) > MAX_CHUNKS:
+        raise UserError(f"{source}: {path_in(parent, name)} has over {MAX_CHUNKS:,} chunks: repack the file.")
+    return np.asarray(found[()], dtype=np.float64)
