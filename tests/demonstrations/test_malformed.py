@@ -1,5 +1,6 @@
 """Every kind of bad file is refused with its own sentence, and leaves nothing behind."""
 
+import gzip
 import json
 import pickle
 import shutil
@@ -17,6 +18,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bags import joint_state_bag
 from latentarm.demonstrations.dataset import read_dataset, write_dataset
 from latentarm.demonstrations.importing import import_demonstrations, import_to
 from latentarm.errors import UserError
@@ -133,6 +135,38 @@ def linked(file: h5py.File) -> None:
     file["data/demo_0/obs"]["robot0_joint_pos"] = h5py.ExternalLink("/etc/passwd", "/anything")
 
 
+def add_aloha(file: h5py.File, states: np.ndarray) -> None:
+    file["observations/qpos"] = states
+
+
+def simulated(file: h5py.File) -> None:
+    file["data/demo_1/states"] = np.zeros((9, 32))
+
+
+def zipped(folder: Path) -> Path:
+    with zipfile.ZipFile(folder / "source.zip", "w") as archive:
+        archive.writestr("a.csv", "timestamp,q0")
+    return folder / "source.zip"
+
+
+def bomb(folder: Path) -> Path:
+    """Lines that fill memory once unpacked, in 300 kB."""
+    with gzip.open(folder / "source.csv.gz", "wb", compresslevel=1) as packed:
+        packed.write(b"timestamp,q0\n")
+        for _ in range(260):
+            packed.write((b"0," + b" " * 1021 + b"1\n") * 1024)
+    return folder / "source.csv.gz"
+
+
+def cut_bag(name: str) -> Callable[[Path], Path]:
+    def make(folder: Path) -> Path:
+        path = joint_state_bag(folder / name, ["a", "b"], [[0.1, 0.2]] * 30)
+        path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
+        return path
+
+    return make
+
+
 def sparse(file: h5py.File) -> None:
     add_demo(file, None)
     file["data/demo_0/obs"].create_dataset("robot0_joint_pos", (1 << 40, 7), "f8", chunks=(64, 7))
@@ -228,6 +262,25 @@ MALFORMED: dict[str, tuple[Callable[[Path], Path], str]] = {
     "lying npz": (lying_npz("(1000000000000, 7)"), "declares the shape .* does not hold as much"),
     "negative shape": (lying_npz("(-10, -1)"), "declares the shape .* does not hold as much"),
     "huge npz": (huge_npz, "over the limit"),
+    "zip": (zipped, "is a .zip of other files: unpack it"),
+    "packed too well": (bomb, "holds more than 268,435,456 characters"),
+    "cut gzip": (
+        raw("source.csv.gz", gzip.compress(b"timestamp,q0\n0,1\n" * 99)[:-30]),
+        "not a readable CSV",
+    ),
+    "ALOHA without a rate": (hdf5(lambda file: add_aloha(file, np.zeros((9, 14)))), "pass --rate-hz 50"),
+    "only the simulator's states": (hdf5(simulated), "dataset_states_to_obs"),
+    "cut bag": (cut_bag("a.bag"), "is not a whole bag of ROS"),
+    "cut MCAP": (cut_bag("a.mcap"), "is not a whole bag of ROS"),
+    "not a bag": (raw("source.db3", b"SQLite format 3\0" + bytes(99)), "is not a whole bag of ROS"),
+    "a gap": (
+        npz(timestamp=TIMES + (np.arange(N) == 4) * 126),
+        "episode 0 has 1 gap.* of 126.1 s after 0.3 s",
+    ),
+    "two rates": (
+        npz(timestamp=TIMES * np.where(np.arange(N) < 5, 0.2, 1)),
+        "1 is sampled at 10 Hz and episode 0 at 50",
+    ),
     "renamed text": (raw("source.npz", b"not an archive"), "does not hold what its name says"),
     "pickle": (raw("source.pkl", pickle.dumps([1, 2])), "a pickle, which is never opened"),
     "bare array": (raw("source.npy", b"\x93NUMPY\x01\x00"), "a single array"),
@@ -235,7 +288,7 @@ MALFORMED: dict[str, tuple[Callable[[Path], Path], str]] = {
     "empty file": (raw("source.csv", b""), "an empty file"),
     "binary": (raw("source.bin", bytes(range(160, 256))), "not a readable CSV"),
     "missing file": (lambda folder: folder / "source.npz", "No such file"),
-    "no columns": (csv("a,b,c", "1,2,3"), "has no column 'episode'"),
+    "no columns": (csv("a,b,c", "1,2,3"), "has no column 'timestamp'"),
     "no joints": (csv("episode,timestamp", "0,0.1"), "has no column of joint positions"),
     "double column": (csv(f"{HEADER},q0"), "column 'q0' occurs twice"),
     "no lines": (csv(HEADER), "has no line after its header"),

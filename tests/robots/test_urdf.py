@@ -100,3 +100,31 @@ def test_what_cannot_be_used_is_said_in_one_sentence(written, text, sentence):
         load_model_file(path)
     assert str(path) in str(raised.value)
     assert "\n" not in str(raised.value)
+
+
+def test_a_joint_name_that_occurs_twice_is_said(written):
+    twice = urdf().replace('name="wrist" type="fixed"', 'name="shoulder" type="fixed"')
+    with pytest.raises(UserError, match="has two joints named 'shoulder': give each a name of its own"):
+        load_model_file(written(twice, "arm.urdf"))
+    joint = '<joint name="j" axis="0 0 1"/><geom size=".1"/>'
+    mjcf = (
+        f"<mujoco><worldbody><body>{joint}<body pos='0 0 1'>{joint}<site/></body></body></worldbody></mujoco>"
+    )
+    with pytest.raises(UserError, match="repeated name 'j' in joint"):
+        load_model_file(written(mjcf, "arm.xml"))
+
+
+TETRAHEDRON = "v 0 0 0\nv {0} 0 0\nv 0 {0} 0\nv 0 0 {0}\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+
+
+@pytest.mark.parametrize("link_m", [0.02, 0.4])
+def test_a_mesh_in_mm_is_said_and_its_scale_advised(written, tmp_path, link_m):
+    (tmp_path / "link.obj").write_text(TETRAHEDRON.format(1000 * link_m))
+    path = written(urdf(mesh("link.obj")), "arm.urdf")
+    with pytest.raises(
+        UserError, match=rf"link of link upper is {1000 * link_m:g} m long.*scale=\"0.001 0.001"
+    ):
+        load_model_file(path)
+    scaled = urdf('<mesh filename="link.obj" scale="0.001 0.001 0.001"/>')
+    robot = load_model_file(written(scaled, "arm.urdf"))
+    assert robot.capsules.radius.max() < link_m

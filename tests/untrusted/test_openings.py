@@ -28,6 +28,8 @@ PARSES = {
 
 CHECKED = {
     "h5py.File",
+    "rosbag1.Reader",
+    "rosbag2.Reader",
     "safe_open",
     "sqlite3.connect",
     "mujoco.MjSpec.from_file",

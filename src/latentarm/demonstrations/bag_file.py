@@ -5,8 +5,6 @@ Only topics of ``sensor_msgs/JointState`` are read, by the definition of that me
 ``metadata.yaml`` names is not looked at.
 """
 
-import importlib
-import sqlite3
 import struct
 from collections import Counter
 from collections.abc import Sequence
@@ -28,18 +26,8 @@ MCAP: Final = b"\x89MCAP"
 
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
 
-_DAMAGE: Final = (
-    ArithmeticError,
-    AssertionError,
-    EOFError,
-    LookupError,
-    OSError,
-    RuntimeError,
-    TypeError,
-    ValueError,
-    sqlite3.Error,
-    struct.error,
-)
+_DAMAGE: Final = (ArithmeticError, AssertionError, EOFError, LookupError, OSError, RuntimeError, struct.error)
+"""What reading damaged files raises, besides `TypeError`, `ValueError` and the errors of the libraries."""
 
 
 def read_bag(
@@ -86,22 +74,31 @@ def _messages(source: Path, topic: str | None) -> list[tuple[float, dict[str, fl
     """Times, s, and positions by joint."""
     check_file(source, MAX_FILE_BYTES)
     try:
-        rosbag1, rosbag2, serde, typesys = (
-            importlib.import_module(f"rosbags.{name}") for name in ("rosbag1", "rosbag2", "serde", "typesys")
-        )
+        import apsw
+        from rosbags import rosbag1, rosbag2, serde, typesys
+        from rosbags.rosbag2.storage_mcap import zstd
     except ModuleNotFoundError as error:
         raise UserError(f"{source} is a bag of ROS: pip install 'latentarm[bags]' to read it.") from error
     first = source.suffix == ".bag"
+    store = typesys.Stores.ROS1_NOETIC if first else typesys.Stores.ROS2_HUMBLE
+    damage = (
+        *_DAMAGE,
+        rosbag1.ReaderError,
+        rosbag2.ReaderError,
+        serde.SerdeError,
+        apsw.Error,
+        zstd.ZstdError,
+    )
     try:
-        with (rosbag1.Reader if first else rosbag2.Reader)(source) as reader:
-            types = typesys.get_typestore(getattr(typesys.Stores, "ROS1_NOETIC" if first else "ROS2_HUMBLE"))
+        with rosbag1.Reader(source) if first else rosbag2.Reader(source) as reader:
+            types = typesys.get_typestore(store)
             read = types.deserialize_ros1 if first else types.deserialize_cdr
-            connections = _connections(reader.connections, topic, source)
+            chosen = _connections(reader.connections, topic, source)
+            messages = reader.messages(chosen)
             return [
-                _positions(read(raw, JOINT_STATE), received_ns, source)
-                for _, received_ns, raw in reader.messages(connections)
+                _positions(read(raw, JOINT_STATE), received_ns, source) for _, received_ns, raw in messages
             ]
-    except (*_DAMAGE, rosbag1.ReaderError, rosbag2.ReaderError, serde.SerdeError) as error:
+    except damage as error:
         raise UserError(f"{source} is not a whole bag of ROS; it is truncated or damaged.") from error
 
 

@@ -206,7 +206,7 @@ def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> S
         return read_harmonic(runs, rate_hz, task)
     entries = sorted(source.iterdir())
     files = [entry for entry in entries if entry.name.lower().endswith(FILES)]
-    if not is_missing(source / BAG_INFO):
+    if files and not is_missing(source / BAG_INFO):
         with bounded_memory(str(source), sum(file.stat().st_size for file in files)):
             return read_bag(files, options.get("topic"), rate_hz, task)
     files += [entry for entry in entries if not is_missing(entry / BAG_INFO)]

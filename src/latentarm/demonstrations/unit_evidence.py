@@ -46,7 +46,7 @@ def check_degrees(
     many = 4 * np.count_nonzero(hinges & (furthest > TURN)) >= np.count_nonzero(hinges)
     if not many or in_degrees[stops].max(initial=0.0) >= 0.2:
         return
-    for joint in np.flatnonzero(outside & (far | fast))[:1]:
+    for joint in [*np.flatnonzero(outside & far), *np.flatnonzero(outside & fast)][:1]:
         why = (
             f"goes up to {furthest[joint]:.4g}, more than two turns, though it has stops"
             if far[joint]
