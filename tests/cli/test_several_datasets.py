@@ -13,9 +13,11 @@ from latentarm.robots.panda import panda
 Run = Callable[..., tuple[int, str, str]]
 
 
-def record(path: Path, episodes: int, fast: float = 1.0, rate_hz: float = 20.0) -> Path:
-    way = np.sin(np.linspace(0, 3, 40))[:, None] * [0.3, 0.2, 0.1, 0.3, 0, 0, 0.1] * fast
-    states = [panda().home + way * (1 + 0.1 * index) for index in range(episodes)]
+def record(path: Path, episodes: int, rate_hz: float = 20.0) -> Path:
+    time = np.linspace(0, 3, 40)[:, None]
+    one, other = np.array([[0.3, 0.2, 0.1, 0.3, 0, 0, 0.1], [0, 0.1, 0.2, -0.2, 0.3, 0.3, 0]])
+    ways = [np.sin(time) * one + np.sin((2 + index % 3) * time) * other for index in range(episodes)]
+    states = [panda().home + way for way in ways]
     np.savez(path, q=np.concatenate(states), episode_ends=40 * np.arange(1, episodes + 1), rate_hz=rate_hz)
     return path
 
@@ -59,7 +61,7 @@ def test_inspect_and_train_repeat_what_import_warned_of(
     monkeypatch.chdir(tmp_path)
     warned = "are faster than the robot's limits"
     for command in (
-        ("import", record(Path("a.npz"), 3, rate_hz=400.0), "a"),
+        ("import", record(Path("a.npz"), 3, rate_hz=100.0), "a"),
         ("inspect", "a", "--json"),
         ("train", "--demonstrations", "a", "--model", "pca", "--seeds", 1, "--json"),
     ):

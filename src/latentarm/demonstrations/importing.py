@@ -204,7 +204,7 @@ def _read_folder(source: Path, robot: Robot | None, options: ImportOptions) -> S
         return _at_rate(read_lerobot(source), rate_hz)
     if runs := harmonic_runs(source):
         return read_harmonic(runs, rate_hz, task)
-    entries = sorted(source.iterdir())
+    entries = sorted(source.iterdir(), key=lambda entry: (len(entry.name), entry.name))  # 2 before 10
     files = [entry for entry in entries if entry.name.lower().endswith(FILES)]
     if files and not is_missing(source / BAG_INFO):
         with bounded_memory(str(source), sum(file.stat().st_size for file in files)):
