@@ -1,12 +1,12 @@
 """Links that let the next person in: printed in the terminal, and shown to the host's page as a QR code."""
 
+import io
 import json
 from collections.abc import Callable
 from typing import Final, final
 
+import segno
 from starlette.responses import Response
-
-from latentarm.web.server.qr_code import EDGE, qr_code, svg_path, terminal_text
 
 ENTRY: Final = "/enter"
 INVITATION: Final = "/invitation"
@@ -39,7 +39,9 @@ class Invitations:
     def draw(self, link: str) -> None:
         """Draw a link in the terminal, where that is possible."""
         if self._draws:
-            self._say(terminal_text(qr_code(link)))
+            drawn = io.StringIO()
+            segno.make_qr(link).terminal(drawn, compact=True)
+            self._say(drawn.getvalue().rstrip("\n"))
 
     def next(self) -> str:
         """A link for the next person, said in the terminal as well."""
@@ -67,8 +69,10 @@ def answer(method: str, is_host: bool, invite: Callable[[], str]) -> Response:
     if not is_host:
         return Response(status_code=403)
     link = invite()
-    modules = qr_code(link)
-    return _json({"link": link, "size": len(modules) + 2 * EDGE, "path": svg_path(modules)})
+    rows = list(segno.make_qr(link).matrix_iter())
+    dark = [(x, y) for y, row in enumerate(rows) for x, module in enumerate(row) if module]
+    path = "".join(f"M{x} {y}h1v1h-1z" for x, y in dark)
+    return _json({"link": link, "size": len(rows), "path": path})
 
 
 def _json(content: object) -> Response:
