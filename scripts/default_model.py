@@ -17,7 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from latentarm.commands.drive import HELD_OUT_LIMIT_S, TIME_LIMIT_S
+from latentarm.commands.drive_at_goals import HELD_OUT_LIMIT_S, TIME_LIMIT_S
 from latentarm.controllers.latent import LatentController
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.split import Fold, select_episodes

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from latentarm.commands.drive import drive_run
+from latentarm.commands.drive_at_goals import drive_run
 from latentarm.commands.drive_options import ControllerName, DriveOptions
 from latentarm.errors import UserError
 from latentarm.operators.catalogue import PEOPLE, OperatorName, usual_operator

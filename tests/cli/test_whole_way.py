@@ -106,8 +106,9 @@ def test_the_same_seed_gives_the_same_figures(run: Run, eat: Path) -> None:
 
 def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from latentarm.commands import demo
-    from latentarm.commands.demo import DemoOptions, Sizes, run_demo
-    from latentarm.commands.drive import drive_run
+    from latentarm.commands.demo import DemoOptions
+    from latentarm.commands.demo_run import Sizes, run_demo
+    from latentarm.commands.drive_at_goals import drive_run
     from latentarm.commands.drive_options import DriveOptions
     from latentarm.simulation import task_drive
     from latentarm.tasks.eating.marshmallows import Marshmallows

@@ -3,24 +3,24 @@
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from tyro.conf import Positional, arg
 
-from latentarm.alignment.profile import new_profile_folder, profile_folder
 from latentarm.alignment.queries import StoppingRule
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json, MovedDataset, Seed
 from latentarm.commands.output import say, show
 from latentarm.operators.preference import AXES, ToolAxes
-from latentarm.runs.aligning import alignable, learn
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.runs.person import Person, Say
-from latentarm.runs.questions import Scene, ask
 from latentarm.simulation.asking import FASTEST, PersonAtTerminal, SimulatedPerson
 from latentarm.simulation.stick_line import read_line
 from latentarm.types import Row
+
+if TYPE_CHECKING:
+    from latentarm.runs.questions import Scene
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,10 @@ def align_run(config: AlignOptions, say: Say) -> list[Row]:
     Raises:
         UserError: the run cannot be aligned, the name is taken, or nobody answers.
     """
+    from latentarm.alignment.profile import new_profile_folder
+    from latentarm.runs.aligning import alignable, learn
+    from latentarm.runs.questions import ask
+
     folder = new_profile_folder(config.run, config.name)
     known = alignable(config.run, config.seed_index, config.seed, config.demonstrations)
     person = _person(config, known.scene, say)
@@ -70,7 +74,7 @@ def align_run(config: AlignOptions, say: Say) -> list[Row]:
     return learned.rows
 
 
-def _person(config: AlignOptions, scene: Scene, say: Say) -> Person:
+def _person(config: AlignOptions, scene: "Scene", say: Say) -> Person:
     """Whom to ask."""
     if not config.simulated:
         return PersonAtTerminal(say, read_line)
@@ -89,6 +93,8 @@ def align(options: AlignOptions) -> int:
     Shows motions and asks for each how they would push the stick for it: numbers from -1 to 1, or arrow keys.
     For example: latentarm align runs/pour-cae --name ada
     """
+    from latentarm.alignment.profile import profile_folder
+
     run, name, json = options.run, options.name, options.json
     try:
         rows = align_run(options, lambda sentence: say(sentence, json))

@@ -3,7 +3,7 @@
 import json as json_format
 from pathlib import Path
 from shlex import join
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 from rich.table import Table
 from tyro.conf import Positional, arg
@@ -17,16 +17,17 @@ from latentarm.commands.options import EndEffector, JointSpeed, Json, LimitsFile
 from latentarm.commands.output import print_renderables, refuse, say
 from latentarm.control.clock import MonotonicClock
 from latentarm.errors import UserError
-from latentarm.web.arm_process.beginning import RobotOptions
-from latentarm.web.arm_process.drive_setup import PERIOD_S, Spec, load_setup
 from latentarm.web.arm_process.speeds import Speeds
+
+if TYPE_CHECKING:
+    from latentarm.web.arm_process.beginning import RobotOptions
 
 FIRST_RAD_S: Final = 0.2
 FIRST_M_PER_S: Final = 0.05
 """Limits for a first drive."""
 
 
-def check_arm_at(address: str, run: Path | None, robot: RobotOptions, speeds: Speeds) -> Findings:
+def check_arm_at(address: str, run: Path | None, robot: "RobotOptions", speeds: Speeds) -> Findings:
     """What there is to know of a real arm before it is driven from the page; nothing moves.
 
     Args:
@@ -39,6 +40,8 @@ def check_arm_at(address: str, run: Path | None, robot: RobotOptions, speeds: Sp
         UserError: the address, the run or the robot cannot be used. Why the arm is refused, or does
             not answer, is among the findings instead.
     """
+    from latentarm.web.arm_process.drive_setup import PERIOD_S, Spec, load_setup
+
     if not is_address(address):
         raise UserError(f"{address} is not the address of a real arm: write SCHEME://HOST.")
     driven = load_setup(Spec(run, arm=address, robot=robot, speeds=speeds)).task.robot
@@ -73,6 +76,8 @@ def check(
     Exits with 2 where it is refused. For example:
     latentarm arms check franka://172.16.0.2 --robot fr3
     """
+    from latentarm.web.arm_process.beginning import RobotOptions
+
     speeds = Speeds.asked(joint_speed, link_speed)
     found = check_arm_at(address, run, RobotOptions(robot, end_effector, limits), speeds)
     if json:

@@ -12,8 +12,7 @@ from latentarm.assistance.catalogue import AssistanceName
 from latentarm.commands.choices import BeliefName, TaskName
 from latentarm.commands.options import Arm, EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seed
 from latentarm.errors import UserError
-from latentarm.operators.catalogue import OperatorName
-from latentarm.parallel.grid import check_processes
+from latentarm.operators.names import OperatorName
 from latentarm.runs.checks import check_count, check_positive, check_seed
 from latentarm.types import Row
 
@@ -115,6 +114,8 @@ class DriveOptions:
     json: Json = False
 
     def __post_init__(self) -> None:
+        from latentarm.parallel.grid import check_processes
+
         check_seed(self.seed)
         check_processes(self.jobs, "joblib")
         check_count("drives for each goal", self.drives)

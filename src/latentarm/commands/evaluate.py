@@ -4,7 +4,7 @@ import json as json_format
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from rich.box import SIMPLE_HEAD
 from rich.console import RenderableType
@@ -25,15 +25,19 @@ from latentarm.metrics.measures import (
     measure_of,
 )
 from latentarm.metrics.table import format_figure, measure_name
-from latentarm.runs.evaluating import OVER_FOLDS, Evaluation, evaluate_run, findings_row
 from latentarm.types import Row
+
+if TYPE_CHECKING:
+    from latentarm.runs.evaluating import Evaluation
 
 GROUPS = ("", EXPRESSED, ENCODED, PROPERTIES, AT_REST)
 """Headings in the order of the table."""
 
 
-def evaluation_table(evaluation: Evaluation) -> RenderableType:
+def evaluation_table(evaluation: "Evaluation") -> RenderableType:
     """Measures in rows, grouped; the run's own split and the folds, if any, in columns."""
+    from latentarm.runs.evaluating import OVER_FOLDS
+
     own = [row for row in evaluation.rows if row.condition is None]
     own.sort(key=lambda row: GROUPS.index(measure.group) if (measure := measure_of(row.measure)) else -1)
     folds = {row.measure: row for row in evaluation.rows if row.condition == OVER_FOLDS}
@@ -94,6 +98,8 @@ def evaluate(
 
     For example: latentarm evaluate runs/pour-cae
     """
+    from latentarm.runs.evaluating import evaluate_run
+
     folder = out or run
     bars = not json and sys.stderr.isatty()
     evaluation = evaluate_run(run, folder, seed, demonstrations, folds=folds, jobs=jobs, bars=bars)
@@ -114,8 +120,10 @@ def evaluate(
     return 0
 
 
-def _print_json(evaluation: Evaluation) -> None:
+def _print_json(evaluation: "Evaluation") -> None:
     """Rows with what their measures mean; the last one holds the verdict."""
+    from latentarm.runs.evaluating import findings_row
+
     document: list[dict[str, object]] = []
     said = {one.measure: one.said for one in evaluation.found}
     for row in [*evaluation.rows, findings_row(evaluation)]:

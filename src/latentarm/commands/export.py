@@ -4,7 +4,7 @@ import json as json_format
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
@@ -14,18 +14,19 @@ from tyro.conf import Positional, arg
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json
 from latentarm.commands.output import print_renderables, say
-from latentarm.control.recordings import Recording, list_recordings, read_recordings
-from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.folders import check_vacant
 from latentarm.errors import UserError
 from latentarm.untrusted.terminal import visible
+
+if TYPE_CHECKING:
+    from latentarm.control.recordings import Recording
 
 UNKNOWN = "–"
 
 
 def choose(
-    recordings: Sequence[Recording], ranges: Sequence[str], source: Path, *, incomplete: bool
-) -> list[Recording]:
+    recordings: "Sequence[Recording]", ranges: Sequence[str], source: Path, *, incomplete: bool
+) -> "list[Recording]":
     """The episodes that somebody asked for by number.
 
     Args:
@@ -49,7 +50,7 @@ def choose(
     return chosen
 
 
-def describe(recordings: Sequence[Recording]) -> list[dict[str, object]]:
+def describe(recordings: "Sequence[Recording]") -> list[dict[str, object]]:
     """The list as plain data; what is unknown is None."""
     described: list[dict[str, object]] = []
     for recording in recordings:
@@ -77,7 +78,7 @@ def describe(recordings: Sequence[Recording]) -> list[dict[str, object]]:
     return described
 
 
-def listing(recordings: Sequence[Recording]) -> Table:
+def listing(recordings: "Sequence[Recording]") -> Table:
     """The list as a table for the terminal."""
     several = len({recording.journal for recording in recordings}) > 1
     about = ("episode", "task", "started (UTC)", "s", "complete", "person", "run", "profile", "mode")
@@ -132,6 +133,9 @@ def export(
 
     For example: latentarm export teleop --episodes 1 3-5 --out eaten
     """
+    from latentarm.control.recordings import list_recordings, read_recordings
+    from latentarm.demonstrations.dataset import write_dataset
+
     recordings = list_recordings(source)
     if out is None:
         if json:

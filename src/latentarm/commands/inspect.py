@@ -13,11 +13,8 @@ from tyro.conf import Positional, arg
 from latentarm.commands.configuration import write_options
 from latentarm.commands.options import Json
 from latentarm.commands.output import note, say, show
-from latentarm.demonstrations.dataset import read_dataset
-from latentarm.demonstrations.figure import draw_trajectories
 from latentarm.demonstrations.summary import Summary, summarise
 from latentarm.errors import UserError
-from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, Provenance
 from latentarm.untrusted.terminal import visible
@@ -28,6 +25,8 @@ _FINGERPRINT_LENGTH: Final = 64
 
 def known_robot(demonstrations: Demonstrations) -> Robot | None:
     """The robot that a dataset names, or None if it names none or that robot is not available."""
+    from latentarm.robots.catalogue import load_recorded_robot
+
     try:
         return load_recorded_robot(demonstrations) if demonstrations.robot else None
     except UserError:
@@ -36,6 +35,8 @@ def known_robot(demonstrations: Demonstrations) -> Robot | None:
 
 def why_unknown(demonstrations: Demonstrations, dataset: str) -> str | None:
     """Why the robot that a dataset names cannot be loaded; None if it can, or if none is named."""
+    from latentarm.robots.catalogue import load_recorded_robot
+
     try:
         if demonstrations.robot:
             load_recorded_robot(demonstrations, dataset)
@@ -107,6 +108,8 @@ def draw(demonstrations: Demonstrations, folder: Path) -> Path:
     Raises:
         UserError: the folder cannot be written.
     """
+    from latentarm.demonstrations.figure import draw_trajectories
+
     robot = known_robot(demonstrations)
     path = folder / "joints.png"
     draw_trajectories(demonstrations, path, robot.limits if robot else None)
@@ -124,6 +127,8 @@ def inspect(
 
     For example: latentarm inspect pour
     """
+    from latentarm.demonstrations.dataset import read_dataset
+
     demonstrations = read_dataset(dataset)
     unknown = why_unknown(demonstrations, str(dataset))
     if unknown:

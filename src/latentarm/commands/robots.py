@@ -10,9 +10,7 @@ from tyro.conf import Positional, arg
 from latentarm.commands.options import EndEffector, Json, LimitsFile
 from latentarm.commands.output import print_renderables
 from latentarm.errors import UserError
-from latentarm.robots.catalogue import ROBOTS, load_robot
 from latentarm.robots.limits import QUANTITIES, Quantity, Source
-from latentarm.robots.limits_file import read_limits
 from latentarm.robots.notices import notices
 from latentarm.robots.robot import Robot
 from latentarm.types import FloatArray
@@ -55,6 +53,9 @@ def sheets(name: str | None, end_effector: str | None = None, limits: Path | Non
 
 
 def _robots(name: str | None, end_effector: str | None, limits: Path | None) -> list[Robot]:
+    from latentarm.robots.catalogue import ROBOTS, load_robot
+    from latentarm.robots.limits_file import read_limits
+
     if name is None and (end_effector or limits):
         raise UserError(
             "An end-effector and limits belong to one robot: name it, as in `latentarm robots PATH`."

@@ -1,13 +1,12 @@
 """The simulated people by name."""
 
-from typing import Final, Literal
+from typing import Final
 
 from latentarm.operators.hand import UNSTEADY
 from latentarm.operators.linear_guess import LinearGuessConfig
+from latentarm.operators.names import OperatorName
 from latentarm.operators.person import Person
 from latentarm.operators.planning import PlanningConfig
-
-OperatorName = Literal["greedy", "learning", "unsteady", "planning"]
 
 PEOPLE: Final[dict[OperatorName, Person]] = {
     "greedy": Person(),

@@ -3,7 +3,6 @@
 from typing import Final
 
 from latentarm.tasks.catalogue import make_scene_task
-from latentarm.tasks.eating.over_marshmallow import OverMarshmallow
 from latentarm.tasks.scene_task import SceneTask
 
 OVER_MARSHMALLOW: Final = "over_marshmallow"
@@ -19,4 +18,8 @@ def scene_of(name: str) -> SceneTask:
     Raises:
         UserError: there is no such task, or it does not load.
     """
-    return OverMarshmallow() if name == OVER_MARSHMALLOW else make_scene_task(name)
+    if name != OVER_MARSHMALLOW:
+        return make_scene_task(name)
+    from latentarm.tasks.eating.over_marshmallow import OverMarshmallow
+
+    return OverMarshmallow()

@@ -1,0 +1,5 @@
+"""What the simulated people are called."""
+
+from typing import Literal
+
+OperatorName = Literal["greedy", "learning", "unsteady", "planning"]
