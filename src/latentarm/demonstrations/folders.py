@@ -13,12 +13,13 @@ from latentarm.files import sync_folder
 
 
 @contextmanager
-def locked(folder: Path, lock_file: Path) -> Generator[None]:
+def locked(folder: Path, lock_file: Path, remedy: str = "wait for it") -> Generator[None]:
     """Keep other writers out of ``folder``. The lock is released when the process ends, however it ends.
 
     Args:
         folder: what is written.
         lock_file: what all its writers lock; made here and removed afterwards.
+        remedy: what to do about another one, for the message.
 
     Raises:
         UserError: another program is writing there, or the lock file cannot be made.
@@ -29,7 +30,7 @@ def locked(folder: Path, lock_file: Path) -> Generator[None]:
     try:
         lock.acquire()
     except Timeout as error:
-        raise UserError(f"{folder} is being written by another program; wait for it.") from error
+        raise UserError(f"{folder} is being written by another program; {remedy}.") from error
     except OSError as error:
         raise UserError(f"{folder} cannot be locked: {error.strerror or error}.") from error
     try:

@@ -115,6 +115,7 @@ class _Open:
     about: About
     first: Report
     started: str
+    id: str = field(default_factory=new_id)
     last: Report | None = None
     enabled_s: float = 0.0
     moving_s: float = 0.0
@@ -210,6 +211,11 @@ class DriveLog:
             self._open.presses += pressed
             self._open.inputs[source] += pressed
 
+    def so_far(self) -> DriveRecord | None:
+        """The drive under way as it would be known if everything stopped now; None where there is none."""
+        drive = self._open
+        return None if drive is None or drive.last is None else _record(drive, drive.last, "broken_off")
+
     def end(self, why: Ending) -> Logged | None:
         """End the drive under way; None if no drive has begun."""
         drive, self._open = self._open, None
@@ -220,39 +226,14 @@ class DriveLog:
             return None
         if not drive.moments or drive.moments[-1].t < round(drive.last.time_s - drive.first.time_s, 2):
             self._keep_moment(drive, drive.last, round(drive.last.time_s - drive.first.time_s, 2))
-        first, about = drive.first, drive.about
-        record = DriveRecord.model_validate(
-            {
-                "id": new_id(),
-                "person": about.person,
-                "started": drive.started,
-                "time_s": round(max(drive.enabled_s, 0.0), 2),
-                "moving_s": round(min(drive.moving_s, drive.enabled_s), 2),
-                "robot": about.robot[:200],
-                "real": about.real,
-                "task": about.todo.task[:200],
-                "choice": about.todo.choices[drive.last.task.choice][:200] if about.todo.choices else None,
-                "run": None if about.run is None else about.run[:200],
-                "profile": None if first.profile is None else first.profile[:64],
-                "modes": tuple(mode for mode, _ in drive.modes.most_common()) or (first.mode,),
-                "inputs": tuple(source for source, _ in drive.inputs.most_common()),
-                "presses": drive.presses,
-                "stops": drive.reasons.total(),
-                "late_stops": drive.reasons[LATE],
-                "reasons": dict(drive.reasons),
-                "way_m": round(drive.way_m, 3),
-                "help": round(min(drive.help_s / drive.moving_s, 1.0), 3) if drive.moving_s else None,
-                "help_level": drive.last.help,
-                "steps_done": drive.last.task.done if about.todo.steps else None,
-                "steps": len(about.todo.steps) or None,
-                "outcome": drive.last.task.outcome,
-                "why": None if drive.last.task.why is None else drive.last.task.why.code,
-                "ended": why,
-                "scene": None,
-            }
-        )
         return Logged(
-            record, about.scene, about.chain, drive.period_s, drive.moments, drive.things, drive.marks
+            _record(drive, drive.last, why),
+            drive.about.scene,
+            drive.about.chain,
+            drive.period_s,
+            drive.moments,
+            drive.things,
+            drive.marks,
         )
 
     def _trace(self, drive: _Open, report: Report, t: float) -> None:
@@ -285,6 +266,41 @@ class DriveLog:
             drive.grains_s = t
         drive.things.append(TracedThings(t=t, poses=things.poses, grains=grains))
         drive.values += 7 * len(things.poses) + sum(map(len, grains or ()))
+
+
+def _record(drive: _Open, last: Report, why: Ending) -> DriveRecord:
+    """The figures of a drive until its last report, without the scene."""
+    first, about = drive.first, drive.about
+    return DriveRecord.model_validate(
+        {
+            "id": drive.id,
+            "person": about.person,
+            "started": drive.started,
+            "time_s": round(max(drive.enabled_s, 0.0), 2),
+            "moving_s": round(min(drive.moving_s, drive.enabled_s), 2),
+            "robot": about.robot[:200],
+            "real": about.real,
+            "task": about.todo.task[:200],
+            "choice": about.todo.choices[last.task.choice][:200] if about.todo.choices else None,
+            "run": None if about.run is None else about.run[:200],
+            "profile": None if first.profile is None else first.profile[:64],
+            "modes": tuple(mode for mode, _ in drive.modes.most_common()) or (first.mode,),
+            "inputs": tuple(source for source, _ in drive.inputs.most_common()),
+            "presses": drive.presses,
+            "stops": drive.reasons.total(),
+            "late_stops": drive.reasons[LATE],
+            "reasons": dict(drive.reasons),
+            "way_m": round(drive.way_m, 3),
+            "help": round(min(drive.help_s / drive.moving_s, 1.0), 3) if drive.moving_s else None,
+            "help_level": last.help,
+            "steps_done": last.task.done if about.todo.steps else None,
+            "steps": len(about.todo.steps) or None,
+            "outcome": last.task.outcome,
+            "why": None if last.task.why is None else last.task.why.code,
+            "ended": why,
+            "scene": None,
+        }
+    )
 
 
 def _halved(things: list[TracedThings]) -> list[TracedThings]:

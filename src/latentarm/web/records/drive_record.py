@@ -23,7 +23,7 @@ SceneId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 Count = Annotated[int, Field(ge=0, le=2**31)]
 Seconds = Annotated[float, Field(ge=0.0, le=1e9)]
 Text = Annotated[str, Field(max_length=200)]
-Ending = Literal["reset", "again", "next", "driver_changed", "run_changed", "server_ended"]
+Ending = Literal["reset", "again", "next", "driver_changed", "run_changed", "server_ended", "broken_off"]
 
 
 @final
@@ -59,7 +59,8 @@ class DriveRecord(Message):
         steps: of the task; None as above.
         outcome: ``success`` or ``failure``; None where it was given up or the task is not watched.
         why: code of why it failed; None if it did not.
-        ended: what ended it.
+        ended: what ended it; ``broken_off`` where the server or the arm's process was killed meanwhile, and
+            what came after the last moment that was written is not known.
         scene: what is shown with the trace; None where no trace is kept.
     """
 

@@ -112,6 +112,16 @@ class Drives:
             write_record(drive, path)
             self._drives[drive.id] = drive
 
+    def keep_so_far(self, drive: DriveRecord) -> None:
+        """Write what is known of a drive under way, for the next start if nothing more is written.
+
+        Raises:
+            UserError: it cannot be written.
+        """
+        with self._lock:
+            if drive.id not in self._drives.keys() | self._deleted.keys():
+                write_record(drive, self._path(drive))
+
     @property
     def scenes(self) -> set[str]:
         """Ids of all that is shown with a drive, also with those that can be restored."""

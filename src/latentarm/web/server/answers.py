@@ -33,10 +33,15 @@ def guarded(answer: Answer) -> Answer:
         try:
             return await answer(request)
         except UserError as error:
-            notice = notice_of(error)
-            return json_answer({"notice": notice.model_dump()}, _STATUS.get(notice.code, 400))
+            return refusal(error)
 
     return guarded
+
+
+def refusal(error: UserError) -> Response:
+    """The answer that says why not, as a notice."""
+    notice = notice_of(error)
+    return json_answer({"notice": notice.model_dump()}, _STATUS.get(notice.code, 400))
 
 
 def json_answer(content: object, status: int = 200) -> Response:

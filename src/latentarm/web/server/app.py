@@ -21,6 +21,7 @@ from latentarm.arms.checking import look_at
 from latentarm.arms.real_catalogue import make_real_arm
 from latentarm.control.clock import MonotonicClock
 from latentarm.control.recordings import JOURNAL_SUFFIX
+from latentarm.demonstrations.folders import locked
 from latentarm.errors import UserError
 from latentarm.punctuality import short_collections
 from latentarm.robots.notices import notices
@@ -60,6 +61,9 @@ _LOG: Final = logging.getLogger(__name__)
 _LOOK_S: Final = 1.0
 """How often to look whether the control process has ended, s."""
 
+_LOCK: Final = ".teleop.lock"
+"""Locked in the folder of records while a server runs."""
+
 _STARTED_S: Final = 0.01
 """How often to check whether uvicorn has started, s."""
 
@@ -82,11 +86,25 @@ def serve(
         calendar: dates what is kept of people and drives.
 
     Raises:
-        UserError: the run or profile cannot be loaded, the address is taken, a file for TLS is broken, or a
-            camera gives no picture.
+        UserError: the run or profile cannot be loaded, another server records to the folder, the address is
+            taken, a file for TLS is broken, or a camera gives no picture.
     """
     check_certificate(config)
     setup = load_setup(config.spec)
+    out = config.spec.out
+    out.mkdir(parents=True, exist_ok=True)
+    with locked(out, out / _LOCK, "end it with Ctrl-C, or choose another folder with --out"):
+        _serve_alone(config, setup, say, ready, draws, calendar)
+
+
+def _serve_alone(
+    config: TeleopConfig,
+    setup: DriveSetup,
+    say: Callable[[str], None],
+    ready: Callable[[str], None],
+    draws: bool,
+    calendar: Calendar,
+) -> None:
     if setup.real:
         config, setup = _looked_at(config, setup, say)
     listening = listen(config)
@@ -183,14 +201,16 @@ def _cameras(config: TeleopConfig, listening: socket.socket) -> CameraProcess | 
         raise
 
 
-async def tell_end(control: ControlProcess) -> None:
-    """Log that the control process has ended, where it does before the server does.
+async def tell_end(control: ControlProcess, history: History) -> None:
+    """Log that the control process has ended, where it does before the server does; so has its drive.
 
     Args:
         control: what is watched.
+        history: logs what is driven.
     """
     while control.alive:
         await asyncio.sleep(_LOOK_S)
+    history.end("broken_off")
     _LOG.error("The program that moves the arm has ended. Start latentarm teleop again.")
 
 
@@ -241,7 +261,7 @@ def build_app(
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
-        follow = [states.follow, learning.follow, history.follow, partial(tell_end, control)]
+        follow = [states.follow, learning.follow, history.follow, partial(tell_end, control, history)]
         if camera_routes is not None:
             follow.append(camera_routes.follow)
         following = [asyncio.create_task(one()) for one in follow]

@@ -15,6 +15,9 @@ from latentarm.web.records.records import Records
 from latentarm.web.server.sessions import Sessions
 from latentarm.web.server.states import States
 
+SO_FAR_S: Final = 5.0
+"""How often what is known of the drive under way is written, s of the arm's process."""
+
 PURGE_S: Final = 60.0
 """How often what was deleted is removed for good, s."""
 
@@ -39,6 +42,7 @@ class History:
         self._records = records
         self._log = DriveLog(calendar)
         self._keeping: set[asyncio.Task[None]] = set()
+        self._written_s = 0.0
         self.problem: Notice | None = None
         states.heard.append(self._hear)
 
@@ -88,6 +92,8 @@ class History:
             self.end("run_changed")
         if not self._log.begins(report):
             self._log.take(report)
+            if report.time_s - self._written_s > SO_FAR_S:
+                self._keep_so_far(report)
             return
         driver = self._sessions.driver
         self._log.begin(
@@ -102,6 +108,13 @@ class History:
                 real=loaded.real,
             ),
         )
+        self._keep_so_far(report)
+
+    def _keep_so_far(self, report: Report) -> None:
+        self._written_s = report.time_s
+        drive = self._log.so_far()
+        if drive is not None and not (drive.person and self._gone(drive.person)):
+            self._do(partial(self._records.drives.keep_so_far, drive))
 
     def _gone(self, person: str | None) -> bool:
         """Whether a person was deleted while their page was open."""

@@ -17,14 +17,16 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from latentarm.web.protocol.notice import Message, NoticeError
+from latentarm.web.records.documents import new_id
 from latentarm.web.records.drive_record import DriveRecord
 from latentarm.web.records.drives import Wanted
 from latentarm.web.records.people import PersonRecord, Settings
 from latentarm.web.records.pin import PIN
 from latentarm.web.records.records import Records
-from latentarm.web.server.answers import NO_STORE, body_of, guarded, json_answer, object_in
+from latentarm.web.server.answers import NO_STORE, body_of, guarded, json_answer, object_in, refusal
 from latentarm.web.server.history import History
 from latentarm.web.server.pins import OPEN_S, Pins, cookie_of
+from latentarm.web.server.security import COOKIE
 
 IMPORT: Final = "/records/import"
 """Takes longer bodies than all else: see `latentarm.web.records.exchange.IMPORT_LIMIT`."""
@@ -39,6 +41,9 @@ class _Named(Message):
 class _Pinned(Message):
     pin: Annotated[str, Field(pattern=PIN)] | None
 
+
+_BROWSER: Final = "latentarm_browser"
+"""Cookie that tells browsers of this machine apart where the gate gives none."""
 
 _SETTINGS: Final[TypeAdapter[dict[str, bool | float | str]]] = TypeAdapter(Settings)
 
@@ -137,8 +142,17 @@ class PeopleRoutes:
 
     async def _unlock(self, request: Request) -> Response:
         given, person = await body_of(request, _Pinned), self._named(request)
-        key = await asyncio.to_thread(self._pins.unlock, person, given.pin or "")
-        return _with_key(request, person.id, key)
+        session = request.cookies.get(COOKIE)
+        browser = session or request.cookies.get(_BROWSER) or new_id()
+        client = f"{request.client and request.client.host} {browser}"
+        try:
+            key = await asyncio.to_thread(self._pins.unlock, person, given.pin or "", client)
+            answer = _with_key(request, person.id, key)
+        except NoticeError as error:
+            answer = refusal(error)
+        if session is None:
+            answer.set_cookie(_BROWSER, browser, httponly=True, samesite="strict")
+        return answer
 
     async def _lock(self, request: Request) -> Response:
         self._pins.lock(self._named(request).id, request.cookies)

@@ -12,10 +12,21 @@ from latentarm.web.records.people import People, PersonRecord
 from latentarm.web.records.pin import fits
 
 TRIES: Final = 5
-"""So many wrong PINs are allowed for a person before one has to wait."""
+"""So many wrong PINs of a person are allowed from a client before it has to wait."""
 
 WAIT_S: Final = 60.0
-"""How long each further try has to wait, s: all PINs of four digits would take a week."""
+"""How long the client then waits, s: twice as long after each further one, up to `LONGEST_WAIT_S`."""
+
+LONGEST_WAIT_S: Final = 3600.0
+"""The longest that a client waits, s."""
+
+FORGOTTEN_S: Final = 24 * 3600.0
+"""So long after its last wrong PIN a client's tries are forgotten, s."""
+
+MOST_CLIENTS: Final = 40
+"""So many clients at once may have given wrong PINs of a person, besides those that have opened the record
+before. Together they try at most 1,400 PINs on the first day and 960 on each further one: all PINs of four
+digits take them ten days."""
 
 OPEN_S: Final = 8 * 3600.0
 """How long a record stays open, s."""
@@ -28,6 +39,7 @@ _MOST_KEYS: Final = 1000
 class _Tries:
     count: int = 0
     not_before_s: float = 0.0
+    forgotten_s: float = 0.0
 
 
 @final
@@ -45,7 +57,8 @@ class Pins:
         self._people = people
         self._now_s = now_s
         self._lock = threading.Lock()
-        self._tries: dict[str, _Tries] = {}
+        self._tries: dict[str, dict[str, _Tries]] = {}
+        self._known: dict[tuple[str, str], None] = {}
         self._keys: dict[str, tuple[str, float]] = {}
 
     def asked(self, person: PersonRecord) -> bool:
@@ -59,32 +72,28 @@ class Pins:
         of, until_s = self._keys.get(cookies.get(cookie_of(person.id), ""), ("", 0.0))
         return of == person.id and self._now_s() < until_s
 
-    def unlock(self, person: PersonRecord, pin: str) -> str:
+    def unlock(self, person: PersonRecord, pin: str, client: str) -> str:
         """Open a record. Waits for the hash, some 50 ms.
 
         Args:
             person: whose.
             pin: as it was given.
+            client: who gives it: an address and a browser.
 
         Returns:
             The value of the cookie `cookie_of`.
 
         Raises:
-            NoticeError: the PIN is wrong, or there were too many wrong ones.
+            NoticeError: the PIN is wrong, or there were too many wrong ones, or clients that gave them.
         """
         with self._lock:
             # Counted before it is looked at: tries at the same time count too.
-            tries = self._tries.setdefault(person.id, _Tries())
-            left_s = tries.not_before_s - self._now_s()
-            if left_s > 0.0:
-                raise NoticeError("pin_wait", seconds=round(left_s + 0.5))
-            tries.count += 1
-            if tries.count >= TRIES:
-                tries.not_before_s = self._now_s() + WAIT_S
+            self._count(person.id, client)
         if person.pin is None or not fits(pin, person.pin):
             raise NoticeError("pin_wrong")
         with self._lock:
-            self._tries.pop(person.id, None)
+            self._tries[person.id].pop(client, None)
+            self._known = dict.fromkeys([*self._known, (person.id, client)][-_MOST_KEYS:])
         return self._key(person.id)
 
     def lock(self, person: str, cookies: Mapping[str, str]) -> None:
@@ -107,6 +116,26 @@ class Pins:
         with self._lock:
             self._keys = {key: kept for key, kept in self._keys.items() if kept[0] != person}
         return self._key(person)
+
+    def _count(self, person: str, client: str) -> None:
+        now_s = self._now_s()
+        counted = {
+            one: tries for one, tries in self._tries.get(person, {}).items() if now_s < tries.forgotten_s
+        }
+        self._tries[person] = counted
+        strangers = [tries for one, tries in counted.items() if (person, one) not in self._known]
+        not_before_s = 0.0
+        if client in counted:
+            not_before_s = counted[client].not_before_s
+        elif (person, client) not in self._known and len(strangers) >= MOST_CLIENTS:
+            not_before_s = min(tries.forgotten_s for tries in strangers)
+        if now_s < not_before_s:
+            raise NoticeError("pin_wait", seconds=round(not_before_s - now_s + 0.5))
+        tries = counted.setdefault(client, _Tries())
+        tries.count += 1
+        if tries.count >= TRIES:
+            tries.not_before_s = now_s + min(WAIT_S * 2 ** (tries.count - TRIES), LONGEST_WAIT_S)
+        tries.forgotten_s = now_s + FORGOTTEN_S
 
     def _key(self, person: str) -> str:
         key = secrets.token_urlsafe(16)

@@ -23,7 +23,8 @@ export function taskWords({ task, choice }) {
 }
 
 /** @param {Drive} drive */
-export function outcomeWords({ outcome }) {
+export function outcomeWords({ outcome, ended }) {
+  if (outcome === null && ended === "broken_off") return say("history.broken_off");
   return say(outcome === null ? "history.open" : outcome === "success" ? "history.done" : "history.failed");
 }
 

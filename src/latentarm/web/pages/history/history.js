@@ -130,7 +130,7 @@ function driveRow(drive) {
   const label = `${titleOf(drive)}, ${when}`;
   const path = `/records/drives/${drive.id}`;
   const row = rowOf(name, figures, [
-    button("history.show", label, () => open(drive)),
+    ...(drive.scene ? [button("history.show", label, () => open(drive))] : []),
     ...changing(label, path, drive.title),
   ]);
   row.dataset.shown = String(drive.id === shown);

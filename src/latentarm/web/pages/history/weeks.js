@@ -23,6 +23,7 @@
  * @property {number | null} steps_done
  * @property {number | null} steps
  * @property {"success" | "failure" | null} outcome
+ * @property {string} ended a code of what ended it
  * @property {string | null} scene
  */
 

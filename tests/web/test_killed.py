@@ -1,0 +1,103 @@
+"""Servers and their arm's process that are killed, and a second server where one runs."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from urllib.parse import urlsplit
+
+import httpx
+import pytest
+
+from latentarm.web.arm_process.drive_setup import Spec
+from latentarm.web.records.calendar import SYSTEM_CALENDAR
+from latentarm.web.records.drives import Wanted
+from latentarm.web.records.records import Records
+from latentarm.web.server.history import SO_FAR_S
+
+from .conftest import Site, wait_for
+
+pytestmark = pytest.mark.clock
+
+
+def command(out):
+    return [sys.executable, "-m", "latentarm", "teleop", "--port", "0", "--json", "--out", str(out)]
+
+
+@contextmanager
+def running(out):
+    """A server of its own process, and what connects to it."""
+    with subprocess.Popen(command(out), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as server:
+        try:
+            said = server.stdout.readline()
+            assert said, server.stderr.read()
+            yield server, Site(urlsplit(json.loads(said)["address"]).port, None, None)
+        finally:
+            server.send_signal(signal.SIGINT)
+
+
+def drive_a_little(page, for_s):
+    page.enable()
+    page.u = [1.0, 0.0]
+    page.wait(lambda state: state["phase"] == "moving")
+    time.sleep(for_s)
+
+
+def drives_in(out):
+    return Records(out, dict, lambda: None, SYSTEM_CALENDAR).drives.wanted(Wanted())
+
+
+def test_a_drive_under_a_server_that_was_killed_is_kept_as_broken_off(tmp_path):
+    with running(tmp_path) as (server, site), site.page() as page:
+        drive_a_little(page, SO_FAR_S + 1.0)
+        server.kill()
+        server.wait()
+    (drive,) = drives_in(tmp_path)
+    assert (drive.ended, drive.outcome, drive.inputs) == ("broken_off", None, ("pointer",))
+    assert drive.time_s > SO_FAR_S - 1.0
+    assert drive.moving_s > 0.5
+    assert drive.way_m > 0.01
+    # The next server starts at once in the folder, and its page lists the drive.
+    with running(tmp_path) as (_, site):
+        (listed,) = httpx.get(f"{site.origin}/records/drives").json()["drives"]
+    assert (listed["id"], listed["ended"]) == (drive.id, "broken_off")
+
+
+def test_a_drive_is_kept_even_if_the_server_is_killed_as_it_begins(tmp_path):
+    with running(tmp_path) as (server, site), site.page() as page:
+        page.enable()
+        wait_for(lambda: list(tmp_path.glob("records/**/drives/*.json")))
+        server.kill()
+    assert [drive.ended for drive in drives_in(tmp_path)] == ["broken_off"]
+
+
+def test_a_drive_that_was_ended_is_not_broken_off(tmp_path):
+    with running(tmp_path) as (_, site), site.page() as page:
+        drive_a_little(page, 0.5)
+    (drive,) = drives_in(tmp_path)
+    assert drive.ended != "broken_off"
+    assert drive.scene is not None
+
+
+def test_a_drive_whose_arm_process_is_killed_is_in_the_history_at_once(serve, tmp_path):
+    with serve(Spec(out=tmp_path)) as site, site.page() as page:
+        drive_a_little(page, 0.5)
+        os.kill(site.control.pid, signal.SIGKILL)
+        drives = wait_for(lambda: httpx.get(f"{site.origin}/records/drives").json()["drives"])
+    assert [drive["ended"] for drive in drives] == ["broken_off"]
+    assert [drive.ended for drive in drives_in(tmp_path)] == ["broken_off"]
+
+
+def test_a_second_server_on_a_folder_is_refused_in_one_sentence_until_the_first_ends(tmp_path):
+    with running(tmp_path):
+        second = subprocess.run(command(tmp_path), capture_output=True, text=True, timeout=120)
+        assert (second.returncode, second.stdout) == (2, "")
+        assert second.stderr == (
+            f"latentarm: {tmp_path} is being written by another program; end it with Ctrl-C, or choose"
+            " another folder with --out.\n"
+        )
+    with running(tmp_path):
+        pass
