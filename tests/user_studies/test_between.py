@@ -29,7 +29,8 @@ from latentarm.user_studies.folder import rows_of
 from latentarm.user_studies.order import assigned
 from latentarm.user_studies.power import NUMBERS, power_of
 from latentarm.user_studies.report.page import Content, report_page
-from latentarm.user_studies.report.whose import REAL
+from latentarm.user_studies.report.whose import REAL, SIMULATED
+from latentarm.user_studies.sizes import PRESETS
 
 PIE = replace(load_definition("apple_pie"), name="pie_apart", design="between", printed=())
 EATING = replace(load_definition("eating"), name="eating_apart", design="between")
@@ -119,7 +120,15 @@ def test_each_person_counts_on_one_side() -> None:
 def test_a_report_says_who_met_what() -> None:
     trials = drawn_trials(PIE, 8, np.random.default_rng(5), {"cVAE": -2.0})
     content = Content(
-        PIE, analyse(PIE, trials), rows_of(PIE, trials), (), (), "8 people", REAL, "latentarm study"
+        PIE,
+        PRESETS["paper"],
+        analyse(PIE, trials),
+        rows_of(PIE, trials),
+        (),
+        (),
+        "8 people",
+        REAL,
+        "latentarm study",
     )
     page = report_page(content)
     assert "one condition (between subjects)" in page
@@ -171,3 +180,20 @@ def test_power_draws_people_condition_by_condition() -> None:
 def test_orders_make_no_sense_where_people_meet_one_condition() -> None:
     with pytest.raises(UserError, match="leave them empty"):
         replace(load_definition("case_study"), design="between")
+
+
+def test_a_smoke_run_says_so_tells_what_was_run_and_judges_nothing() -> None:
+    trials = drawn_trials(PIE, 8, np.random.default_rng(5), {"cVAE": -2.0})
+    smoke = PRESETS["smoke"]
+    analysis = analyse(PIE, trials, not_judged=smoke.not_judged)
+    assert {one.says for one in analysis.verdicts} == {"could not be tested"}
+    who = smoke.people(8)
+    rows = rows_of(PIE, trials)
+    page = report_page(Content(PIE, smoke, analysis, rows, (), (), who, SIMULATED, "latentarm study"))
+    assert f"<title>{PIE.title}: 8 simulated people (preset smoke)</title>" in page
+    assert "(preset smoke)</h1>" in page
+    assert all("(preset smoke)" in line for line in page.splitlines() if "<caption>What became" in line)
+    assert "for 1 s per part" in page
+    assert "240 s" not in page
+    assert "<td>held</td>" not in page
+    assert "<td>not held</td>" not in page

@@ -43,6 +43,7 @@ def command_of(name: str) -> Command:
 
 def _reproduce(name: str, preset: str, task: str, out: Path, options: StudyOptions) -> int:
     """Run a study and print it at a glance."""
+    from latentarm.studies.page import SMOKE
     from latentarm.studies.study import Request, run_study
 
     study = load_study(name)
@@ -61,5 +62,7 @@ def _reproduce(name: str, preset: str, task: str, out: Path, options: StudyOptio
     report = run_study(study, request)
     write_options(out, study.command)
     show(report.rows, options.json, *(report.tables or tables_by_task(report.rows)))
+    if preset == SMOKE:
+        say(f"The preset {preset} only shows that the study runs: nothing is judged.", options.json)
     say(f"Page, figures and results.json are in {out}/ (begin with {out}/results.md).", options.json)
     return 0

@@ -104,7 +104,7 @@ def run_study(
     why = write_report(folder, ran, rows, command)
     if why:
         note([why])
-    verdicts = Table("", "says", "why", title=f"{definition.title}: {people} simulated people")
+    verdicts = Table("", "says", "why", title=f"{definition.title}: {ran.sizes.people(people)}")
     for one in ran.analysis.verdicts:
         verdicts.add_row(one.hypothesis.name, one.says, one.why)
     show(rows, options.json, verdicts)

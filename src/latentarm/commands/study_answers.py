@@ -91,7 +91,8 @@ def analyse_study(
     }
     path = Path("studies", f"{definition.name}-analysis") if out is None else out
     claim_analysis(path, definition, about, report_files(definition))
-    analysis = analyse(definition, recorded.trials, () if ratings is None else ratings.scores)
+    scores = () if ratings is None else ratings.scores
+    analysis = analyse(definition, recorded.trials, scores, recorded.sizes.not_judged)
     rows = rows_of(definition, analysis.trials)
     write_analysis(path, about, analysis, rows, ratings)
     write_options(path, "study analyse")

@@ -11,8 +11,11 @@ from latentarm.metrics.table import ABSENT
 
 STUDIES: Final = Path(__file__).parent
 
+SMOKE: Final = "smoke"
+"""The preset of every study that only shows that it runs: its hypotheses are not judged."""
 
-def render_page(template: str, **content: Any) -> str:
+
+def render_page(template: str, preset: Any, **content: Any) -> str:
     """A page from its template.
 
     Templates have the filters ``label`` (of a model, a condition or a task), ``listed`` (``A, B and C``),
@@ -20,6 +23,7 @@ def render_page(template: str, **content: Any) -> str:
 
     Args:
         template: path below `STUDIES`, such as ``properties/page.md``.
+        preset: of the study.
         content: what the template names.
     """
     # Markdown, not HTML: nothing is to be escaped.
@@ -31,7 +35,9 @@ def render_page(template: str, **content: Any) -> str:
         keep_trailing_newline=True,
     )
     environment.filters.update(label=_label, listed=listed, g=_short, image=_image)
-    return environment.get_template(template).render(content)
+    judged = preset.name != SMOKE
+    page = environment.get_template(template).render(content, preset=preset, judged=judged)
+    return page if judged else page.replace("\n", f" (preset {SMOKE})\n", 1)
 
 
 def markdown_table(head: Sequence[str], lines: Iterable[Sequence[str | None]]) -> str:

@@ -14,6 +14,7 @@ from latentarm.user_studies.definition import Definition
 from latentarm.user_studies.folder import TRACES, TRIALS, read_trials
 from latentarm.user_studies.own.records import read_record
 from latentarm.user_studies.record import Trial
+from latentarm.user_studies.sizes import PRESETS, Sizes
 from latentarm.user_studies.trace import Trace
 
 PeopleAre = Literal["simulated", "real"]
@@ -32,6 +33,7 @@ class Recorded:
         trials: of all people.
         traces: of their drives; empty where none were kept.
         simulated: what the simulated people are like; empty for real people.
+        sizes: of the run; whole for real people.
     """
 
     definition: Definition
@@ -39,6 +41,7 @@ class Recorded:
     trials: tuple[Trial, ...]
     traces: tuple[Trace, ...]
     simulated: tuple[Traits, ...]
+    sizes: Sizes
 
     @property
     def met(self) -> dict[int, set[str]]:
@@ -51,7 +54,8 @@ class Recorded:
     @property
     def who(self) -> str:
         """The people in words, such as ``12 simulated people``."""
-        return f"{len(self.met)} {self.people_are} people"
+        number = len(self.met)
+        return self.sizes.people(number) if self.people_are == "simulated" else f"{number} real people"
 
 
 def read_recorded(folder: Path) -> Recorded:
@@ -72,7 +76,8 @@ def read_recorded(folder: Path) -> Recorded:
         raise UserError(f"{folder / TRIALS}: people_are must be {said!r}, as in {CONFIG}.")
     _check_trials(definition, trials, folder / TRIALS)
     simulated = _simulated(folder, config) if said == "simulated" else ()
-    return Recorded(definition, said, tuple(trials), _traces(folder / TRACES, definition), simulated)
+    traces = _traces(folder / TRACES, definition)
+    return Recorded(definition, said, tuple(trials), traces, simulated, _sizes(folder / CONFIG, config))
 
 
 def _check_trials(definition: Definition, trials: Sequence[Trial], path: Path) -> None:
@@ -111,6 +116,14 @@ def _simulated(folder: Path, config: dict[str, Any]) -> tuple[Traits, ...]:
             f"{folder / 'people.json'} has other people than this version draws: use the one that made it."
         )
     return drawn
+
+
+def _sizes(path: Path, config: dict[str, Any]) -> Sizes:
+    sizes = config.get("sizes")
+    name = cast(dict[str, Any], sizes).get("name") if isinstance(sizes, dict) else "paper"
+    if name not in PRESETS:
+        raise UserError(f"{path}: the sizes must be those of a preset: {', '.join(PRESETS)}.")
+    return PRESETS[name]
 
 
 def _traces(path: Path, definition: Definition) -> tuple[Trace, ...]:

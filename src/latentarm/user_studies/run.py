@@ -87,6 +87,7 @@ class Ran:
 
     Attributes:
         definition: of the study.
+        sizes: of the run.
         people: who went through it.
         trials: of all people.
         traces: of all trials, for figures.
@@ -96,6 +97,7 @@ class Ran:
     """
 
     definition: Definition
+    sizes: Sizes
     people: tuple[Traits, ...]
     trials: tuple[Trial, ...]
     traces: tuple[Trace, ...]
@@ -124,7 +126,8 @@ def send_people(request: Request) -> Ran:
     grid_s = perf_counter() - began
     trials = tuple(trial for session in sessions for trial in session.trials)
     traces = tuple(trace for session in sessions for trace in session.traces)
-    return Ran(definition, people, trials, traces, trained, analyse(definition, trials), grid_s)
+    analysis = analyse(definition, trials, not_judged=request.sizes.not_judged)
+    return Ran(definition, request.sizes, people, trials, traces, trained, analysis, grid_s)
 
 
 def _training_cells(request: Request, people: tuple[Traits, ...]) -> list[TrainingCell]:

@@ -1,10 +1,12 @@
 """How large a run of a study with simulated people is; none of it belongs to the definition."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from enum import IntEnum
 from math import isinf
 from typing import Final, final
+
+from latentarm.user_studies.definition import StudyTask
 
 
 @final
@@ -35,6 +37,24 @@ class Sizes:
     hidden: tuple[int, ...] = (64, 64)
     state_noise_rad: float = 0.01
     alignment_steps: int = 400
+
+    @property
+    def not_judged(self) -> str:
+        """Why no claim is tested in a run of these sizes; empty where claims are."""
+        return "" if self.name == "paper" else f"preset {self.name}: it only shows that the study runs"
+
+    def people(self, number: int) -> str:
+        """Simulated people in words, with the preset where that is not the whole study."""
+        return f"{number} simulated people" + (f" (preset {self.name})" if self.not_judged else "")
+
+    def as_run(self, task: StudyTask) -> StudyTask:
+        """A task as a run of these sizes does it."""
+        return replace(
+            task,
+            trials=min(task.trials, self.most_trials),
+            trial_s=min(task.trial_s, self.trial_s),
+            demonstrations_min=task.demonstrations_min * self.demonstrations_share,
+        )
 
     def as_json(self) -> dict[str, object]:
         """Plain mapping; None for times that have no limit."""

@@ -109,3 +109,12 @@ def test_the_terminal_shows_one_table_for_each_arm(tmp_path):
     for table in tables:
         assert [column.header for column in table.columns] == ["mean ± SD", *METHODS]
         assert table.row_count == len(PRESETS["smoke"].people)
+
+
+def test_a_smoke_run_says_so_and_judges_nothing(tmp_path):
+    judged = report_of(tmp_path, PRESETS["paper"], tuple(TASKS)).page
+    page = report_of(tmp_path, PRESETS["smoke"], tuple(TASKS)).page
+    assert page.splitlines()[0] == "# Shared autonomy with latent actions (preset smoke)"
+    verdict = re.compile(r"\*\*H\d|supported|Holm")
+    assert verdict.search(judged)
+    assert not verdict.search(page)

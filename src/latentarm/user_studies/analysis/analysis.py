@@ -1,7 +1,7 @@
 """The whole analysis of a study: exclusions, claims, models of all trials, and as the paper printed it."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import final
 
 from latentarm.user_studies.analysis.anova import Effect
@@ -91,7 +91,9 @@ class Analysis:
         }
 
 
-def analyse(definition: Definition, trials: Sequence[Trial], ratings: Sequence[Trial] = ()) -> Analysis:
+def analyse(
+    definition: Definition, trials: Sequence[Trial], ratings: Sequence[Trial] = (), not_judged: str = ""
+) -> Analysis:
     """Analyse a study's trials; who gave them, simulated or real people, changes nothing.
 
     Args:
@@ -99,12 +101,15 @@ def analyse(definition: Definition, trials: Sequence[Trial], ratings: Sequence[T
         trials: of all people.
         ratings: their scores on the questionnaire's scales; rules of exclusion do not see these, but who is
             excluded is excluded here too.
+        not_judged: why no claim is tested; empty where claims are.
     """
     design = design_of(definition)
     kept, out = counted(definition.exclusions, trials)
     every = [*kept, *(one for one in ratings if one.person not in out.people)]
     both = sides_of(definition, every)
     tested = claims_tested(definition, both)
+    if not_judged:
+        tested = [replace(one, test=None, p=None, p_holm=None, why_not=not_judged) for one in tested]
     return Analysis(
         design=design,
         trials=tuple(kept),
@@ -112,8 +117,8 @@ def analyse(definition: Definition, trials: Sequence[Trial], ratings: Sequence[T
         tested=tuple(tested),
         modelled=tuple(_modelled(design, one, sides, every) for one, sides in zip(tested, both, strict=True)),
         verdicts=tuple(verdicts(definition, tested)),
-        effects=_effects(definition, every),
-        as_printed=tuple(as_printed(one, every) for one in definition.printed),
+        effects={} if not_judged else _effects(definition, every),
+        as_printed=() if not_judged else tuple(as_printed(one, every) for one in definition.printed),
     )
 
 

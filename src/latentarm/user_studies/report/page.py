@@ -30,6 +30,7 @@ from latentarm.user_studies.report.words import (
     task_words,
     yes_no,
 )
+from latentarm.user_studies.sizes import Sizes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,6 +45,7 @@ class Content:
 
     Attributes:
         definition: of the study.
+        sizes: of the run.
         analysis: of its trials.
         rows: of ``results.json``.
         people: what the people are like, lines below `latentarm.user_studies.report.people.HEAD`.
@@ -55,6 +57,7 @@ class Content:
     """
 
     definition: Definition
+    sizes: Sizes
     analysis: Analysis
     rows: Sequence[Row]
     people: Sequence[tuple[str, ...]]
@@ -78,6 +81,7 @@ def report_page(content: Content) -> str:
     definition, analysis = content.definition, content.analysis
     return environment.get_template("page.html").render(
         definition=definition,
+        sizes=content.sizes,
         who=content.who,
         command=content.command,
         notice=f"{content.words.notice} {QUOTED}" if definition.printed else content.words.notice,
@@ -88,7 +92,7 @@ def report_page(content: Content) -> str:
             (one.hypothesis.name, one.hypothesis.text, one.says, one.why) for one in analysis.verdicts
         ],
         condition_lines=[(one.name, one.about, *condition_parts(one)) for one in definition.conditions],
-        task_lines=[task_words(task) for task in definition.tasks],
+        task_lines=[task_words(content.sizes.as_run(task)) for task in definition.tasks],
         exclusion_lines=exclusion_words(definition),
         excluded_words=_excluded_words(analysis, content.who),
         departures=definition.departures,

@@ -45,10 +45,10 @@ def write_report(out: Path, ran: "Ran", rows: list[Row], command: str) -> str:
     Raises:
         UserError: a file cannot be written.
     """
-    who, people = f"{len(ran.people)} simulated people", people_lines(ran.people)
+    who, people = ran.sizes.people(len(ran.people)), people_lines(ran.people)
     figures = draw(ran.definition, ran.analysis.trials, ran.traces, who)
     return write_content(
-        out, Content(ran.definition, ran.analysis, rows, people, figures, who, SIMULATED, command)
+        out, Content(ran.definition, ran.sizes, ran.analysis, rows, people, figures, who, SIMULATED, command)
     )
 
 
@@ -81,7 +81,10 @@ def write_report_of(
     figures = draw(recorded.definition, analysis.trials, recorded.traces, who, ratings)
     words = SIMULATED if recorded.people_are == "simulated" else REAL
     return write_content(
-        out, Content(recorded.definition, analysis, rows, people, figures, who, words, command, ratings)
+        out,
+        Content(
+            recorded.definition, recorded.sizes, analysis, rows, people, figures, who, words, command, ratings
+        ),
     )
 
 
