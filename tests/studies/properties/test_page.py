@@ -1,4 +1,5 @@
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -89,6 +90,10 @@ def test_the_sweep_has_a_line_for_each_noise():
     ]
 
 
+SMALL = replace(PRESETS["smoke"], name="small")
+"""A preset whose hypotheses are judged."""
+
+
 def results_of(seeds=3, noises=(0.0, 0.1), tasks=tuple(MOTIONS)):
     rng = np.random.default_rng(0)
     results = []
@@ -98,7 +103,7 @@ def results_of(seeds=3, noises=(0.0, 0.1), tasks=tuple(MOTIONS)):
                 figures = {ERROR: mean + rng.random(seeds), "r2": rng.uniform(0.95, 1.0, seeds)}
                 results.append(
                     CellResult(
-                        Cell(task, model, noise, PRESETS["smoke"], 0),
+                        Cell(task, model, noise, SMALL, 0),
                         figures,
                         Turning(MOTIONS[task]().latent_dim, MOTIONS[task]().robot.dof),
                         fit_s=0.0,
@@ -107,8 +112,8 @@ def results_of(seeds=3, noises=(0.0, 0.1), tasks=tuple(MOTIONS)):
     return results
 
 
-def page_of(results, tasks):
-    request = Request(Path("out"), PRESETS["smoke"], tasks, seed=3)
+def page_of(results, tasks, preset=SMALL):
+    request = Request(Path("out"), preset, tasks, seed=3)
     return STUDY.report(request, results)
 
 
@@ -119,7 +124,7 @@ def report():
 
 def test_the_page_has_every_part(report):
     page = report.page
-    assert "latentarm reproduce properties --preset smoke --seed 3" in page
+    assert "latentarm reproduce properties --preset small --seed 3" in page
     assert "**simulated**" in page
     assert re.findall(r"^## (.*)", page, flags=re.MULTILINE) == [
         "In short",
@@ -154,3 +159,11 @@ def test_one_seed_of_one_task_leaves_out_what_was_not_done():
     assert "## Noise" not in page
     assert "nan" not in page
     assert "could not be tested" in page
+
+
+def test_a_smoke_run_says_so_and_judges_nothing(report):
+    page = page_of(results_of(), tuple(MOTIONS), PRESETS["smoke"]).page
+    assert page.splitlines()[0] == f"{report.page.splitlines()[0]} (preset smoke)"
+    verdict = re.compile(r"\*\*H\d|supported|Holm")
+    assert verdict.search(report.page)
+    assert not verdict.search(page)
