@@ -13,7 +13,7 @@ from latentarm.types import Episode
 @pytest.fixture(scope="session")
 def tiny() -> Preset:
     return Preset(
-        "tiny",
+        "paper",
         models=("pca", "cae"),
         noises_rad=(0.0, 0.05),
         folds=2,
