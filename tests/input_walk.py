@@ -267,6 +267,31 @@ class Walk:
             "(() => { const end = performance.now() + 300; while (performance.now() < end); })()"
         )
 
+    def alone(self) -> None:
+        """One fault while everything else rests: nothing else explains what moves."""
+        self.page.keyboard.press("Escape")
+        self.mouse_up()
+        while self.keys:
+            self.key_up()
+        self.pad_freeze()
+        self.page.evaluate("pads.forEach((pad) => { if (pad) pad.axes = [0, 0]; }); pads[2] = null")
+        for index in range(3):
+            self._end(f"pad {index}")
+        self.world.end_latched(time.monotonic())
+        self._pause(0.5)
+        self.enable()
+        self._pause(1.2)
+        fault = self.rng.choice(["appears", "misses", "chatters"])
+        if fault == "appears":
+            self._pad(2, [0.7, 0], "plug(2, [0.7, 0])", counts=False)
+        elif fault == "misses":
+            self.mouse_down()
+            self._pause(0.3)
+            self.release_missed()
+        else:
+            self.chatter()
+        self._pause(1.5)
+
     def long_hold(self) -> None:
         """Nothing changes for longer than anything may last."""
         for _ in range(23):
@@ -286,7 +311,7 @@ class Walk:
         *(("release_missed", 3), ("press_switch", 8), ("chatter", 2), ("pad_plug", 4), ("pad_unplug", 1)),
         *(("pad_push", 14), ("pad_rest", 12), ("pad_freeze", 4), ("pad_nonsense", 1), ("pad_button", 1.5)),
         *(("enable_by_pad", 2), ("stop", 1), ("dialog", 1), ("panel", 2), ("mode", 1), ("blur", 0.5)),
-        *(("reconnect", 0.3), ("hang", 0.3), ("long_hold", 0.25), ("start_again", 0.5)),
+        *(("reconnect", 0.3), ("hang", 0.3), ("long_hold", 0.25), ("start_again", 0.5), ("alone", 2)),
     )
 
     def go(self, events: int, longest_s: float = math.inf) -> None:
