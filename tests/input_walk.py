@@ -12,7 +12,7 @@ import random
 import sys
 import threading
 import time
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import pairwise
@@ -35,6 +35,9 @@ CHATTERS = ((25, 25, 20), (25, 25, 21), (75, 75, 7), (75, 75, 8), (100, 50, 9), 
 
 MOST_KEYS = 2
 
+TICK_S = 0.01
+LAG_WINDOW_S = 2.0
+
 KEYS = ("ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight", "KeyW", "KeyD")
 
 
@@ -45,6 +48,7 @@ class Watcher:
         self.samples: list[Sample] = []
         self.reasons: Counter[str] = Counter()
         self.excused_until_s = -math.inf
+        self._lags: deque[tuple[float, float]] = deque()
         self.state: dict[str, Any] = {}
 
     @property
@@ -60,6 +64,11 @@ class Watcher:
 
     def _see(self, state: dict[str, Any], now_s: float) -> None:
         was, self.state = self.enabled, state
+        # A busy computer delivers states late: the least late of the last ones says when each was true.
+        self._lags.append((now_s, now_s - TICK_S * state["tick"]))
+        while self._lags[0][0] < now_s - LAG_WINDOW_S:
+            self._lags.popleft()
+        now_s = TICK_S * state["tick"] + min(lag for _, lag in self._lags)
         if was and not self.enabled and state["reason"] is not None:
             self.reasons[state["reason"]["code"]] += 1
         excused = state["returning"] or now_s < self.excused_until_s
