@@ -120,7 +120,7 @@ def _simulated(folder: Path, config: dict[str, Any]) -> tuple[Traits, ...]:
 
 def _sizes(path: Path, config: dict[str, Any]) -> Sizes:
     sizes = config.get("sizes")
-    name = cast(dict[str, Any], sizes).get("name") if isinstance(sizes, dict) else "paper"
+    name = str(cast(dict[str, Any], sizes).get("name")) if isinstance(sizes, dict) else "paper"
     if name not in PRESETS:
         raise UserError(f"{path}: the sizes must be those of a preset: {', '.join(PRESETS)}.")
     return PRESETS[name]
