@@ -380,7 +380,8 @@ class Walk:
         self.page.evaluate(set_to + "false")
 
     def _press_switch(self, down_ms: int, up_ms: int, times: int, *, counts: bool) -> None:
-        by = self.rng.choice(["key", "key", 0, 1])
+        # A gamepad is read every 20 ms: contacts that open for 5 ms are held, to it.
+        by = self.rng.choice(["key", "key", 0, 1]) if up_ms > 20 else "key"
         self.world.end_latched(time.monotonic())
         source = f"switch {time.monotonic()}"
         if counts:
