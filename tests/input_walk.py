@@ -68,11 +68,11 @@ class Watcher:
         self._lags.append((now_s, now_s - TICK_S * state["tick"]))
         while self._lags[0][0] < now_s - LAG_WINDOW_S:
             self._lags.popleft()
-        now_s = TICK_S * state["tick"] + min(lag for _, lag in self._lags)
+        at_s = TICK_S * state["tick"] + min(lag for _, lag in self._lags)
         if was and not self.enabled and state["reason"] is not None:
             self.reasons[state["reason"]["code"]] += 1
         excused = state["returning"] or now_s < self.excused_until_s
-        self.samples.append(Sample(now_s, self.enabled, excused, np.array(state["tool"])))
+        self.samples.append(Sample(at_s, now_s, self.enabled, excused, np.array(state["tool"])))
 
 
 @contextmanager

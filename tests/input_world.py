@@ -46,9 +46,13 @@ class Push:
 
 @dataclass
 class Sample:
-    """What the arm's process has said."""
+    """What the arm's process has said.
+
+    It was true at `at_s`, by the ticks of its loop, or later, if the loop was late; at `heard_s` at last.
+    """
 
     at_s: float
+    heard_s: float
     enabled: bool
     excused: bool
     tool: np.ndarray
@@ -94,8 +98,11 @@ class World:
             moved = float(np.linalg.norm(sample.tool - before.tool))
             if moved <= STILL_M or sample.excused or before.excused:
                 continue
-            near = (one for one in self.pushes if one.began_s <= sample.at_s <= one.ended_s + GRACE_S)
-            if not any(one.explains(sample.at_s, enabled_s) for one in near):
+            times = (sample.at_s, sample.heard_s)
+            near = (
+                one for one in self.pushes if one.began_s <= times[1] and times[0] <= one.ended_s + GRACE_S
+            )
+            if not any(one.explains(now_s, enabled_s) for one in near for now_s in times):
                 found.append((sample.at_s, moved))
         return found
 
