@@ -56,6 +56,7 @@ FORWARD_AND_DOWN = np.array([0.6, 0.0, -0.8])
 THERE = Pose(HERE.position - 0.15 * SIDEWAYS + 0.1 * FORWARD_AND_DOWN, HERE.rotation)
 TINY = replace(
     PRESETS["smoke"],
+    name="small",
     steps=5,
     ideal_steps=5,
     ideal_answers=20,
