@@ -75,7 +75,7 @@ def test_values_are_of_the_types_of_the_options(tmp_path: Path) -> None:
         "epochs: null\nresume: true\n"
     )
     assert read_options(path, train, "train") == {
-        "demonstrations": Path("eat"),
+        "demonstrations": (Path("eat"),),
         "hidden": (30, 20),
         "context": ("state_belief",),
         "state_noise_rad": 0.01,

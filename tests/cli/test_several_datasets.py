@@ -69,4 +69,4 @@ def test_inspect_and_train_repeat_what_import_warned_of(
         assert code == 0
         assert f"{warned}" in err, command
     json.loads(out)
-    assert warned in json.loads(Path("runs/a-pca/config.json").read_text())["run"]["warnings"][0]
+    assert warned in json.loads(Path("runs/a-pca/config.json").read_text())["warnings"][0]

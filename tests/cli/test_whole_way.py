@@ -105,7 +105,7 @@ def test_the_same_seed_gives_the_same_figures(run: Run, eat: Path) -> None:
 
 
 def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from latentarm.commands import demo
+    from latentarm.commands import demo_run
     from latentarm.commands.demo import DemoOptions
     from latentarm.commands.demo_run import Sizes, run_demo
     from latentarm.commands.drive_at_goals import drive_run
@@ -116,7 +116,7 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
     # Models of one epoch get nowhere; a demonstration takes 5 to 6 s.
     monkeypatch.setattr(task_drive, "STUCK_S", 0.05)
     monkeypatch.setattr(Marshmallows, "time_limit_s", 6.5)
-    monkeypatch.setattr(demo, "DRIVERS", drivers := ("greedy", "unsteady"))
+    monkeypatch.setattr(demo_run, "DRIVERS", drivers := ("greedy", "unsteady"))
     config = DemoOptions(Path("demo"), drives=1, jobs=1, json=True)
     sizes = Sizes(episodes=5, seeds=1, epochs={DEFAULT_MODEL: 1, "cvae": 1})
     shown = run_demo(config, sizes)
@@ -153,7 +153,7 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
         (len(one.state), 7 * len(recorded.objects)) for one in recorded.episodes
     }
     # A second time: the earlier demo makes room.
-    monkeypatch.setattr(demo, "demonstrate", Mock(side_effect=InterruptedError))
+    monkeypatch.setattr(demo_run, "demonstrate", Mock(side_effect=InterruptedError))
     with pytest.raises(InterruptedError):
         run_demo(config, sizes)
     assert {path.name for path in Path("demo").iterdir()} == {"config.json", "runs"}

@@ -7,7 +7,20 @@ import pytest
 from latentarm.cli import main
 from latentarm.control.recorder import EpisodeHeader, Recorder
 from latentarm.tasks.table_top import TableTop
-from latentarm.types import Command, StepRecord
+from latentarm.types import Command, Input, Reading, StepRecord
+from latentarm.web.arm_process.drive_setup import Spec, load_setup
+from latentarm.web.arm_process.incident import begin_incident
+
+
+def drive_on_the_page(out: Path) -> None:
+    """An incident file of two ticks, as `latentarm teleop` leaves it."""
+    setup = load_setup(Spec(out=out))
+    calls = begin_incident(setup)
+    step = setup.step(calls=calls)
+    step.reset(setup.start)
+    for tick in range(2):
+        step(Input(np.zeros(2)), 0.0, Reading(setup.start, np.zeros(7), 0.01 * tick, tick), 0.01 * tick)
+    calls.close()
 
 
 def record_on_the_page(journal: Path) -> None:
@@ -45,4 +58,5 @@ def fixture_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert main([*train, "--out", str(folder / "runs/eat-cvae")]) == 0
     (folder / "teleop").mkdir()
     record_on_the_page(folder / "teleop/journal.sqlite")
+    drive_on_the_page(folder / "teleop")
     return folder

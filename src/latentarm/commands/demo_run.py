@@ -4,7 +4,7 @@ import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final, final
+from typing import TYPE_CHECKING, Final, final
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -13,7 +13,6 @@ from latentarm.alignment.profile import profile_names
 from latentarm.assistance.assistance import AssistanceRule
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.goal_blending import blending
-from latentarm.commands.demo import DemoOptions
 from latentarm.commands.demo_page import FILM, film, held_in_words, page
 from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
@@ -44,6 +43,9 @@ from latentarm.tasks.eating.marshmallows import Marshmallows
 from latentarm.tasks.place import ScenePlace
 from latentarm.types import Row
 from latentarm.untrusted.console import VisibleConsole
+
+if TYPE_CHECKING:
+    from latentarm.commands.demo import DemoOptions
 
 MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae")))
 """The default model and the paper's."""
@@ -101,7 +103,7 @@ class Shown:
     said: tuple[str, ...]
 
 
-def run_demo(config: DemoOptions, sizes: Sizes = USUAL) -> Shown:
+def run_demo(config: "DemoOptions", sizes: Sizes = USUAL) -> Shown:
     """Run the whole demo and write its results to ``config.out``.
 
     Raises:
@@ -170,13 +172,13 @@ def _draw(shown: Mapping[str, Sequence[TaskTrace]], properties: Sequence[Row], o
 class _Learning:
     """One kind of model, as it is trained and measured."""
 
-    config: DemoOptions
+    config: "DemoOptions"
     model: str
     seeds: int
     epochs: int
 
 
-def _learn_all(config: DemoOptions, sizes: Sizes) -> list[Row]:
+def _learn_all(config: "DemoOptions", sizes: Sizes) -> list[Row]:
     """Train and measure the models, side by side."""
     calls = [_Learning(config, model, sizes.seeds, sizes.epochs[model]) for model in MODELS]
     found = run_grid(
@@ -237,7 +239,7 @@ class _Condition:
         return self.subject.model in (MODELS[0], None)
 
 
-def _conditions(task: Marshmallows, config: DemoOptions, seeds: int) -> list[_Condition]:
+def _conditions(task: Marshmallows, config: "DemoOptions", seeds: int) -> list[_Condition]:
     """The shown person with everything, the others without help, with the default model or mode switching."""
     steered: list[tuple[str | None, str, Sequence[Controller], AssistanceRule | None]] = []
     for model in MODELS:
@@ -266,7 +268,7 @@ def _named(person: OperatorName, row: Row) -> Row:
     return row if person == SHOWN else replace(row, condition=f"{row.condition}, {person}")
 
 
-def _about(config: DemoOptions, sizes: Sizes) -> dict[str, object]:
+def _about(config: "DemoOptions", sizes: Sizes) -> dict[str, object]:
     """What the figures depend on."""
     return {
         "study": "demo",
@@ -281,7 +283,7 @@ def _about(config: DemoOptions, sizes: Sizes) -> dict[str, object]:
     }
 
 
-def _claim(config: DemoOptions, sizes: Sizes) -> None:
+def _claim(config: "DemoOptions", sizes: Sizes) -> None:
     """Prepare the folder: a demo with the same options is replaced, anything else is left alone.
 
     Raises:

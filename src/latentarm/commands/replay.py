@@ -12,13 +12,14 @@ from latentarm.commands.output import say
 
 def replay(
     file: Annotated[
-        Positional[Path], arg(metavar="FILE", help="An incident file, from incidents/ in `teleop --out`.")
+        Positional[Path],
+        arg(metavar="FILE", help="An incident file, or the folder that has them: its newest file."),
     ],
     json: Json = False,
 ) -> int:
     """Decide again what an arm was commanded on the page, and compare every command to the bit.
 
-    Exit code 1 where one differs. For example: latentarm replay teleop/incidents/20261125.incident.gz
+    Exit code 1 where one differs. For example: latentarm replay teleop/incidents
     """
     from latentarm.web.arm_process.replay import ELSEWHERE_RAD_S, replay
 

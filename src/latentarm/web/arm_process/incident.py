@@ -58,6 +58,21 @@ def begin_incident(setup: DriveSetup) -> CallLog | None:
         return None
 
 
+def newest(path: Path) -> Path:
+    """The file itself, or the newest one of a folder.
+
+    Raises:
+        UserError: the folder has none.
+    """
+    if not path.is_dir():
+        return path
+    if not (files := sorted(path.glob(f"*{_SUFFIX}"))):
+        raise UserError(
+            f"{path} has no incident file: name incidents/ of the folder that `teleop --out` names."
+        )
+    return files[-1]
+
+
 def computer() -> str:
     """What the last bits of a result depend on."""
     kernels = {str(one.get("architecture")) for one in threadpool_info() if one["user_api"] == "blas"}

@@ -15,7 +15,7 @@ from latentarm.control.exact_json import of_json
 from latentarm.errors import UserError
 from latentarm.types import FloatArray, GripperReading, Input, Reading, Stop
 from latentarm.web.arm_process.drive_setup import DriveSetup
-from latentarm.web.arm_process.incident import computer, rebuild, unpack
+from latentarm.web.arm_process.incident import computer, newest, rebuild, unpack
 
 ELSEWHERE_RAD_S: Final = 1e-9
 """On another computer velocities may differ by so much, rad/s."""
@@ -103,7 +103,7 @@ def _differences(then: Any, now: Any) -> tuple[float, bool]:
 
 
 def replay(path: Path) -> dict[str, Any]:
-    """Replay an incident file.
+    """Replay an incident file, or the newest of a folder.
 
     Returns:
         What `Replay` found, with ``same``: whether the commands are the same as nearly as this computer can
@@ -112,6 +112,7 @@ def replay(path: Path) -> dict[str, Any]:
     Raises:
         UserError: it is none, is damaged, or names what is missing here or differs.
     """
+    path = newest(path)
     lines = read_calls(path)
     head, here, complete = next(lines), computer(), False
     if head.get("incident") != 1:
