@@ -51,7 +51,7 @@ SPRING_M: Final = 0.05
 """Where springs begin, above the table, m."""
 
 AFTER_S: Final = (0.0, 0.2, 1.0, 3.0)
-"""When the force is looked at, after the stop, s."""
+"""Times after the stop at which the force is read, s."""
 
 WATCHED_TICKS: Final = round(AFTER_S[-1] / PERIOD_S)
 
@@ -61,7 +61,7 @@ STIFFNESS_N_MM: Final = (150.0, 75.0, 25.0, 10.0)
 
 @final
 class Thing:
-    """What the arm presses on.
+    """A thing that the arm presses on.
 
     Args:
         arm: that presses.

@@ -129,7 +129,7 @@ class FingerServo(SimulatedGripper):
         return GripperReading(sum(where), self._holds(where))
 
     def _holds(self, where: list[float]) -> bool:
-        """Whether the fingers, which are at these positions, m, have been stalled for long enough."""
+        """True once fingers at these positions, m, have been stalled for long enough."""
         return self._stalled(where) and self._data.time - self._moved_s >= _STALLED_S
 
     def _stalled(self, where: list[float]) -> bool:

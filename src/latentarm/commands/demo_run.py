@@ -92,7 +92,7 @@ USUAL = Sizes()
 
 @dataclass(frozen=True)
 class Shown:
-    """What the demo showed.
+    """Results of the demo.
 
     Attributes:
         rows: figures of the drives: mean and SD over all of a condition.

@@ -82,7 +82,7 @@ class CallLog:
             line["answer"] = result.command if isinstance(result, StepRecord) else result
             return result
         finally:
-            # Who looks at the surroundings between calls is none of them.
+            # Looks at the surroundings between calls belong to none.
             self._inside, self._seen = False, []
             self._lines.append(line)
 
@@ -144,7 +144,7 @@ def logged(method: Callable[Concatenate[_S, _P], _R]) -> Callable[Concatenate[_S
 
 
 def answer_of(result: object) -> Any:
-    """What a call decided: a command, with the code of its stop, or why the arm may not move."""
+    """The decision of a call: a command with the code of its stop, or the reason why the arm may not move."""
     if isinstance(result, StepRecord):
         return answer_of(result.command)
     if isinstance(result, Command):

@@ -129,7 +129,7 @@ class Hand:
         """Stop the fingers, where they are under way, and wait for the hand's answer.
 
         Returns:
-            Whether a motion had come to its end by itself.
+            True if a motion had ended by itself.
         """
         if self._motion is None or self._motion.wait(0.0):
             ended, self._motion = self._motion is not None, None

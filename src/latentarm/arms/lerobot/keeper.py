@@ -266,7 +266,7 @@ class Keeper:
         return opening
 
     def _jaw_has_torque(self) -> bool:
-        """Whether the jaw can be driven; one without torque would get it from a new goal, and leap."""
+        """Whether the jaw has torque: a new goal would power one that has none, and it would leap."""
         with suppress(OSError):
             return GRIPPER not in self._bus.limp()
         return False

@@ -118,7 +118,7 @@ class GripperLink:
                     if self._ended:
                         return
                     target, enable, self._enable = self._target, self._enable, False
-                # What opens it may come before the arm was ever enabled.
+                # An order to open may come before the arm was ever enabled.
                 if enable or (target is not None and target[1] > 0 and not self._on):
                     self._on = True
                     self._ask(lambda: self._commands.gripper_modbus_set_en(1))
