@@ -202,6 +202,11 @@ def desk_in_physics(setup: DriveSetup, tmp_path: Path) -> Iterator[Desk]:
         yield desk
 
 
+def way_m(before: dict[str, Any], after: dict[str, Any]) -> float:
+    """How far the tool is from where it was, m."""
+    return float(np.linalg.norm(np.subtract(before["tool"], after["tool"])))
+
+
 @dataclass
 class Client:
     """A page without a browser: it keeps the newest state, counts them, and sends inputs while `u` is set."""
@@ -240,6 +245,20 @@ class Client:
                 self.wait(lambda state: state["phase"] == "ready", within_s=1.0)
                 return
         raise AssertionError(f"it could not be enabled: {self.state}")
+
+    def drive(self, *u: float) -> None:
+        """Enable, and push until the arm is on its way: a busy machine may stop it first, and again."""
+        for _ in range(5):
+            self.enable()
+            before = self.state
+            self.u = list(u)
+            self.wait(
+                lambda state, before=before: state["phase"] != "ready" and state["tick"] > before["tick"] + 5
+            )
+            self.wait(lambda state, before=before: way_m(before, state) > 0.01 or state["phase"] != "moving")
+            if self.state["phase"] == "moving":
+                return
+        raise AssertionError(f"it was stopped five times: {self.state}")
 
     def wait_closed(self, within_s: float = 5.0) -> None:
         end_s = time.monotonic() + within_s

@@ -13,28 +13,9 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from latentarm.web.protocol.page_messages import FRAME_LIMIT
 from latentarm.web.server.frames import BURST
 
+from .conftest import way_m
+
 HELLO = '{"type": "hello", "version": 1}'
-
-
-def moved(before, after):
-    return float(np.linalg.norm(np.subtract(before["tool"], after["tool"])))
-
-
-def drive(page):
-    """Enabled, and on the way. On a busy machine the arm may stop first: people press Enable again too."""
-    for _ in range(5):
-        page.enable()
-        before = page.state
-        page.u = [1.0, 0.0]
-        page.wait(
-            lambda state, before=before: state["phase"] != "ready" and state["tick"] > before["tick"] + 5
-        )
-        state = page.wait(
-            lambda state, before=before: moved(before, state) > 0.01 or state["phase"] != "moving"
-        )
-        if state["phase"] == "moving":
-            return
-    raise AssertionError(f"it was stopped five times: {page.state}")
 
 
 def at_rest(page):
@@ -43,7 +24,7 @@ def at_rest(page):
     first = page.state
     time.sleep(0.15)
     assert page.state["tick"] > first["tick"]
-    assert moved(first, page.state) == 0.0
+    assert way_m(first, page.state) == 0.0
 
 
 def test_a_page_drives_the_arm_and_stops_it(site):
@@ -51,7 +32,7 @@ def test_a_page_drives_the_arm_and_stops_it(site):
         assert page.welcome["modes"] == ["latent", "assisted", "end_effector"]
         assert page.welcome["latent_dim"] == 2
         assert [goal["name"] for goal in page.welcome["goals"]] == ["carrot", "tofu", "melon"]
-        drive(page)
+        page.drive(1.0, 0.0)
         page.send(type="stop")
         at_rest(page)
         assert page.state["reason"]["code"] == "stop_pressed_by"
@@ -63,7 +44,7 @@ def test_nothing_moves_without_enable(site):
         before = page.state
         page.u = [1.0, 1.0]
         time.sleep(0.5)
-        assert moved(before, page.state) == 0.0
+        assert way_m(before, page.state) == 0.0
         assert page.state["phase"] == "neutral_needed"
 
 
@@ -72,7 +53,7 @@ def test_a_page_that_goes_stops_the_arm(site):
         watcher.send(type="release")
         page.send(type="ask_to_drive")
         page.wait(lambda state: state["you"])
-        drive(page)
+        page.drive(1.0, 0.0)
         page.socket.close()
         at_rest(watcher)
         assert watcher.state["driver"] is None
@@ -96,11 +77,11 @@ def test_only_the_driver_drives_and_everybody_stops(site):
             bob.send(**message)
         before = bob.state
         time.sleep(0.4)
-        assert moved(before, bob.state) == 0.0
+        assert way_m(before, bob.state) == 0.0
         assert bob.state["mode"] == before["mode"]
         assert bob.state["recording"] is None
         assert ada.state["you"]
-        drive(ada)
+        ada.drive(1.0, 0.0)
         bob.send(type="stop")
         at_rest(ada)
         assert ada.state["reason"]["code"] == "stop_pressed_by"
@@ -109,7 +90,7 @@ def test_only_the_driver_drives_and_everybody_stops(site):
 
 def test_driving_is_handed_over_and_the_arm_stops_for_it(site):
     with site.page() as ada, site.page("Bob") as bob:
-        drive(ada)
+        ada.drive(1.0, 0.0)
         bob.send(type="ask_to_drive")
         assert ada.wait(lambda state: state["asking"])["asking_name"] == "Bob"
         assert ada.state["phase"] == "moving"
@@ -118,13 +99,13 @@ def test_driving_is_handed_over_and_the_arm_stops_for_it(site):
         at_rest(bob)
         before = bob.state
         time.sleep(0.2)  # Ada still pushes
-        assert moved(before, bob.state) == 0.0
-        drive(bob)
+        assert way_m(before, bob.state) == 0.0
+        bob.drive(1.0, 0.0)
 
 
 def test_modes_can_be_switched_while_it_moves(site):
     with site.page() as page:
-        drive(page)
+        page.drive(1.0, 0.0)
         pushed = page.u
         for mode, axes in (("end_effector", 1), ("assisted", None), ("latent", None)):
             page.send(type="mode", mode=mode, axes=axes)
@@ -141,7 +122,7 @@ def test_an_episode_ends_with_its_driver(site):
         ada.send(type="record", on=True, task="stab")
         assert bob.wait(lambda state: state["recording"] and state["recording"]["on"])
         before = bob.state["recording"]["episodes"]
-        drive(ada)
+        ada.drive(1.0, 0.0)
         ada.socket.close()
         bob.wait(lambda state: not state["recording"]["on"] and state["recording"]["episodes"] > before)
 
@@ -149,7 +130,7 @@ def test_an_episode_ends_with_its_driver(site):
 def test_help_shows_in_the_state(site):
     with site.page() as page:
         page.send(type="mode", mode="assisted")
-        drive(page)
+        page.drive(1.0, 0.0)
         state = page.wait(lambda state: state["alpha"] > 0.0)
         # Medium at first, which grows to 0.1 with how sure the robot is.
         assert state["help"] == "medium"
@@ -181,15 +162,15 @@ def test_the_arm_goes_back_to_its_start_when_it_is_not_enabled(site):
         start = page.wait(lambda state: state["tick"] > 0)
         time.sleep(0.3)
         start = page.state
-        drive(page)
+        page.drive(1.0, 0.0)
         page.send(type="reset")
         time.sleep(0.2)
         assert page.state["phase"] == "moving"
         page.send(type="stop")
         at_rest(page)
-        assert moved(start, page.state) > 0.01
+        assert way_m(start, page.state) > 0.01
         page.send(type="reset")
-        page.wait(lambda state: moved(start, state) < 1e-4)
+        page.wait(lambda state: way_m(start, state) < 1e-4)
 
 
 def test_pages_beyond_the_cap_are_turned_away(site):
@@ -254,7 +235,7 @@ def ends(socket):
 )
 def test_what_is_no_message_ends_the_connection_and_stops_the_arm(site, frame):
     with site.page() as ada:
-        drive(ada)
+        ada.drive(1.0, 0.0)
         with site.raw() as socket:
             socket.send(HELLO)
             socket.recv()
@@ -279,7 +260,7 @@ def flood(socket):
 
 def test_a_flood_ends_the_connection(site):
     with site.page() as ada:
-        drive(ada)
+        ada.drive(1.0, 0.0)
         with site.raw() as socket:
             socket.send(HELLO)
             with pytest.raises(ConnectionClosed) as closed:
@@ -297,7 +278,7 @@ def test_what_a_driver_sends_that_is_no_message_stops_the_arm_too(site):
             with site.page("Ada") as ada:
                 ada.send(type="ask_to_drive")
                 ada.wait(lambda state: state["you"])
-                drive(ada)
+                ada.drive(1.0, 0.0)
                 ada.socket.send(frame)
                 ada.wait_closed()
                 assert ada.closed in (1003, 1008)
@@ -305,13 +286,13 @@ def test_what_a_driver_sends_that_is_no_message_stops_the_arm_too(site):
                 assert bob.state["driver"] is None
         bob.send(type="ask_to_drive")
         bob.wait(lambda state: state["you"])
-        drive(bob)
+        bob.drive(1.0, 0.0)
 
 
 def test_a_watcher_that_sends_nonsense_stops_the_arm_and_takes_nothing_from_the_driver(site):
     """It may have been meant as Stop. Everything else is as after a watcher's Stop."""
     with site.page("Ada") as ada, site.page("Bob") as bob:
-        drive(ada)
+        ada.drive(1.0, 0.0)
         mode = ada.state["mode"]
         bob.socket.send('{"type": "stop", "now": true}')
         bob.wait_closed()
@@ -319,7 +300,7 @@ def test_a_watcher_that_sends_nonsense_stops_the_arm_and_takes_nothing_from_the_
         assert ada.closed is None
         assert ada.state["you"]
         assert ada.state["mode"] == mode
-        drive(ada)
+        ada.drive(1.0, 0.0)
 
 
 def storm(site, rounds, rng):
@@ -353,17 +334,17 @@ def test_a_thousand_malformed_messages_crash_nothing_and_move_nothing(site):
         before = ada.state
         storm(site, 75, rng)
         assert site.control.alive
-        assert moved(before, ada.state) == 0.0
+        assert way_m(before, ada.state) == 0.0
         assert ada.state["phase"] == "disengaged"
         # While she drives they stop the arm. She can drive on.
         for _ in range(5):
-            drive(ada)
+            ada.drive(1.0, 0.0)
             storm(site, 10, rng)
             at_rest(ada)
             assert site.control.alive
             assert ada.closed is None
             assert ada.state["you"]
-        drive(ada)
+        ada.drive(1.0, 0.0)
 
 
 def post(site, path, **headers):
@@ -374,7 +355,7 @@ def post(site, path, **headers):
 
 def test_stop_works_without_a_socket(site):
     with site.page() as ada:
-        drive(ada)
+        ada.drive(1.0, 0.0)
         with pytest.raises(urllib.error.HTTPError):
             post(site, "/stop")
         assert ada.state["phase"] == "moving"

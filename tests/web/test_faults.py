@@ -50,13 +50,7 @@ def times_of(folder, fault_s):
 
 def set_going(page):
     page.send(type="record", on=True, task="fault")
-    for _ in range(5):
-        page.enable()
-        page.u = [1.0, 0.0]
-        time.sleep(0.4)
-        if page.state["phase"] == "moving":
-            return
-    raise AssertionError(f"it would not go: {page.state}")
+    page.drive(1.0, 0.0)
 
 
 def test_a_page_that_falls_silent(recorded):

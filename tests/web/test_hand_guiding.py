@@ -179,10 +179,8 @@ def test_an_arm_learns_from_motions_by_hand_and_is_driven_with_what_it_learned(s
         assert time.monotonic() - began_s < 120.0
         page.send(type="run", run="by-hand")
         wait_for(lambda: page.welcome["run"] == "by-hand")
-        page.enable()
         begun = arm.positions()
-        page.u = [1.0, 0.0]
-        page.wait(lambda state: state["phase"] == "moving")
+        page.drive(1.0, 0.0)
         time.sleep(1.0)
         page.u = [0.0, 0.0]
         assert np.abs(arm.positions() - begun).max() > 0.02

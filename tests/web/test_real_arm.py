@@ -136,10 +136,7 @@ def test_a_page_drives_it_and_what_ends_the_page_stops_it(serve_arm, server):
         time.sleep(0.3)
         np.testing.assert_array_equal(server.positions(), begun)
         page.send(type="mode", mode="end_effector", axes=0)
-        page.enable()
-        page.u = [1.0, 0.0]
-        page.wait(lambda state: state["phase"] == "moving")
-        time.sleep(0.5)
+        page.drive(1.0, 0.0)
         assert np.abs(server.positions() - begun).max() > 0.01
         site.control.end()
         rested = server.positions()

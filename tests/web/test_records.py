@@ -44,10 +44,8 @@ def test_a_person_s_drives_are_kept_listed_taken_along_and_deleted(server, ask, 
     assert place / "records" / "people" / person["id"] / "person.json" in everywhere(place, NAME)
     with server.page(person=person["id"]) as page:
         assert page.state["driver_name"] == NAME
-        page.enable()
         page.send(type="record", on=True, task="soup")
-        page.u = [0.0, 1.0]
-        page.wait(lambda state: state["phase"] == "moving")
+        page.drive(0.0, 1.0)
         time.sleep(0.8)
         page.send(type="stop")
         page.wait(lambda state: state["phase"] == "neutral_needed")
@@ -57,9 +55,11 @@ def test_a_person_s_drives_are_kept_listed_taken_along_and_deleted(server, ask, 
     (drive,) = ask.get("/records/drives", params={"person": person["id"]}).json()["drives"]
     assert drive["task"] == "table_top"
     assert drive["inputs"] == ["pointer"]
-    assert (drive["presses"], drive["stops"], drive["ended"]) == (1, 1, "driver_changed")
+    late = drive["late_stops"]  # those of a busy machine, after which the arm was enabled and pushed again
+    assert drive["stops"] - late == 1 <= drive["presses"] <= 1 + late
+    assert drive["ended"] == "driver_changed"
     assert 0.5 < drive["moving_s"] <= drive["time_s"] < 10
-    assert drive["reasons"] == {"stop_pressed_by": 1}
+    assert drive["reasons"] == {"stop_pressed_by": 1} | ({"input_late": late} if late else {})
     assert (drive["outcome"], drive["steps_done"]) == (None, 0)
     for other in ({"person": ""}, {"task": "pour"}, {"input": "switch"}, {"until": "2001-01-01"}):
         assert ask.get("/records/drives", params=other).json()["drives"] == []
@@ -74,7 +74,7 @@ def test_a_person_s_drives_are_kept_listed_taken_along_and_deleted(server, ask, 
     assert all(len(row) == len(scene["bodies"]) for row in trace["bodies"])
 
     (row,) = csv.DictReader(io.StringIO(ask.get("/records/drives.csv").content.decode("utf-8-sig")))
-    assert (row["person"], row["stops"], row["outcome"]) == (NAME, "1", "")
+    assert (row["person"], row["stops"], row["outcome"]) == (NAME, str(drive["stops"]), "")
 
     (recording,) = ask.get("/records/recordings").json()["recordings"]
     assert [one["person"] for one in recording["episodes"]] == [person["id"]]
