@@ -50,7 +50,7 @@ demo: $(VENV)/installed ## Learn latent actions and stab marshmallows with a 7-D
 check: $(VENV)/installed-dev node_modules/installed ## Lint, formatting, types and import layers.
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/pyright --pythonpath $(BIN)/python
+	$(BIN)/pyright --pythonpath $(BIN)/python --threads 2
 	$(BIN)/lint-imports
 	$(BIN)/node node_modules/typescript/bin/tsc
 

@@ -398,13 +398,14 @@ def test_the_oldest_files_go(setup, tmp_path, monkeypatch):
     assert len(left) == 3
 
 
-def test_a_long_file_is_followed_by_another_one_when_the_arm_is_not_enabled(desk, tmp_path):
-    with recorded(desk, tmp_path / "out") as calls:
-        desk.each_tick = lambda now_s: setattr(calls, "large", now_s > 0.3)
-        desk.run(1.0)
+def test_a_long_file_is_followed_by_another_one_when_the_arm_is_not_enabled(desk, tmp_path, monkeypatch):
+    monkeypatch.setattr(incident, "MOST_FILE_BYTES", 4 * 50_000)  # the first quarter of which is large
+    with recorded(desk, tmp_path / "out"):
+        desk.run(60.0)
     assert isinstance(desk.drive.change, ChooseProfile)
     assert desk.drive.change.name == desk.setup.spec.profile
-    assert 0.3 < desk.times()[-1] < 0.9
+    assert newest(tmp_path / "out").stat().st_size > 50_000
+    assert desk.times()[-1] < 59.0
 
 
 def test_a_file_that_cannot_be_written_stops_no_arm(desk, tmp_path, capfd):

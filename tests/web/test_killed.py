@@ -82,6 +82,18 @@ def test_a_drive_whose_arm_process_is_killed_is_in_the_history_at_once(serve, tm
     assert [drive.ended for drive in drives_in(tmp_path)] == ["broken_off"]
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_server_that_has_just_begun_ends_when_it_is_told(tmp_path, number):
+    with subprocess.Popen(
+        command(tmp_path), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as server:
+        server.stdout.readline()
+        server.send_signal(number)
+        _, said = server.communicate(timeout=60)
+    assert server.returncode == 0
+    assert said.endswith("The page is closed.\n")
+
+
 def test_a_second_server_on_a_folder_is_refused_in_one_sentence_until_the_first_ends(tmp_path):
     with running(tmp_path):
         second = subprocess.run(command(tmp_path), capture_output=True, text=True, timeout=120)

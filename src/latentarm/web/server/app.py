@@ -3,9 +3,10 @@
 import asyncio
 import logging
 import shlex
+import signal
 import socket
-from collections.abc import AsyncGenerator, Callable
-from contextlib import asynccontextmanager
+from collections.abc import AsyncGenerator, Callable, Generator
+from contextlib import asynccontextmanager, contextmanager
 from dataclasses import replace
 from functools import partial
 from typing import Any, Final
@@ -135,24 +136,24 @@ def _serve_alone(
         gate = gated(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
         )
-        first = f"{base}/" if invitations is None else invitations.first()
-        say(f"The page is at {first} (end with Ctrl-C).")
-        if invitations is not None:
-            invitations.draw(first)
-            say("This link works once; when it is used the next one is printed.")
-            if config.scheme == "http":
-                say("Without --certfile and --keyfile the network can read and change what is sent.")
-        ready(first)
-        if config.spec.run is None:
-            say(
-                "Without a run the page has end-effector control alone; `latentarm demo` or `latentarm train`"
-                " makes one, and `latentarm teleop RUN` drives it."
-            )
         server = uvicorn.Server(server_config(gate, config, LOGGING))
-        # Every input passes through here.
-        with short_collections(), asyncio.Runner(loop_factory=server.config.get_loop_factory()) as runner:
-            runner.run(serve_on(listening, server, limits_here()))
-    except KeyboardInterrupt:
+        with _until_told(server):
+            first = f"{base}/" if invitations is None else invitations.first()
+            say(f"The page is at {first} (end with Ctrl-C).")
+            if invitations is not None:
+                invitations.draw(first)
+                say("This link works once; when it is used the next one is printed.")
+                if config.scheme == "http":
+                    say("Without --certfile and --keyfile the network can read and change what is sent.")
+            ready(first)
+            if config.spec.run is None:
+                say(
+                    "Without a run the page has end-effector control alone; `latentarm demo` or `latentarm"
+                    " train` makes one, and `latentarm teleop RUN` drives it."
+                )
+            # Every input passes through here.
+            with short_collections(), asyncio.Runner(loop_factory=server.config.get_loop_factory()) as runner:
+                runner.run(serve_on(listening, server, limits_here()))
         say("The page is closed.")
     finally:
         control.end()
@@ -161,6 +162,21 @@ def _serve_alone(
         listening.close()
     for journal in sorted(set(out.glob(f"*{JOURNAL_SUFFIX}")) - before):
         say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
+
+
+@contextmanager
+def _until_told(server: uvicorn.Server) -> Generator[None]:
+    """Ctrl-C and SIGTERM end the server, also while it begins: an exception then may be lost in a library."""
+
+    def tell(*_: object) -> None:
+        server.should_exit = True
+
+    before = {number: signal.signal(number, tell) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _looked_at(
