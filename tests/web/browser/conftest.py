@@ -295,6 +295,12 @@ def driven_back(page: Page, arm: Arm) -> None:
     arm.comes_to_rest()
 
 
+def press_switch(page: Page, key: str) -> None:
+    """Press a switch's key as long as the page asks, and not sooner than a person sees what is lit."""
+    page.wait_for_timeout(220)
+    page.keyboard.press(key, delay=80)
+
+
 def enable(page: Page, arm: Arm) -> None:
     """Enable the arm, unless it is enabled."""
     for _ in range(TRIES):

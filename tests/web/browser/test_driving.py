@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import Error
 
+from .conftest import press_switch
+
 NEAR_M = 0.03
 PATIENCE_S = 60.0
 NOTICED_S = 1.0
@@ -89,7 +91,7 @@ class OneSwitch:
     def __init__(self, page, _drag_stick):
         self.page = page
         page.get_by_role("button", name="Settings").click()
-        page.get_by_label("Time on each choice").fill("0.4")
+        page.get_by_label("Time on each choice").fill("0.6")
         page.get_by_role("button", name="Done").click()
         page.get_by_role("radio", name="Switch").check()
         page.get_by_role("button", name="Switch", exact=True).focus()
@@ -99,7 +101,7 @@ class OneSwitch:
         with suppress(Error):
             lit = self.page.locator(f"#scan li[data-choice={choice}][aria-current=true]")
             lit.wait_for(timeout=SCANNED_MS)
-            self.page.keyboard.press("Enter")
+            press_switch(self.page, "Enter")
 
     def enable(self):
         self._choose("enable")
@@ -109,7 +111,7 @@ class OneSwitch:
 
     def let_go(self):
         if self.page.locator("#scan li[data-moving=true]").count():
-            self.page.keyboard.press("Enter")
+            press_switch(self.page, "Enter")
 
 
 class Gamepad:

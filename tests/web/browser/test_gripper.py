@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import Error
 
+from .conftest import press_switch
+
 GAMEPAD = """
 const buttons = [0, 1, 2, 3].map(() => ({ pressed: false }));
 window.pad = { index: 0, connected: true, axes: [0, 0], buttons };
@@ -20,7 +22,7 @@ navigator.getGamepads = () => [window.pad];
 UP, STILL, DOWN = 1, 0, -1
 LIFTED_M = 0.06
 DROP_M = 0.004
-PATIENCE_S = 40.0
+PATIENCE_S = 120.0
 TRIES = 8
 
 
@@ -98,7 +100,7 @@ class OneSwitch:
     def __init__(self, page):
         self.page = page
         page.get_by_role("button", name="Settings").click()
-        page.get_by_label("Time on each choice").fill("0.4")
+        page.get_by_label("Time on each choice").fill("0.6")
         page.get_by_role("button", name="Done").click()
         page.get_by_role("radio", name="Switch").check()
         page.get_by_role("button", name="Switch", exact=True).focus()
@@ -109,7 +111,7 @@ class OneSwitch:
         # The choices change when the arm stops by itself: then there is nothing to wait for.
         with suppress(Error):
             self.page.locator(f"#scan li[data-choice={choice}][aria-current=true]").wait_for(timeout=5000)
-            self.page.keyboard.press("Enter")
+            press_switch(self.page, "Enter")
 
     def enable(self):
         self._choose("enable")
@@ -125,7 +127,7 @@ class OneSwitch:
 
     def let_go(self):
         if self.page.locator("#scan li[data-moving=true]").count():
-            self.page.keyboard.press("Enter")
+            press_switch(self.page, "Enter")
 
 
 def height(arm):

@@ -10,16 +10,12 @@ from latentarm.alignment.answers import Answers
 from latentarm.alignment.profile import new_profile_folder
 from latentarm.runs.aligning import alignable, learn
 
+from .conftest import press_switch
+
 SWITCH_KEY, NEXT_KEY = "Enter", "Backspace"
 FAR_M = 0.02
 TRIES = 6
 """A busy computer stops the arm now and then; a person presses again."""
-
-
-def press_switch(page, key):
-    """As a person does, and not sooner than the page counts one after the last."""
-    page.wait_for_timeout(220)
-    page.keyboard.press(key, delay=80)
 
 
 @pytest.fixture

@@ -91,6 +91,10 @@ def by_buttons(page):
     page.keyboard.press("Enter")
 
 
+ROUND_MS = 40_000
+"""Twice as long as the light takes to go once round the choices."""
+
+
 def by_one_switch(page):
     # Long enough for a press on a busy computer to arrive while its choice is still lit.
     page.get_by_role("button", name="Settings").click()
@@ -99,13 +103,18 @@ def by_one_switch(page):
     page.get_by_role("radio", name="Switch").check()
     lit = page.locator("#scan li[aria-current=true]")
     switch = page.get_by_role("button", name="Switch", exact=True)
-    lit.get_by_text("Left").wait_for()
-    switch.click()
+
+    def press():
+        page.wait_for_timeout(220)
+        switch.click(delay=80)
+
+    lit.get_by_text("Left").wait_for(timeout=ROUND_MS)
+    press()
     says_left(page)
-    switch.click()
-    lit.get_by_text("This is my answer").wait_for()
+    press()
+    lit.get_by_text("This is my answer").wait_for(timeout=ROUND_MS)
     says_left(page)
-    switch.click()
+    press()
 
 
 def by_gamepad(page):

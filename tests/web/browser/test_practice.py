@@ -5,6 +5,8 @@ import time
 import numpy as np
 import pytest
 
+from .conftest import press_switch
+
 NEAR_M = 0.1
 WITHIN_S = 90.0
 
@@ -100,7 +102,7 @@ def towards_food(page, arm, press_enable, end_s):
 def choose(page, choice):
     """Wait until it is lit, and press the switch."""
     page.locator(f"#scan li[data-choice={choice}][aria-current=true]").wait_for(timeout=30_000)
-    page.keyboard.press("Enter")
+    press_switch(page, "Enter")
 
 
 def test_one_switch_ticks_its_steps_off_in_its_own_words(practising, arm):
@@ -120,7 +122,7 @@ def test_one_switch_ticks_its_steps_off_in_its_own_words(practising, arm):
             ticks(page, 3, 2.0)
             # The press that ends the motion.
             if page.locator("#scan li[data-moving=true]").count():
-                page.keyboard.press("Enter")
+                press_switch(page, "Enter")
         ticks(page, 4, 0.3)
     while done(page) < 5:
         assert time.monotonic() < end_s

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import Error, expect
 
+from .conftest import press_switch
+
 TRIES = 8
 SAID = """() => {
   const line = document.getElementById("status-text");
@@ -110,7 +112,7 @@ def test_it_begins_from_the_scan_and_a_press_of_the_switch_ends_it(away, arm, pr
 
     def choose(name):
         page.locator("#scan li[aria-current=true]", has_text=re.compile(f"^{name}$")).wait_for()
-        page.keyboard.press("Enter")
+        press_switch(page, "Enter")
 
     for _ in range(TRIES):
         if not arm.enabled:
@@ -127,5 +129,5 @@ def test_it_begins_from_the_scan_and_a_press_of_the_switch_ends_it(away, arm, pr
         if arm.comes_to(lambda: arm.state["returning"], 1.0):
             break
     expect(page.locator("#scan li")).to_have_text(["Stop"])
-    page.keyboard.press("Enter")
+    press_switch(page, "Enter")
     arm.comes_to_rest()

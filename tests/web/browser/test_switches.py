@@ -2,6 +2,8 @@
 
 import pytest
 
+from .conftest import press_switch
+
 SPEECH = """
 window.spoken = [];
 Object.defineProperty(window, "speechSynthesis", { value: {
@@ -12,12 +14,6 @@ window.SpeechSynthesisUtterance = class { constructor(text) { this.text = text; 
 MORE = {"Back", "Help from the robot …", "Settings …", "Other page …", "Start recording", "Stop"}
 PATIENCE_MS = 30_000
 """Twice as long as the light takes to go once round the longest list."""
-
-
-def press_switch(page, key):
-    """As a person does, and not sooner than the page counts one after the last."""
-    page.wait_for_timeout(220)
-    page.keyboard.press(key, delay=80)
 
 
 def scan(page, **settings):

@@ -12,6 +12,8 @@ import pytest
 from PIL import Image
 from playwright.sync_api import expect
 
+from .conftest import press_switch
+
 SOUNDS = """
 window.tones = 0;
 const started = AudioScheduledSourceNode.prototype.start;
@@ -149,12 +151,12 @@ class TestStabbing:
 
     def test_one_switch_goes_on_to_the_next(self, page, arm):
         page.get_by_role("button", name="Settings").click()
-        page.get_by_label("Time on each choice").fill("0.4")
+        page.get_by_label("Time on each choice").fill("0.6")
         page.get_by_role("button", name="Done").click()
         page.get_by_role("radio", name="Switch").check()
         page.get_by_role("button", name="Switch", exact=True).focus()
         page.locator("#scan li[data-choice=next][aria-current=true]").wait_for(timeout=10_000)
-        page.keyboard.press("Enter")
+        press_switch(page, "Enter")
         arm.wait(lambda: arm.state["task"]["choice"] == 1)
 
 

@@ -8,6 +8,8 @@ from playwright.sync_api import expect
 
 from latentarm.web.words.catalogue import COOKIE
 
+from .conftest import press_switch
+
 NAME = "Ada"
 PAGES = ("", "teach", "personalise", "people", "history")
 STILL = ("teach", "people", "history")
@@ -50,12 +52,6 @@ WITHOUT_TYPING = """(all) => all
   .filter((one) => !one.closest("[data-not-scanned]") && one.getAttribute("aria-disabled") !== "true")
   .filter((one) => one.type !== "submit" || one.form.checkValidity())
   .map((one) => one.getAttribute("aria-label") ?? one.textContent.trim())"""
-
-
-def press_switch(page, key):
-    """As a person does, and not sooner than the page counts one after the last."""
-    page.wait_for_timeout(220)
-    page.keyboard.press(key, delay=80)
 
 
 @pytest.fixture(scope="module")
