@@ -1,6 +1,7 @@
 """Folds by default with few episodes, a verdict, and results that are not replaced silently."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,17 +9,22 @@ import pytest
 
 from latentarm.demonstrations.dataset import write_dataset
 from latentarm.errors import UserError
+from latentarm.robots.catalogue import load_robot
 from latentarm.runs.evaluating import OVER_FOLDS, evaluate_run
 from latentarm.runs.folder import read_run
 from latentarm.runs.training import TrainConfig, train_run
-from latentarm.tasks.table_top import TableTop
+from latentarm.tasks.reach import Reach
+from latentarm.types import Episode
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """At 5 Hz, since figures take as many steps as the demonstrations."""
     folder = tmp_path_factory.mktemp("evaluating")
-    write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), folder / "table")
-    train_run(TrainConfig(folder / "table", "pca", folder / "run", seeds=1))
+    shown = Reach(load_robot("planar")).demonstrate(6, np.random.default_rng(0))
+    episodes = tuple(Episode(one.state[::4], one.timestamp[::4], task=one.task) for one in shown.episodes)
+    write_dataset(replace(shown, episodes=episodes, rate_hz=5.0), folder / "reach")
+    train_run(TrainConfig(folder / "reach", "pca", folder / "run", seeds=1))
     return folder / "run"
 
 

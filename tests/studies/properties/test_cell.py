@@ -3,6 +3,7 @@ import pickle
 import subprocess
 import sys
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -51,6 +52,10 @@ def cell(task="sine", model="cae", noise_rad=0.0, seed=0):
     return Cell(task, model, noise_rad, TINY, seed)
 
 
+measured = cache(measure_cell)
+"""Several tests look at the same cell."""
+
+
 def assert_same(first, second):
     assert list(first.figures) == list(second.figures)
     for name, values in first.figures.items():
@@ -59,7 +64,7 @@ def assert_same(first, second):
 
 @pytest.mark.parametrize("task", MOTIONS)
 def test_every_task_has_its_measures_one_figure_a_seed(task):
-    figures = measure_cell(cell(task)).figures
+    figures = measured(cell(task)).figures
     assert set(figures) == ALWAYS | OF_TASK[task]
     assert set(figures) <= set(MEASURES)
     for name, values in figures.items():
@@ -70,14 +75,14 @@ def test_every_task_has_its_measures_one_figure_a_seed(task):
 
 @pytest.mark.parametrize("model", TINY.models)
 def test_every_model_can_be_measured(model):
-    result = measure_cell(cell("circle", model))
+    result = measured(cell("circle", model))
     assert result.decoder.kind == model
     assert result.fit_s > 0
     assert len(result.figures["error_percent_of_pca"]) == TINY.seeds
 
 
 def test_with_noise_nothing_is_driven_and_both_errors_are_told():
-    result = measure_cell(cell("circle", "cae", noise_rad=0.1))
+    result = measured(cell("circle", "cae", noise_rad=0.1))
     assert set(result.figures) == ALWAYS | {"disentanglement_deg"}
     noisy, clean = (
         result.figures[name] for name in ("error_percent_of_pca", "noise_free_error_percent_of_pca")
@@ -87,7 +92,7 @@ def test_with_noise_nothing_is_driven_and_both_errors_are_told():
 
 def test_pca_is_its_own_hundred_percent_with_noise_and_without():
     for noise in (0.0, 0.1):
-        figures = measure_cell(cell("rotate", "pca", noise)).figures
+        figures = measured(cell("rotate", "pca", noise)).figures
         for name in figures:
             if name.endswith("percent_of_pca"):
                 np.testing.assert_allclose(figures[name], [100.0, 100.0])
@@ -95,14 +100,14 @@ def test_pca_is_its_own_hundred_percent_with_noise_and_without():
 
 def test_demonstrations_are_the_same_for_every_model_and_others_for_another_seed():
     starts = [
-        measure_cell(asked).figures["start_distance_m"].tolist()
+        measured(asked).figures["start_distance_m"].tolist()
         for asked in (cell(), cell(model="pca"), cell(seed=1))
     ]
     assert starts[0] == starts[1] != starts[2]
 
 
 def test_every_seed_has_demonstrations_of_its_own():
-    first, second = measure_cell(cell(model="pca")).figures["start_distance_m"]
+    first, second = measured(cell(model="pca")).figures["start_distance_m"]
     assert first != second
     sizes = TINY.episodes, TINY.test_episodes
     one, other = demonstrated("sine", TINY.design, sizes, 2, 0)
@@ -132,7 +137,7 @@ def test_the_same_cell_gives_the_same_bits_in_another_process_with_more_threads(
 
 
 def test_figures_of_a_seed_do_not_hang_on_how_many_pairs_are_driven():
-    few = measure_cell(cell()).figures
+    few = measured(cell()).figures
     asked = replace(cell(), preset=replace(TINY, reach_pairs=8))
     many = measure_cell(asked).figures
     np.testing.assert_array_equal(few["r2"], many["r2"])

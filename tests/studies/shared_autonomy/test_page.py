@@ -1,5 +1,7 @@
 import re
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,13 +21,23 @@ def lines(table):
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
 
 
-def report_of(out, preset, tasks):
-    return STUDY.report(Request(out, preset, tasks, seed=3), results_of(out, preset, tasks))
+OUT = Path("out")
+
+
+@cache
+def measured(preset_name, tasks):
+    """Results that several tests look at, and none changes."""
+    return results_of(OUT, PRESETS[preset_name], tasks)
+
+
+@cache
+def report_of(preset_name, tasks):
+    return STUDY.report(Request(OUT, PRESETS[preset_name], tasks, seed=3), measured(preset_name, tasks))
 
 
 @pytest.mark.parametrize("tasks", [tuple(TASKS), ("panda_two_cups",)])
-def test_the_page_has_every_part(tmp_path, tasks):
-    report = report_of(tmp_path, PRESETS["paper"], tasks)
+def test_the_page_has_every_part(tasks):
+    report = report_of("paper", tasks)
     page = report.page
     only = f" --task {tasks[0]}" if len(tasks) == 1 else ""
     assert f"latentarm reproduce shared-autonomy --preset paper{only} --seed 3" in page
@@ -50,8 +62,8 @@ def test_the_page_has_every_part(tmp_path, tasks):
     assert set(report.figures) == set(STUDY.figures) - (set(TASKS) - set(tasks))
 
 
-def test_a_page_without_ablation(tmp_path):
-    page = report_of(tmp_path, PRESETS["smoke"], tuple(TASKS)).page
+def test_a_page_without_ablation():
+    page = report_of("smoke", tuple(TASKS)).page
     assert "Ablations of the entropy" not in page
     assert "over all drives" in page
 
@@ -72,8 +84,8 @@ def test_people_stand_below_each_other_and_methods_side_by_side():
     ]
 
 
-def test_the_paper_stands_beside_what_it_prints(tmp_path):
-    found = figures(results_of(tmp_path, PRESETS["paper"]))
+def test_the_paper_stands_beside_what_it_prints():
+    found = figures(measured("paper", tuple(TASKS)))
     printed = {
         (row.task, row.model, row.measure, row.condition): row.paper_mean
         for row in rows_of(found)
@@ -89,8 +101,8 @@ def test_the_paper_stands_beside_what_it_prints(tmp_path):
     assert not any("paper" in cell for cell in second)
 
 
-def test_how_much_longer_without_help_is_taken_seed_by_seed(tmp_path):
-    results = results_of(tmp_path, PRESETS["paper"], ("panda_two_cups",))
+def test_how_much_longer_without_help_is_taken_seed_by_seed():
+    results = measured("paper", ("panda_two_cups",))
     found = {(one.condition, one.measure): one for one in figures(results) if one.model == "cae"}
     cell = next(result for result in results if (result.cell.model, result.cell.entropy) == ("cae", None))
     times = {
@@ -102,8 +114,8 @@ def test_how_much_longer_without_help_is_taken_seed_by_seed(tmp_path):
     assert extra == pytest.approx(100.0 * (times["LA"] - times["LA+SA"]) / times["LA+SA"])
 
 
-def test_the_terminal_shows_one_table_for_each_arm(tmp_path):
-    rows = rows_of(figures(results_of(tmp_path, PRESETS["smoke"])))
+def test_the_terminal_shows_one_table_for_each_arm():
+    rows = rows_of(figures(measured("smoke", tuple(TASKS))))
     tables = summary_tables(rows)
     assert len(tables) == len(TASKS)
     for table in tables:
@@ -111,9 +123,9 @@ def test_the_terminal_shows_one_table_for_each_arm(tmp_path):
         assert table.row_count == len(PRESETS["smoke"].people)
 
 
-def test_a_smoke_run_says_so_and_judges_nothing(tmp_path):
-    judged = report_of(tmp_path, PRESETS["paper"], tuple(TASKS)).page
-    page = report_of(tmp_path, PRESETS["smoke"], tuple(TASKS)).page
+def test_a_smoke_run_says_so_and_judges_nothing():
+    judged = report_of("paper", tuple(TASKS)).page
+    page = report_of("smoke", tuple(TASKS)).page
     assert page.splitlines()[0] == "# Shared autonomy with latent actions (preset smoke)"
     verdict = re.compile(r"\*\*H\d|supported|Holm")
     assert verdict.search(judged)
