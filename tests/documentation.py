@@ -26,9 +26,9 @@ SLOW = ("bench", "compare", "demo", "reproduce", "study")
 """Commands that take minutes even at their smallest."""
 
 QUICKLY = {
-    "train": {"--epochs": "1", "--seeds": "1"},
+    "train": {"--epochs": "1", "--seeds": "1", "--hidden": "8"},
     "evaluate": {"--folds": "0"},
-    "drive": {"--drives": "1", "--time-limit-s": "2"},
+    "drive": {"--drives": "1", "--time-limit-s": "1"},
     "align": {"--answers": "2"},
 }
 """Options that make a command short, whatever the page says."""

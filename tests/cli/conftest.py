@@ -55,7 +55,7 @@ def made(recording: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.chdir(folder)
         assert main(["import", str(recording), "eat"]) == 0
         write_dataset(TableTop().demonstrate(6, np.random.default_rng(0)), Path("table"))
-        hardly = ["--model", "cae", "--seeds", "2", "--epochs", "2"]
+        hardly = ["--model", "cae", "--seeds", "2", "--epochs", "2", "--hidden", "8"]
         assert main(["train", "--demonstrations", "table", *hardly, "--out", "mine"]) == 0
     return folder
 

@@ -45,7 +45,7 @@ def test_a_simulated_person_is_asked_and_drives(run: Run, trained: Path) -> None
     assert row.mean is not None
     assert 0 <= row.mean < 0.5, "the answers themselves are met"
 
-    drive = ("drive", "mine", "--drives", 1, "--time-limit-s", 2)
+    drive = ("drive", "mine", "--drives", 1, "--time-limit-s", 1)
     assert run(*drive, "--out", "without")[0] in (0, 1)
     assert run(*drive, "--out", "with", "--profile", "ada")[0] in (0, 1)
     about = {

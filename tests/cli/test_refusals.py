@@ -93,7 +93,7 @@ def test_a_run_knows_its_dataset(run: Run, eat: Path) -> None:
     Path("eat").rename("moved")
     assert run("evaluate", "mine", "--demonstrations", "moved", "--folds", 0)[0] == 0
 
-    run("drive", "--jobs", 1, "--drives", 1, "--time-limit-s", 2, "--record", "other")
+    run("drive", "--jobs", 1, "--drives", 1, "--time-limit-s", 0.5, "--record", "other")
     code, _, err = run("evaluate", "mine", "--demonstrations", "other", "--folds", 0)
     assert code == 2
     assert "not the dataset" in err

@@ -31,7 +31,7 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
     assert Path("eat-figures/joints.png").stat().st_size > 10_000
 
     command = ("train", "--demonstrations", "eat", "--model", "cae", "--seeds", 2, "--epochs", 2)
-    code, out, err = run(*command, "--json")
+    code, out, err = run(*command, "--hidden", 8, "--json")
     assert code == 0
     assert figures(out)["validation_loss"] is not None
     assert "latentarm evaluate runs/eat-cae" in err
@@ -98,6 +98,7 @@ def test_a_finished_run_is_not_overwritten(run: Run, eat: Path) -> None:
 def test_the_same_seed_gives_the_same_figures(run: Run, eat: Path) -> None:
     outs = []
     train = ("train", "--demonstrations", "eat", "--model", "scl", "--seeds", 1, "--epochs", 1, "--seed", 1)
+    train += ("--hidden", 8)
     for name in ("one", "two"):
         run(*train, "--out", name)
         outs.append(run("evaluate", name, "--json", "--folds", 0)[1])
@@ -177,7 +178,7 @@ def test_a_collapsed_latent_dimension_is_said(run: Run, eat: Path, recwarn: pyte
 
 def test_a_decoder_that_sees_the_belief_is_trained_and_driven(run: Run, table: Path) -> None:
     command = ("train", "--demonstrations", "table", "--model", "scl", "--epochs", 1, "--seeds", 1)
-    assert run(*command, "--context", "state_belief")[0] == 0
+    assert run(*command, "--context", "state_belief", "--hidden", 8)[0] == 0
     assert run("evaluate", "runs/table-scl", "--folds", 0)[0] == 0
     code, out, _ = run("drive", "runs/table-scl", "--jobs", 1, "--drives", 1, "--time-limit-s", 3, "--json")
     assert code in (0, 1)

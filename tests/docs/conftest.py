@@ -54,7 +54,8 @@ def fixture_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ends = np.cumsum([len(state) for state in states])
     np.savez(recording, q=np.concatenate(states), episode_ends=ends, rate_hz=5.0)
     assert main(["import", str(recording), str(folder / "eat")]) == 0
-    train = ["train", "--demonstrations", str(folder / "eat"), "--epochs", "1", "--seeds", "1"]
+    hardly = ["--epochs", "1", "--seeds", "1", "--hidden", "8"]
+    train = ["train", "--demonstrations", str(folder / "eat"), *hardly]
     assert main([*train, "--out", str(folder / "runs/eat-cvae")]) == 0
     (folder / "teleop").mkdir()
     record_on_the_page(folder / "teleop/journal.sqlite")
