@@ -110,7 +110,7 @@ class OneSwitch:
         self.let_go()
         # The choices change when the arm stops by itself: then there is nothing to wait for.
         with suppress(Error):
-            self.page.locator(f"#scan li[data-choice={choice}][aria-current=true]").wait_for(timeout=5000)
+            self.page.locator(f"#scan li[data-choice={choice}][aria-current=true]").wait_for(timeout=12_000)
             press_switch(self.page, "Enter")
 
     def enable(self):
