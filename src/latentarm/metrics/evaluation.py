@@ -27,6 +27,7 @@ from latentarm.metrics.samples import (
 )
 from latentarm.metrics.state_change import state_change
 from latentarm.metrics.summary import Subject, summarise
+from latentarm.metrics.turning import turning
 from latentarm.robots.robot import Robot
 from latentarm.types import Demonstrations, Episode, FloatArray, Row
 
@@ -77,7 +78,7 @@ class EvaluationConfig:
             None for the noise that the model was trained with.
         step_s: dt of the transition s' = s + a dt, and how long z and -z are each held for `reversal`, s;
             None for one sample of the demonstrations.
-        states: states for consistency and disentanglement.
+        states: states for consistency, disentanglement and turning.
         grid: values of z in [-1, 1] on each axis, at each of these states.
         latents: held-out pairs whose nearest inputs are searched for: for what the decoder can express, for
             drift, reversal and change in state.
@@ -152,7 +153,7 @@ class Probe:
 
     Attributes:
         pairs: starts and goals for controllability.
-        states: (K, c), contexts for consistency and disentanglement.
+        states: (K, c), contexts for consistency, disentanglement and turning.
         context: (L, c), contexts for drift, reversal and change in state.
         action: (L, m), the actions there, rad/s.
         step_s: dt of the transition, s.
@@ -222,6 +223,12 @@ def measure_behaviour(
     for name, hold_s in HOLDS_S.items():
         figures[name] = reversal(decoders, z[:, held], probe.context[held], probe.step_s, hold_s)
     figures["state_change"] = state_change(decoders, z, probe.context)
+    if z.shape[-1] == 2:
+        turned = turning(decoders, probe.states, robot.chain, tool=config.tool).joints
+        count = np.isfinite(turned).sum(axis=(1, 2))
+        figures["motion_turn"] = np.divide(
+            np.nansum(turned, axis=(1, 2)), count, out=np.full(len(turned), np.nan), where=count > 0
+        )
     return Figures(per_seed=figures, start_distance_m=reach.start_distance_m)
 
 

@@ -201,6 +201,7 @@ MEASURES: Final[dict[str, Measure]] = {
         "lower",
         "the stick, pushed all the way, is led around in 36 turns of 10°: by what angle the arm's joint"
         " velocity turns, relative to that of the stick; a linear isometry has 1",
+        PROPERTIES,
     ),
     "motion_turn_p95": Measure(
         "1",

@@ -42,12 +42,17 @@ THRESHOLDS: Final = (
     ),
     Threshold("drift", 0.10, False, "moves at rest", 100.0, " % of the speed of motion"),
     Threshold("reversal", 0.30, False, "the opposite push does not go back", 100.0, " % is left"),
+    Threshold(
+        "reversal_2_s", 0.30, False, "after 2 s the opposite push does not go back", 100.0, " % is left"
+    ),
+    Threshold("motion_turn", 2.0, False, "the motion turns faster than the stick", unit=" times"),
     Threshold("r2_local_axis_0", 0.5, True, "axis 1 does not move the tool in proportion", unit=" R²"),
     Threshold("r2_local_axis_1", 0.5, True, "axis 2 does not move the tool in proportion", unit=" R²"),
     Threshold("disentanglement_deg", 20.0, True, "both axes move the tool alike", unit="°"),
 )
 """The thresholds of the verdict. They are choices, not results: drift of a tenth of the speed of motion is
-visible, and if a third of a motion remains, a person cannot undo it with the opposite push."""
+visible, and if a third of a motion remains, a person cannot undo it with the opposite push. Where the motion
+turns twice as fast as the stick, two directions a quarter apart may be opposite motions."""
 
 REACH_SHARE: Final = 0.5
 """Goals count as out of reach where more than this share of the distance at the start is left."""

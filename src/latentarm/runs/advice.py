@@ -32,8 +32,13 @@ def next_step(model: str, run: str, dataset: str, missed: frozenset[str]) -> str
     """
     if not missed:
         return f"Next: latentarm drive {run}"
-    if missed & {"drift", "reversal"} and not KINDS[model].reverses:
+    if missed & {"drift", "reversal", "reversal_2_s"} and not KINDS[model].reverses:
         return f"Next: latentarm train --demonstrations {dataset} --model homogeneous (rests and goes back)"
+    if "motion_turn" in missed and model != "low_turning":
+        return (
+            f"Next: latentarm train --demonstrations {dataset} --model low_turning, for a driver who is still"
+            " learning what each push does (its directions turn with the stick)"
+        )
     if "search_error_percent_of_pca" in missed:
         return (
             "Next: record more demonstrations of the same motions, or compare all models:"

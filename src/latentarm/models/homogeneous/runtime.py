@@ -167,6 +167,6 @@ HOMOGENEOUS: Final = ModelKind(
     rests_at_zero=True,
     reverses=True,
     damping_m2=DAMPING_M2,
-    advice="The homogeneous rests and goes back; where its motions turn too fast for the stick, try the"
-    " plainer --model scl.",
+    advice="The homogeneous suits a driver who knows what each push does: its motions turn several times as"
+    " fast as the stick. For one who is still learning that, try --model low_turning or --model scl.",
 )

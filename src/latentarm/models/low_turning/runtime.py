@@ -49,6 +49,6 @@ LOW_TURNING: Final = ModelKind(
     rests_at_zero=True,
     reverses=True,
     damping_m2=DAMPING_M2,
-    advice="The low_turning rests and goes back; where it leaves out motions that matter, try --model"
-    " homogeneous, which reproduces more and turns faster.",
+    advice="The low_turning suits a driver who is still learning what each push does; where it leaves out"
+    " motions that matter, try --model homogeneous, which reproduces more and turns faster.",
 )
