@@ -51,6 +51,8 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
         "disentanglement_deg",
         "drift",
         "reversal",
+        "reversal_2_s",
+        "motion_turn",
     }
     assert expected <= printed.keys()
     assert {row.measure: row.mean for row in rows_in(Path("runs/eat-cae/metrics.json"))} == printed
@@ -117,6 +119,7 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
     # Models of one epoch get nowhere; a demonstration takes 5 to 6 s.
     monkeypatch.setattr(task_drive, "STUCK_S", 0.05)
     monkeypatch.setattr(Marshmallows, "time_limit_s", 6.5)
+    monkeypatch.setattr(demo_run, "HIDDEN", (8, 8))
     monkeypatch.setattr(demo_run, "DRIVERS", drivers := ("greedy", "unsteady"))
     config = DemoOptions(Path("demo"), drives=1, jobs=1, json=True)
     sizes = Sizes(episodes=5, seeds=1, epochs={DEFAULT_MODEL: 1, "cvae": 1})
