@@ -223,6 +223,11 @@ def test_the_gripper_holds_what_it_closes_on_and_says_when_it_failed(
         arm.enable()
         wait_for(lambda: arm.status().takes_commands)
         rest = np.zeros(7)
+
+        def reason_after(width_m: float) -> str:
+            drive(arm, rest, 0.05, GripperCommand(width_m, 0.1, 20.0))
+            return arm.status().reason
+
         odd_server.gripper.thing_m = 0.03
         drive(arm, rest, 1.2, GripperCommand(0.0, 0.1, 20.0))
         found = arm.read().gripper
@@ -234,12 +239,10 @@ def test_the_gripper_holds_what_it_closes_on_and_says_when_it_failed(
         drive(arm, rest, 0.1, GripperCommand(0.0, 0.1, 20.0))
         assert odd_server.goals == goals, "what is held is neither let go nor grasped again"
         odd_server.gripper.thing_m, odd_server.gripper_fails = None, True
-        drive(arm, rest, 0.2, GripperCommand(0.08, 0.1, 20.0))
-        assert "gripper" in arm.status().reason
+        wait_for(lambda: "gripper" in reason_after(0.08))
         assert arm.status().takes_commands
         odd_server.gripper_fails = False
-        drive(arm, rest, 0.2, GripperCommand(0.07, 0.1, 20.0))
-        assert arm.status().reason == ""
+        wait_for(lambda: reason_after(0.07) == "")
 
 
 def test_what_is_not_rosbridge_is_named(the_panda: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
