@@ -23,6 +23,7 @@ import * as storage from "./storage.js";
  * @property {number} firstS how much longer the first one does, s
  * @property {number} acceptS how long a switch must be held before that counts, s
  * @property {number} releaseS how long a switch must have been up before a press counts, s
+ * @property {boolean} debounced whether these two were kept since switches are debounced by default
  * @property {number} repeatS how often a switch that is held counts again, s; 0 for never
  * @property {boolean} speak whether what is lit is spoken
  * @property {number} speakVolume in [0, 1]
@@ -63,6 +64,7 @@ export const DEFAULTS = Object.freeze({
   // Of 168,000 people a key press takes 116 ms with an SD of 24 (Dhakal et al., CHI 2018): 0.05 s is nearly three below.
   acceptS: 0.05,
   releaseS: 0.2,
+  debounced: true,
   repeatS: 0,
   speak: false,
   speakVolume: 0.8,
@@ -192,10 +194,15 @@ function valid(stored) {
   } catch {
     return values;
   }
+  // Nobody chose these zeros: they were the defaults before, and every change kept them with the rest.
+  if (kept && !kept.debounced && kept.acceptS === 0 && kept.releaseS === 0) {
+    kept = { ...kept, acceptS: DEFAULTS.acceptS, releaseS: DEFAULTS.releaseS };
+  }
   for (const [key, value] of Object.entries(DEFAULTS)) {
     const mine = kept?.[key];
     if (typeof mine === typeof value && (CHOICES[key]?.includes(mine) ?? true)) values[key] = mine;
   }
+  values.debounced = true;
   for (const [key, [low, high]] of Object.entries(LIMITS)) values[key] = Math.min(Math.max(values[key], low), high);
   return values;
 }
