@@ -120,6 +120,7 @@ def by_one_switch(page):
 def by_gamepad(page):
     # Where switches answer, a gamepad's first button is one.
     page.get_by_role("radio", name="Stick").check()
+    page.wait_for_timeout(250)  # it counts once it has been seen at rest
     page.evaluate("pad.axes = [-1, 0]")
     says_left(page)
     for way in (-0.6, -0.2, 0):
