@@ -82,7 +82,7 @@ class CallLog:
             line["answer"] = result.command if isinstance(result, StepRecord) else result
             return result
         finally:
-            # Looks at the surroundings between calls belong to none.
+            # Surroundings that are read between calls belong to no call.
             self._inside, self._seen = False, []
             self._lines.append(line)
 

@@ -52,7 +52,7 @@ THRESHOLDS: Final = (
 )
 """The thresholds of the verdict. They are choices, not results: drift of a tenth of the speed of motion is
 visible, and if a third of a motion remains, a person cannot undo it with the opposite push. Where the motion
-turns twice as fast as the stick, two directions a quarter apart may be opposite motions."""
+turns twice as fast as the stick, two pushes 90° apart can give opposite motions."""
 
 REACH_SHARE: Final = 0.5
 """Goals count as out of reach where more than this share of the distance at the start is left."""

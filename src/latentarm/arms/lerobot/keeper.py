@@ -266,7 +266,7 @@ class Keeper:
         return opening
 
     def _jaw_has_torque(self) -> bool:
-        """Whether the jaw has torque: a new goal would power one that has none, and it would leap."""
+        """Whether the jaw's torque is on. If it is off, writing a goal turns it on and the jaw jumps."""
         with suppress(OSError):
             return GRIPPER not in self._bus.limp()
         return False

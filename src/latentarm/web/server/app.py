@@ -137,7 +137,7 @@ def _serve_alone(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
         )
         server = uvicorn.Server(server_config(gate, config, LOGGING))
-        with _until_told(server):
+        with _ended_by_signals(server):
             first = f"{base}/" if invitations is None else invitations.first()
             say(f"The page is at {first} (end with Ctrl-C).")
             if invitations is not None:
@@ -165,13 +165,13 @@ def _serve_alone(
 
 
 @contextmanager
-def _until_told(server: uvicorn.Server) -> Generator[None]:
-    """Ctrl-C and SIGTERM end the server, also while it begins: an exception then may be lost in a library."""
+def _ended_by_signals(server: uvicorn.Server) -> Generator[None]:
+    """Let Ctrl-C and SIGTERM end the server, even while a starting library could swallow an interrupt."""
 
-    def tell(*_: object) -> None:
+    def end(*_: object) -> None:
         server.should_exit = True
 
-    before = {number: signal.signal(number, tell) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield
     finally:

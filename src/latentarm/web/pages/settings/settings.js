@@ -23,7 +23,7 @@ import * as storage from "./storage.js";
  * @property {number} firstS how much longer the first one does, s
  * @property {number} acceptS how long a switch must be held before that counts, s
  * @property {number} releaseS how long a switch must have been up before a press counts, s
- * @property {boolean} debounced whether these two were kept since switches are debounced by default
+ * @property {boolean} debounced whether these two were stored by a version that debounces switches by default
  * @property {number} repeatS how often a switch that is held counts again, s; 0 for never
  * @property {boolean} speak whether what is lit is spoken
  * @property {number} speakVolume in [0, 1]
@@ -194,7 +194,7 @@ function valid(stored) {
   } catch {
     return values;
   }
-  // Nobody chose these zeros: they were the defaults before, and every change kept them with the rest.
+  // These zeros were the old defaults. Every change stores all values, so nobody need have chosen them.
   if (kept && !kept.debounced && kept.acceptS === 0 && kept.releaseS === 0) {
     kept = { ...kept, acceptS: DEFAULTS.acceptS, releaseS: DEFAULTS.releaseS };
   }
