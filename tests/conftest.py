@@ -7,6 +7,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import providers
 from matplotlib.figure import Figure
 
+from canary import Canary
 from figure_faults import faults
 
 HERE = Path(__file__).parent
@@ -32,14 +33,38 @@ REAL_TIME = ("arms", "web")
 """Folders whose tests may be marked ``clock``: they run afterwards, two at a time."""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+RUNS = 4
+"""A test in real time is run so many times at most, as long as it fails and the computer kept it waiting."""
+
+CANARY = pytest.StashKey[Canary]()
+
+
+@pytest.hookimpl(trylast=True)  # after the folders' own, which mark tests as `clock`
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    again = pytest.mark.flaky(reruns=RUNS - 1, condition=lambda: config.stash[CANARY].was_late())
     for item in items:
+        if item.get_closest_marker("clock"):
+            item.add_marker(again)
         if item.get_closest_marker("clock") and item.path.relative_to(HERE).parts[0] not in REAL_TIME:
             raise pytest.UsageError(
                 f"{item.nodeid}: make test looks for `clock` only in tests/{' and tests/'.join(REAL_TIME)}."
             )
     rank = {name: index for index, name in enumerate(LONGEST_FIRST)}
     items.sort(key=lambda item: rank.get(item.path.relative_to(HERE).parts[0], len(rank)))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    if item.get_closest_marker("clock"):
+        stash = item.config.stash
+        if CANARY not in stash:
+            stash[CANARY] = Canary()
+        stash[CANARY].begin()
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    if CANARY in config.stash:
+        config.stash[CANARY].end()
 
 
 def pytest_collection_finish() -> None:

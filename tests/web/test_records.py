@@ -38,6 +38,18 @@ def everywhere(folder, *texts):
     ]
 
 
+def drive_and_stop(page):
+    """Drive for 0.8 s and press Stop; again where a busy machine had stopped the arm before."""
+    for _ in range(5):
+        page.drive(0.0, 1.0)
+        time.sleep(0.8)
+        page.send(type="stop")
+        page.wait(lambda state: state["phase"] in ("neutral_needed", "disengaged"))
+        if page.state["reason"]["code"] == "stop_pressed_by":
+            return
+    raise AssertionError(f"it was stopped five times: {page.state}")
+
+
 def test_a_person_s_drives_are_kept_listed_taken_along_and_deleted(server, ask, place):
     person = ask.post("/records/people", json={"name": f"  {NAME} "}).json()
     assert person["name"] == NAME
@@ -45,10 +57,7 @@ def test_a_person_s_drives_are_kept_listed_taken_along_and_deleted(server, ask, 
     with server.page(person=person["id"]) as page:
         assert page.state["driver_name"] == NAME
         page.send(type="record", on=True, task="soup")
-        page.drive(0.0, 1.0)
-        time.sleep(0.8)
-        page.send(type="stop")
-        page.wait(lambda state: state["phase"] == "neutral_needed")
+        drive_and_stop(page)
         page.send(type="record", on=False)
         page.wait(lambda state: state["recording"]["episodes"] == 1)
 
@@ -111,7 +120,8 @@ def test_settings_are_each_person_s_own(ask):
         "person_name_taken"
     )
     assert ask.put(f"/records/people/{bea}", json={"name": "Béa"}).json()["name"] == "Béa"
-    assert [one["name"] for one in ask.get("/records/people").json()["people"]] == ["Ada", "Béa"]
+    people = ask.get("/records/people").json()["people"]
+    assert [one["name"] for one in people if one["id"] in (ada, bea)] == ["Ada", "Béa"]
 
 
 @pytest.mark.parametrize(
