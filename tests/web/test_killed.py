@@ -11,6 +11,7 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
+from latentarm.demonstrations.folders import locked
 from latentarm.web.arm_process.drive_setup import Spec
 from latentarm.web.records.calendar import SYSTEM_CALENDAR
 from latentarm.web.records.drives import Wanted
@@ -41,20 +42,30 @@ def drives_in(out):
     return Records(out, dict, lambda: None, SYSTEM_CALENDAR).drives.wanted(Wanted())
 
 
-def test_a_drive_under_a_server_that_was_killed_is_kept_as_broken_off(tmp_path):
+def test_a_drive_under_a_killed_server_is_kept_as_broken_off_and_the_next_server_starts_at_once(tmp_path):
     with running(tmp_path) as (server, site), site.page() as page:
         page.drive(1.0, 0.0)
         wait_for(lambda: any(drive.way_m >= 0.01 for drive in drives_in(tmp_path)))
         server.kill()
         server.wait()
-    (drive,) = drives_in(tmp_path)
-    assert (drive.ended, drive.outcome, drive.inputs) == ("broken_off", None, ("pointer",))
-    assert 0.0 < drive.moving_s <= drive.time_s
-    assert drive.way_m >= 0.01
-    # The next server starts at once in the folder, and its page lists the drive.
+    (broken,) = drives_in(tmp_path)
+    assert (broken.ended, broken.outcome, broken.inputs) == ("broken_off", None, ("pointer",))
+    assert 0.0 < broken.moving_s <= broken.time_s
+    assert broken.way_m >= 0.01
     with running(tmp_path) as (_, site):
         (listed,) = httpx.get(f"{site.origin}/records/drives").json()["drives"]
-    assert (listed["id"], listed["ended"]) == (drive.id, "broken_off")
+        assert (listed["id"], listed["ended"]) == (broken.id, "broken_off")
+        second = subprocess.run(command(tmp_path), capture_output=True, text=True, timeout=120)
+        assert (second.returncode, second.stdout) == (2, "")
+        assert second.stderr == (
+            f"latentarm: {tmp_path} is being written by another program; end it with Ctrl-C, or choose"
+            " another folder with --out.\n"
+        )
+        with site.page() as page:
+            page.drive(1.0, 0.0)
+    ended = [drive for drive in drives_in(tmp_path) if drive.id != broken.id]
+    assert ended
+    assert all(drive.ended != "broken_off" and drive.scene is not None for drive in ended)
 
 
 def test_a_drive_is_kept_even_if_the_server_is_killed_as_it_begins(tmp_path):
@@ -63,14 +74,6 @@ def test_a_drive_is_kept_even_if_the_server_is_killed_as_it_begins(tmp_path):
         wait_for(lambda: list(tmp_path.glob("records/**/drives/*.json")))
         server.kill()
     assert [drive.ended for drive in drives_in(tmp_path)] == ["broken_off"]
-
-
-def test_a_drive_that_was_ended_is_not_broken_off(tmp_path):
-    with running(tmp_path) as (_, site), site.page() as page:
-        page.drive(1.0, 0.0)
-    drives = drives_in(tmp_path)
-    assert drives
-    assert all(drive.ended != "broken_off" and drive.scene is not None for drive in drives)
 
 
 def test_a_drive_whose_arm_process_is_killed_is_in_the_history_at_once(serve, tmp_path):
@@ -92,15 +95,5 @@ def test_a_server_that_has_just_begun_ends_when_it_is_told(tmp_path, number):
         _, said = server.communicate(timeout=60)
     assert server.returncode == 0
     assert said.endswith("The page is closed.\n")
-
-
-def test_a_second_server_on_a_folder_is_refused_in_one_sentence_until_the_first_ends(tmp_path):
-    with running(tmp_path):
-        second = subprocess.run(command(tmp_path), capture_output=True, text=True, timeout=120)
-        assert (second.returncode, second.stdout) == (2, "")
-        assert second.stderr == (
-            f"latentarm: {tmp_path} is being written by another program; end it with Ctrl-C, or choose"
-            " another folder with --out.\n"
-        )
-    with running(tmp_path):
-        pass
+    with locked(tmp_path, tmp_path / ".teleop.lock"):
+        pass  # the next server can start
