@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
 from urllib.parse import urlsplit
 
@@ -85,15 +86,20 @@ def test_a_drive_whose_arm_process_is_killed_is_in_the_history_at_once(serve, tm
     assert [drive.ended for drive in drives_in(tmp_path)] == ["broken_off"]
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_server_that_has_just_begun_ends_when_it_is_told(tmp_path, number):
+@pytest.mark.parametrize(
+    "numbers", [(signal.SIGINT, signal.SIGINT), (signal.SIGTERM,)], ids=["twice", "term"]
+)
+def test_a_server_that_has_just_begun_ends_when_it_is_told(tmp_path, numbers):
     with subprocess.Popen(
         command(tmp_path), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as server:
         server.stdout.readline()
-        server.send_signal(number)
+        for number in numbers:
+            server.send_signal(number)
+            time.sleep(0.05)
         _, said = server.communicate(timeout=60)
     assert server.returncode == 0
     assert said.endswith("The page is closed.\n")
+    assert "Traceback" not in said
     with locked(tmp_path, tmp_path / ".teleop.lock"):
         pass  # the next server can start

@@ -9,7 +9,8 @@ from collections.abc import AsyncGenerator, Callable, Generator
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import replace
 from functools import partial
-from typing import Any, Final
+from types import FrameType
+from typing import Any, Final, final
 
 import uvicorn
 from fastapi import FastAPI
@@ -136,7 +137,7 @@ def _serve_alone(
         gate = gated(
             app, control, config, port, keys, (lambda: "") if invitations is None else invitations.next
         )
-        server = uvicorn.Server(server_config(gate, config, LOGGING))
+        server = _Server(server_config(gate, config, LOGGING))
         with _ended_by_signals(server):
             first = f"{base}/" if invitations is None else invitations.first()
             say(f"The page is at {first} (end with Ctrl-C).")
@@ -164,14 +165,19 @@ def _serve_alone(
         say(f"To use what was recorded: latentarm export {shlex.quote(str(journal))} --out NEW_FOLDER")
 
 
+@final
+class _Server(uvicorn.Server):
+    """Ends whole within a second or two: uvicorn cuts itself off, with a traceback, at a second Ctrl-C."""
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        self.should_exit = True
+
+
 @contextmanager
-def _ended_by_signals(server: uvicorn.Server) -> Generator[None]:
+def _ended_by_signals(server: _Server) -> Generator[None]:
     """Let Ctrl-C and SIGTERM end the server, even while a starting library could swallow an interrupt."""
-
-    def end(*_: object) -> None:
-        server.should_exit = True
-
-    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, server.handle_exit) for number in signals}
     try:
         yield
     finally:
