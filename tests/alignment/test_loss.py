@@ -1,6 +1,7 @@
 """The loss of equation 23 as training sees it."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -26,6 +27,17 @@ def weights(decoder, hidden=(6, 5), scale=0.5, seed=0):
     }
 
 
+@pytest.fixture(scope="module")
+def fitted(swings, arm):
+    """A model of a kind and a context, hardly trained; each is fitted once."""
+
+    @cache
+    def fit(kind, context):
+        return MODELS[kind](epochs=1, hidden=(6,), window=2, context=context).fit(swings, chain=arm.chain)
+
+    return fit
+
+
 def one_step(loss, batch_size=4):
     return Draw(*(part[0] for part in loss.draws([5, 6], 1, batch_size)))
 
@@ -37,9 +49,8 @@ def one_step(loss, batch_size=4):
 )
 @pytest.mark.parametrize("kind", ["cae", "scl", "isometric", "pca"])
 @pytest.mark.parametrize("context", ["state", "state_belief"])
-def test_the_gradient_is_the_slope(kind, context, priors, swings, arm, answered):
-    model = MODELS[kind](epochs=1, hidden=(6,), window=2, context=context).fit(swings, chain=arm.chain)
-    decoder = model.torch_decoder(0, torch.float64)
+def test_the_gradient_is_the_slope(fitted, kind, context, priors, arm, answered):
+    decoder = fitted(kind, context).torch_decoder(0, torch.float64)
     answers = [answered(4, goals=decoder.context_dim - 4, seed=seed) for seed in range(RUNS)]
     unlabelled = answered(4, count=9, goals=decoder.context_dim - 4, seed=7).motions.context
     loss = AlignmentLoss(decoder, arm.chain, answers, unlabelled, priors)

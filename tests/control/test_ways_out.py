@@ -105,6 +105,7 @@ def driven(config, robot, q, wish, ticks=TICKS):
     return np.array(states), fastest
 
 
+@settings(max_examples=settings.default.max_examples // 2)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["arm", "two_arms", "gantry"]))
 @example(0, "two_arms")
 @example(1, "two_arms")
@@ -140,7 +141,7 @@ def test_what_is_left_of_a_wish_is_nothing_only_where_no_way_out_leads_along_it(
 
 
 @pytest.mark.parametrize("kinds", [(0, 0), (3, 3), (1, 3), (2, 1)])
-@pytest.mark.parametrize("gap", [0.003, 0.012, 0.02])
+@pytest.mark.parametrize("gap", [0.003, 0.02])
 def test_between_two_things_that_are_both_too_near_the_arm_goes_along_them(oracle, kinds, gap):
     robot, q = planar(5), np.array([0.3, 0.4, -0.5, 0.6, -0.4])
     rng = np.random.default_rng(0)
@@ -174,6 +175,7 @@ def test_an_arm_that_any_motion_brings_nearer_to_something_stands_still(oracle):
         assert driven(SafetyConfig(obstacles=walls), robot, q, way)[1] == 0.0
 
 
+@settings(max_examples=settings.default.max_examples // 2)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["arm", "two_arms", "gantry"]))
 @example(3887, "two_arms")
 def test_without_a_thing_in_the_way_any_joints_may_turn_at_once(request, seed, name):

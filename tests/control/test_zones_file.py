@@ -146,7 +146,7 @@ def test_a_solid_keeps_the_arm_off_by_what_it_states(arm, scripted, written, sha
     step, state = Step(arm, controller, SafetyConfig(obstacles=(solid,))), arm.home
     step.reset(state)
     step.choose_mode(1)
-    for tick in range(500):
+    for tick in range(300):
         u = np.array([-1.0 if tick else 0.0, 0.0])
         record = stepped(step, Input(u), 0.0, state, 0.01 * tick)
         state = state + 0.01 * record.command.velocity

@@ -148,7 +148,7 @@ def test_real_demonstrations_show_what_the_models_are_known_for(tmp_path):
     demonstrations = import_demonstrations(POUR, robot)
     config = EvaluationConfig(reach=ReachConfig(pairs=20), latents=200)
     figures = {}
-    for name, epochs in (("pca", 1), ("scl", 6), ("cae", 6)):
+    for name, epochs in (("pca", 1), ("scl", 3), ("cae", 3)):
         model = MODELS[name](latent_dim=2, seeds=2, epochs=epochs, state_noise_rad=0.01)
         model.fit(demonstrations, validation=[12, 13, 14])
         rng = np.random.default_rng(0)

@@ -12,7 +12,7 @@ from latentarm.models.enclosure import Enclosure, curvature, linear_enclosure, n
 from latentarm.models.numpy_networks import halve_hidden, propagate
 from latentarm.testing.models import JOINTS, SMALL
 
-CONTEXTS, INPUTS = 400, 250
+CONTEXTS, INPUTS = 100, 1000
 """100,000 moments."""
 
 
@@ -30,8 +30,8 @@ def moments(d, seed=0):
     rng = np.random.default_rng(seed)
     context = rng.normal(scale=rng.choice([0.5, 1.0, 3.0], (CONTEXTS, 1)), size=(CONTEXTS, JOINTS))
     z = rng.uniform(-1, 1, (CONTEXTS, INPUTS, d))
-    z[:, :50] /= np.abs(z[:, :50]).max(axis=-1, keepdims=True)
-    z[:, 50:80] = np.sign(z[:, 50:80])
+    z[:, :200] /= np.abs(z[:, :200]).max(axis=-1, keepdims=True)
+    z[:, 200:320] = np.sign(z[:, 200:320])
     return context, z
 
 

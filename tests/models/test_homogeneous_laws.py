@@ -43,7 +43,7 @@ def metric(chain, state):
     return jacobian.T @ weight @ jacobian + DAMPING_M2 * np.eye(chain.dof)
 
 
-@settings(max_examples=80)
+@settings(max_examples=30)
 @given(
     state=arrays(np.float64, 4, elements=coordinate),
     share=st.floats(-1.5, 1.5, allow_nan=False, width=32),
@@ -58,7 +58,7 @@ def test_a_share_of_a_push_is_that_share_of_the_motion(rough, state, share, data
     np.testing.assert_array_equal(decoder.decode(-z, state), -motion)
 
 
-@settings(max_examples=80)
+@settings(max_examples=30)
 @given(state=arrays(np.float64, 4, elements=coordinate), data=st.data())
 def test_the_tools_speed_is_that_of_the_stick(rough, state, data):
     z = data.draw(
@@ -70,7 +70,7 @@ def test_the_tools_speed_is_that_of_the_stick(rough, state, data):
     assert speed == pytest.approx(full * np.linalg.norm(z), rel=1e-5)
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(state=arrays(np.float64, 4, elements=coordinate))
 def test_every_direction_keeps_a_part_along_its_own_straight_one(rough, state):
     """The bends are metric-orthogonal to M_1, so no direction of the stick is without a motion."""

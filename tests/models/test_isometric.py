@@ -32,8 +32,8 @@ push = st.floats(-1, 1, allow_nan=False, width=32)
 
 
 @pytest.fixture(scope="module")
-def model(demonstrations):
-    return Isometric(**SMALL).fit(demonstrations)
+def model(few):
+    return Isometric(**SMALL).fit(few)
 
 
 @pytest.fixture(scope="module", params=[1, 2, 3])
@@ -69,7 +69,7 @@ def tool_speed(model, action, state, arm):
     return np.sqrt(action @ metric(arm.chain, state) @ action) / model.trained_.tensors["action.scale"][0]
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(
     state=arrays(np.float64, 4, elements=coordinate),
     other=arrays(np.float64, 4, elements=coordinate),
@@ -89,7 +89,7 @@ def test_the_same_push_moves_the_tool_equally_fast_everywhere_and_in_every_direc
     assert tool_speed(rough, decoder.decode(0.5 * z, state), state, arm) < here
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(state=arrays(np.float64, 4, elements=coordinate), data=st.data())
 def test_rest_is_rest_and_the_opposite_input_is_the_opposite_motion(rough, state, data):
     z = data.draw(arrays(np.float64, rough.latent_dim, elements=push))
@@ -98,7 +98,7 @@ def test_rest_is_rest_and_the_opposite_input_is_the_opposite_motion(rough, state
     np.testing.assert_array_equal(decoder.decode(-z, state), -decoder.decode(z, state))
 
 
-@settings(max_examples=30)
+@settings(max_examples=20)
 @given(state=arrays(np.float64, 4, elements=coordinate))
 def test_the_axes_are_at_right_angles_in_the_metric_where_nothing_bends(rough, state):
     """At half a push the bend is zero, whatever the weights."""
@@ -120,9 +120,9 @@ def test_the_encoder_finds_the_latent_action_again(rough, samples):
     assert np.median(lost) < 0.02
 
 
-def test_no_latent_action_is_nearer_than_the_encoders(demonstrations, samples):
+def test_no_latent_action_is_nearer_than_the_encoders(few, samples):
     """Against a dense search, for any action; with one dimension the encoder's search is exact."""
-    model = Isometric(**SMALL, latent_dim=1).fit(demonstrations)
+    model = Isometric(**SMALL, latent_dim=1).fit(few)
     context = samples[0]
     action = np.random.default_rng(5).normal(0.0, 0.3, context.shape)
     rebuilt = model.decode(model.encode(context, action), context)
@@ -148,9 +148,9 @@ def test_the_loss_is_the_distance_to_what_was_decoded_plus_the_price_of_bending(
     np.testing.assert_allclose(loss.numpy(), error + 1e-3 * (bend + saturation(model) ** 2), rtol=1e-6)
 
 
-def test_the_gradient_is_that_of_the_whole_loss_though_none_flows_through_the_search(demonstrations):
+def test_the_gradient_is_that_of_the_whole_loss_though_none_flows_through_the_search(few, demonstrations):
     """The envelope theorem, against finite differences of the loss with its search."""
-    model = Isometric(**{**SMALL, "seeds": 1}, latent_dim=1, bend_weight=0.0).fit(demonstrations)
+    model = Isometric(**{**SMALL, "seeds": 1}, latent_dim=1, bend_weight=0.0).fit(few)
     trained = model.trained_
     context = demonstrations.episodes[1].state[5:45]
     wanted = model.decode(np.random.default_rng(1).uniform(-0.5, 0.5, (40, 1)), context)
@@ -174,7 +174,7 @@ def test_the_gradient_is_that_of_the_whole_loss_though_none_flows_through_the_se
 
 def test_seeds_agree_on_which_way_is_forward(demonstrations):
     task = MOTIONS["sine"]()
-    shown = task.demonstrate(30, np.random.default_rng(0))
+    shown = task.demonstrate(15, np.random.default_rng(0))
     model = Isometric(latent_dim=1, seeds=4, epochs=6, actions="recorded", hidden=(16, 16)).fit(shown)
     state = np.concatenate([episode.state for episode in shown.episodes])[::50]
     for seed in range(4):
@@ -188,7 +188,7 @@ def test_seeds_agree_on_which_way_is_forward(demonstrations):
 
 def test_two_arms_count_both_tools(samples):
     task = MOTIONS["rotate"]()
-    shown = task.demonstrate(12, np.random.default_rng(0))
+    shown = task.demonstrate(4, np.random.default_rng(0))
     model = Isometric(latent_dim=1, actions="recorded", epochs=2, hidden=(8,)).fit(shown)
     assert model.trained_.dimensions.tools == 2
     state = shown.episodes[0].state[0]
@@ -213,14 +213,12 @@ def test_an_observation_is_what_its_chain_says(demonstrations):
         np.testing.assert_allclose(metric(arm.chain, state) @ up, down.T, atol=1e-12)
 
 
-def test_it_needs_to_know_the_arm(demonstrations):
+def test_it_needs_to_know_the_arm(few):
     with pytest.raises(UserError, match="which arm"):
-        Isometric(**SMALL).fit(replace(demonstrations, robot=""))
+        Isometric(**SMALL).fit(replace(few, robot=""))
     with pytest.raises(UserError, match="5 joints and the demonstrations 4"):
-        Isometric(**SMALL).fit(demonstrations, chain=planar(5).chain)
-    given_arm = Isometric(**SMALL).fit(
-        replace(demonstrations, robot=""), chain=load_robot(demonstrations.robot).chain
-    )
+        Isometric(**SMALL).fit(few, chain=planar(5).chain)
+    given_arm = Isometric(**SMALL).fit(replace(few, robot=""), chain=load_robot(few.robot).chain)
     assert given_arm.trained_.dimensions.tools == 1
 
 

@@ -10,7 +10,7 @@ from latentarm.models.low_turning.training import Around, LowTurning, narrowness
 from latentarm.models.networks import group_layers
 from latentarm.robots.planar import planar
 
-SMALL = {"seeds": 2, "epochs": 4, "hidden": (16,), "window": 2}
+SMALL = {"seeds": 2, "epochs": 2, "hidden": (16,), "window": 2}
 
 
 def half_circle(curve, velocity):

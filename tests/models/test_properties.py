@@ -16,8 +16,8 @@ from latentarm.models.catalogue import MODELS
 from latentarm.models.scaling import CollapseWarning, action_normaliser, context_normaliser
 from latentarm.types import Demonstrations, Episode
 
-TRAINED = {"seeds": 2, "epochs": 12, "hidden": (24, 24), "window": 2}
-SEES_TOOLS = {name: {"epochs": 8} for name in ("isometric", "homogeneous", "low_turning")}
+TRAINED = {"seeds": 2, "epochs": 5, "hidden": (24, 24), "window": 2}
+SEES_TOOLS = {name: {"epochs": 3} for name in ("isometric", "homogeneous", "low_turning")}
 """These take five times as long for an epoch, and need fewer."""
 VALIDATION = [1, 6, 9]
 
@@ -137,7 +137,7 @@ def test_the_reversal_penalty_makes_the_opposite_input_go_back(trained, unseen):
 @pytest.mark.parametrize("name", ["cae", "cvae"])
 def test_the_jacobian_penalty_makes_a_push_mean_the_same_nearby(demonstrations, unseen, name):
     free, held = (
-        MODELS[f"{name}_jacobian"](**{**TRAINED, "epochs": 5}, jacobian_weight=weight).fit(
+        MODELS[f"{name}_jacobian"](**{**TRAINED, "epochs": 3}, jacobian_weight=weight).fit(
             demonstrations, validation=VALIDATION
         )
         for weight in (0.0, 0.3)

@@ -81,7 +81,7 @@ def test_letting_go_and_switching_count_by_what_they_leave(beta):
 
 def test_inputs_come_as_often_as_equation_24_says(one_mode):
     person, rng = operator(beta=300.0, decision_s=0.05), np.random.default_rng(0)
-    given = np.stack([person.act(HERE, one_mode, 0, AHEAD, rng).u for _ in range(800)])
+    given = np.stack([person.act(HERE, one_mode, 0, AHEAD, rng).u for _ in range(500)])
     given, inputs = given[given.any(axis=1)], disc()
     weight = np.exp(-300.0 * left(one_mode, inputs, 0))
     mean = weight @ inputs / weight.sum()

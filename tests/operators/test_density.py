@@ -44,9 +44,9 @@ def draws(residual, beta, axes, count, seed=0, dead_zone=0.0):
 def marginals(cost, beta, dead_zone):
     """Edges of cells of length and of angle, each with the probability below them."""
     # Cells crowd towards the rim, where a sharp density lives.
-    crowded = 1.0 - np.geomspace(0.1, 1e-6, 400)
-    length = np.concatenate([np.linspace(dead_zone, 0.9, 200), crowded, [1.0]])
-    angle = np.linspace(-np.pi, np.pi, 2001)
+    crowded = 1.0 - np.geomspace(0.1, 1e-6, 200)
+    length = np.concatenate([np.linspace(dead_zone, 0.9, 100), crowded, [1.0]])
+    angle = np.linspace(-np.pi, np.pi, 721)
     r, a = ((edges[1:] + edges[:-1]) / 2 for edges in (length, angle))
     u = r[:, None, None] * np.stack([np.cos(a), np.sin(a)], axis=-1)
     loss = beta * cost(u)

@@ -18,7 +18,7 @@ VALUES = st.recursive(
 )
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(document=st.dictionaries(st.text(), VALUES), escaped=st.booleans())
 def test_reads_what_json_wrote(document: dict[str, object], escaped: bool) -> None:
     assert parse_object(json.dumps(document, ensure_ascii=escaped), "it") == document
