@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.container import BarContainer
 from matplotlib.figure import Figure
@@ -20,18 +20,21 @@ PIXEL = 1.5
 
 def faults(figure: Figure, *, drawn: bool = False) -> list[str]:
     """What is wrong with a figure, in words; one that has been ``drawn`` is not drawn again."""
+    canvas = figure.canvas
+    if not isinstance(canvas, FigureCanvasAgg):
+        canvas = FigureCanvasAgg(figure)
     if not drawn:
         figure.draw_without_rendering()
     return [
-        *_cut_off(figure),
+        *_cut_off(figure, canvas.get_renderer()),
         *_bars_on_logarithms(figure),
         *_beyond_probability(figure),
         *_unnamed_dots(figure),
     ]
 
 
-def _cut_off(figure: Figure) -> Iterator[str]:
-    renderer = FigureCanvasAgg(figure).get_renderer()
+def _cut_off(figure: Figure, renderer: RendererAgg) -> Iterator[str]:
+    """With the renderer that drew the figure, which remembers how large its texts are."""
     canvas = figure.bbox.padded(PIXEL)
     for legend in figure.findobj(Legend):
         if not _within(legend.get_window_extent(renderer), canvas):

@@ -15,9 +15,9 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A NumPy archive as people bring it: seven short demonstrations at the table."""
     demonstrations = TableTop().demonstrate(7, np.random.default_rng(0))
     path = tmp_path_factory.mktemp("recording") / "recording.npz"
-    states = [episode.state[::2] for episode in demonstrations.episodes]
+    states = [episode.state[::4] for episode in demonstrations.episodes]
     ends = np.cumsum([len(state) for state in states])
-    np.savez(path, q=np.concatenate(states), episode_ends=ends, rate_hz=10.0)
+    np.savez(path, q=np.concatenate(states), episode_ends=ends, rate_hz=5.0)
     return path
 
 

@@ -45,7 +45,7 @@ def test_a_simulated_person_is_asked_and_drives(run: Run, trained: Path) -> None
     assert row.mean is not None
     assert 0 <= row.mean < 0.5, "the answers themselves are met"
 
-    drive = ("drive", "mine", "--drives", 1, "--time-limit-s", 1)
+    drive = ("drive", "mine", "--drives", 1, "--time-limit-s", 0.3)
     assert run(*drive, "--out", "without")[0] in (0, 1)
     assert run(*drive, "--out", "with", "--profile", "ada")[0] in (0, 1)
     about = {
@@ -71,7 +71,7 @@ def test_json_is_one_document_and_the_same_seed_gives_the_same(run: Run, trained
     assert stored[0] == stored[1]
     config = json.loads((trained / "profiles" / "one" / "config.json").read_text())
     assert config["profile"]["seed_index"] == 1
-    assert run("drive", "mine", "--profile", "one", "--drives", 1, "--time-limit-s", 1)[0] in (0, 1)
+    assert run("drive", "mine", "--profile", "one", "--drives", 1, "--time-limit-s", 0.3)[0] in (0, 1)
 
 
 def typed(monkeypatch: pytest.MonkeyPatch, *lines: str) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 
 import numpy as np
@@ -103,7 +104,15 @@ def test_the_commands_of_the_page_about_your_arm_run(line, as_tried, workplace):
     assert main(as_tried(line).split()[1:]) == 0
 
 
-@pytest.mark.parametrize("line", [line for line in LINES if line.startswith("latentarm teleop")])
+def teleop_lines():
+    """The lines with a run, and one with all the options of those without."""
+    lines = [line for line in LINES if line.startswith("latentarm teleop")]
+    runless = [line for line in lines if line.startswith("latentarm teleop --")]
+    options = dict.fromkeys(option for line in runless for option in re.findall(r"--\S+ \S+", line))
+    return [*(line for line in lines if line not in runless), f"latentarm teleop {' '.join(options)}"]
+
+
+@pytest.mark.parametrize("line", teleop_lines())
 def test_the_page_is_served_as_the_page_about_your_arm_says(line, as_tried, workplace, monkeypatch):
     zones = workplace / "docs" / "your-arm" / "zones.toml"
     zones.parent.mkdir(parents=True)

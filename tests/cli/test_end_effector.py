@@ -23,9 +23,9 @@ PLATE = ("--robot", "fork.xml", "--end-effector", "plate")
 def fork(workplace: Path) -> Path:
     """An arm with two last bodies, and a recording of it."""
     Path("fork.xml").write_text(FORK)
-    time_s = np.arange(200) / 10.0
+    time_s = np.arange(80) / 10.0
     states = np.stack([0.6 * np.sin(0.4 * time_s), 0.5 * np.cos(0.3 * time_s)], axis=1)
-    np.savez("fork.npz", q=np.tile(states, (4, 1)), episode_ends=200 * np.arange(1, 5), rate_hz=10.0)
+    np.savez("fork.npz", q=np.tile(states, (4, 1)), episode_ends=80 * np.arange(1, 5), rate_hz=10.0)
     return workplace
 
 
@@ -47,7 +47,7 @@ def test_the_tool_is_named_at_import_and_known_from_then_on(run: Run, fork: Path
     assert "–" not in run("inspect", "forked")[1]  # the tool's path is known
     assert run("train", "--demonstrations", "forked", "--model", "pca", "--out", "learned")[0] == 0
     assert run("evaluate", "learned", "--folds", 0)[0] == 0
-    code, _, err = run("drive", "learned", "--drives", 1, "--time-limit-s", 1, "--json", "--out", "driven")
+    code, _, err = run("drive", "learned", "--drives", 1, "--time-limit-s", 0.3, "--json", "--out", "driven")
     assert code in (0, 1), err
     assert '"end_effector": "plate"' in Path("driven/drives.json").read_text()
 

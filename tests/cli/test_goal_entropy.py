@@ -16,12 +16,20 @@ CUPS = ("--demonstrations", "cups", "--latent-dim", "1", "--context", "state_bel
 TRAIN = ("train", *CUPS)
 
 
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with demonstrations of two goals, and with the same of none."""
+    folder = tmp_path_factory.mktemp("datasets")
+    shown = PlanarTwoCups().demonstrate(4, np.random.default_rng(0))
+    write_dataset(shown, folder / "cups")
+    write_dataset(replace(shown, goals=()), folder / "aimless")
+    return folder
+
+
 @pytest.fixture
-def cups(workplace: Path) -> Path:
-    shown = PlanarTwoCups().demonstrate(8, np.random.default_rng(0))
-    write_dataset(shown, Path("cups"))
-    write_dataset(replace(shown, goals=()), Path("aimless"))
-    return workplace
+def cups(datasets: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(datasets)
+    return datasets
 
 
 @pytest.mark.usefixtures("cups")

@@ -61,7 +61,7 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
         "latent_axes.png",
     }
 
-    code, out, _ = run("drive", "runs/eat-cae", "--jobs", 1, "--drives", 1, "--time-limit-s", 2, "--json")
+    code, out, _ = run("drive", "runs/eat-cae", "--jobs", 1, "--drives", 1, "--time-limit-s", 0.5, "--json")
     assert figures(out).keys() >= {
         "success_rate",
         "time_s",
@@ -71,9 +71,9 @@ def test_from_a_recording_to_a_driven_arm(run: Run, workplace: Path, recording: 
     }
     assert code == (0 if figures(out)["success_rate"] else 1)
 
-    code, out, _ = run(
-        "drive", "--jobs", 1, "--drives", 1, "--record", "driven", "--out", "recorded", "--json"
-    )
+    # With two sticks a drive is over soonest.
+    sticks = ("--controller", "two_sticks", "--jobs", 1, "--drives", 1)
+    code, out, _ = run("drive", *sticks, "--record", "driven", "--out", "recorded", "--json")
     assert code == 0
     driven = read_dataset(Path("driven"))
     assert len(driven.episodes) == 3
@@ -122,7 +122,7 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(demo_run, "HIDDEN", (8, 8))
     monkeypatch.setattr(demo_run, "DRIVERS", drivers := ("greedy", "unsteady"))
     config = DemoOptions(Path("demo"), drives=1, jobs=1, json=True)
-    sizes = Sizes(episodes=5, seeds=1, epochs={DEFAULT_MODEL: 1, "cvae": 1})
+    sizes = Sizes(episodes=4, seeds=1, epochs={DEFAULT_MODEL: 1, "cvae": 1})
     shown = run_demo(config, sizes)
     models = {DEFAULT_MODEL, "cvae"}
     alone = {(None, "end_effector"), *((model, "latent") for model in models)}
@@ -144,6 +144,7 @@ def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.Mo
         assert figure in page
         assert (Path("demo") / figure).stat().st_size > 10_000
     # The run is driven at the task that it learned, in physics.
+    monkeypatch.setattr(Marshmallows, "time_limit_s", 0.5)
     run = Path(f"demo/runs/{DEFAULT_MODEL}")
     driven = drive_run(DriveOptions(run, drives=1, record=Path("stabbed"), out=Path("again")))
     assert {row.task for row in driven.rows} == {"marshmallows"}
@@ -183,7 +184,7 @@ def test_a_decoder_that_sees_the_belief_is_trained_and_driven(run: Run, table: P
     command = ("train", "--demonstrations", "table", "--model", "scl", "--epochs", 1, "--seeds", 1)
     assert run(*command, "--context", "state_belief", "--hidden", 8)[0] == 0
     assert run("evaluate", "runs/table-scl", "--folds", 0)[0] == 0
-    code, out, _ = run("drive", "runs/table-scl", "--jobs", 1, "--drives", 1, "--time-limit-s", 3, "--json")
+    code, out, _ = run("drive", "runs/table-scl", "--jobs", 1, "--drives", 1, "--time-limit-s", 1, "--json")
     assert code in (0, 1)
     # The controller worked: an input was given and the tool moved.
     assert (figures(out)["path_length"] or 0.0) > 0.01
@@ -201,7 +202,7 @@ def test_help_is_as_the_person_sets_it_and_is_recorded(run: Run, table: Path) ->
         "--drives",
         1,
         "--time-limit-s",
-        3,
+        1,
     )
     helped = ("--belief", "distance", "--arbitration", "confidence", "--alpha", 0.4)
     code, out, _ = run(*drive, *helped, "--record", "helped", "--out", "confidence", "--json")

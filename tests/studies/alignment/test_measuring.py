@@ -1,6 +1,7 @@
 """One decoder, one cell, one curve: what they hold, and that they are the same again."""
 
 from dataclasses import replace
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -50,13 +51,25 @@ TINY = Preset(
     steps=4,
     ideal_steps=6,
     ideal_runs=1,
+    surroundings=40,
     curves=Curves(answers=(1, 4), networks=(4,), candidates=12),
 )
 
 
+@cache
+def learned_at(task):
+    """Several tests look at the same decoder."""
+    return learn_decoder(DecoderCell(task, "cae", TINY, 0))
+
+
+@cache
+def measured_at(task):
+    return measure_cell(Cell(learned_at(task), 0.5))
+
+
 @pytest.fixture(scope="module", params=["plane", "reach_and_pour"])
 def learned(request):
-    return learn_decoder(DecoderCell(request.param, "cae", TINY, 0))
+    return learned_at(request.param)
 
 
 @pytest.fixture(scope="module")
@@ -64,12 +77,8 @@ def scene(learned):
     return scene_of(learned)
 
 
-@pytest.fixture(scope="module")
-def result(learned):
-    return measure_cell(Cell(learned, 0.5))
-
-
-def test_every_condition_has_an_error_for_each_run(result):
+def test_every_condition_has_an_error_for_each_run(learned):
+    result = measured_at(learned.cell.task)
     assert list(result.errors) == list(CONDITIONS)
     for name, errors in result.errors.items():
         assert errors.shape == ((1,) if name in (NO_ALIGN, IDEAL) else (TINY.runs,))
@@ -79,7 +88,8 @@ def test_every_condition_has_an_error_for_each_run(result):
     assert set(result.learn_s) == set(CONDITIONS) - {NO_ALIGN, "Manual Align"}
 
 
-def test_a_cell_is_the_same_from_the_same_seed(learned, result):
+def test_a_cell_is_the_same_from_the_same_seed():
+    learned, result = learned_at("reach_and_pour"), measured_at("reach_and_pour")
     again = measure_cell(Cell(learned, 0.5))
     for name, errors in result.errors.items():
         np.testing.assert_array_equal(errors, again.errors[name])
@@ -134,8 +144,8 @@ def test_single_priors_weigh_what_they_weigh_among_all():
 
 
 @pytest.fixture(scope="module")
-def curve(learned):
-    return measure_curve(CurveCell(learned, 0.0))
+def curve():
+    return measure_curve(CurveCell(learned_at("reach_and_pour"), 0.0))
 
 
 def test_a_curve_has_a_point_for_every_number_and_choice(curve):
@@ -153,8 +163,8 @@ def test_asking_stops_within_what_may_be_asked_and_has_the_error_there(curve):
             assert curve.stopped_at[run] == curve.errors[CHOSEN][4][run]
 
 
-def test_a_curve_is_the_same_again(learned, curve):
-    again = measure_curve(CurveCell(learned, 0.0))
+def test_a_curve_is_the_same_again(curve):
+    again = measure_curve(curve.cell)
     for choice, errors in curve.errors.items():
         for count, values in errors.items():
             np.testing.assert_array_equal(values, again.errors[choice][count])
@@ -183,6 +193,6 @@ def test_the_axes_of_some_people_turn_by_as_much_either_way(scene):
     np.testing.assert_allclose(np.linalg.norm(u, axis=1), 0.5)
 
 
-def test_the_times_of_learning_and_of_a_call_are_taken(learned):
-    took = time_alignment(learned)
+def test_the_times_of_learning_and_of_a_call_are_taken():
+    took = time_alignment(learned_at("plane"))
     assert min(took["all_priors_s"], took["tool_space_s"], took["tool_space_call_s"]) > 0

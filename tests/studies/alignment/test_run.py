@@ -29,9 +29,10 @@ TINY = Preset(
     steps=2,
     ideal_runs=1,
     ideal_steps=2,
+    surroundings=40,
     curves=Curves(noises=(0.0,), answers=(1, 4), networks=(4,), candidates=8),
     turning=Turning(people=2, noises=(0.0,), ideal_people=1),
-    drives=Drives(models=("cvae",), seeds=1, episodes=6, epochs=1, answers=2, to_each_goal=1, limit_s=0.3),
+    drives=Drives(models=("cvae",), seeds=1, episodes=6, epochs=1, answers=2, to_each_goal=1, limit_s=0.2),
 )
 
 

@@ -16,7 +16,7 @@ from latentarm.studies.study import ALWAYS_MADE, Request, run_study
 TINY = Preset(
     "tiny",
     demonstrations=4,
-    test_demonstrations=2,
+    test_demonstrations=1,
     seeds=3,
     drives=2,
     epochs=1,
@@ -24,9 +24,11 @@ TINY = Preset(
     betas=(0.0, 75.0),
     learners={"slow": 10.0},
     slopes=(),
-    changes_s=(0.0, 1.0),
+    changes_s=(1.0,),
     entropy=Entropy(weight=2.0, sharpness=8.0),
-    ablation=Ablation(seeds=1, drives=2, weights=(0.0, 2.0), sharpness=(4.0,), contexts=("demonstrated",)),
+    ablation=Ablation(
+        seeds=1, drives=2, weights=(0.0, 2.0), sharpness=(), contexts=("demonstrated",), without_no_goal=False
+    ),
 )
 TASK = "planar_two_cups"
 
@@ -72,8 +74,8 @@ def test_without_help_nothing_is_certified(done):
 def test_every_variant_of_the_entropy_has_its_rows(done):
     rows, _ = done
     known = {(row.condition, row.measure) for row in rows if row.model == "cae"}
-    names = variants(TINY.ablation, TINY.entropy)
-    assert list(names) == [
+    every = replace(TINY.ablation, sharpness=(4.0,), without_no_goal=True)
+    assert list(variants(every, TINY.entropy)) == [
         "lambda_2 0",
         "lambda_2 2",
         "kappa 4",
@@ -81,6 +83,7 @@ def test_every_variant_of_the_entropy_has_its_rows(done):
         "progress of the joints alone",
         "contexts demonstrated",
     ]
+    names = variants(TINY.ablation, TINY.entropy)
     assert names["lambda_2 0"] is None
     assert names["lambda_2 2"] == TINY.entropy
     for name in names:
