@@ -23,7 +23,7 @@ from latentarm.demonstrations.dataset import write_dataset
 from latentarm.demonstrations.split import Fold, select_episodes
 from latentarm.files import write_text
 from latentarm.models.catalogue import DEFAULT_MODEL, KINDS
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.models.saving import load_decoder
 from latentarm.operators.catalogue import PEOPLE
 from latentarm.robots.catalogue import load_recorded_robot

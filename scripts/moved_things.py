@@ -17,7 +17,7 @@ from latentarm.context import OBJECTS_IN_TOOL, ContextLayout, context_vector
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.models import prepared
 from latentarm.models.catalogue import MODELS
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.models.scaling import (
     UNSEEN,
     CollapseWarning,

@@ -213,12 +213,15 @@ class Pairs:
         clean_context: (N, c), ``context`` before state noise.
         action: (N, m), noise-free joint velocity, rad/s.
         episode: (N,), index of the episode that each pair comes from.
+        held: (N, K), which of the things in the context move with the arm's tool; none where the arm is not
+            known.
     """
 
     context: FloatArray
     clean_context: FloatArray
     action: FloatArray
     episode: IntArray
+    held: BoolArray
 
 
 @dataclass(frozen=True)

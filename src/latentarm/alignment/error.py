@@ -6,7 +6,7 @@ from latentarm.alignment.answers import Answers, Motions
 from latentarm.alignment.contract import Alignment
 from latentarm.alignment.poses import pose_vectors
 from latentarm.kinematics.chain import Chain
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.types import FloatArray
 
 

@@ -25,7 +25,8 @@ from latentarm.demonstrations.folders import check_vacant, staged_folder
 from latentarm.errors import UserError
 from latentarm.files import sync_folder, write_text, written_whole
 from latentarm.kinematics.chain import Chain
-from latentarm.models.kind import Decoder, Shape
+from latentarm.models.decoder import Decoder
+from latentarm.models.kind import Shape
 from latentarm.models.reading import Section
 from latentarm.models.saving import (
     CONFIG_LIMIT,

@@ -11,7 +11,7 @@ from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.twists import tool_jacobian
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.types import FloatArray
 
 OUTSIDE: Final = 1.0

@@ -55,6 +55,13 @@ def train(
             " joints belief; 0 leaves it out, 5 lets people change their mind."
         ),
     ] = 0.0,
+    way_back_m: Annotated[
+        float,
+        arg(
+            help="L, a way back to what was demonstrated: from this far off, a full push also leads back at"
+            " the demonstrations' speed, m, such as 0.06. 0 for none."
+        ),
+    ] = 0.0,
     device: Annotated[Literal["cpu", "cuda", "auto"], arg(help="Where to train.")] = "cpu",
     end_effector: EndEffector = None,
     task: Annotated[
@@ -92,6 +99,7 @@ def train(
         batch_size=batch_size,
         kl_weight=kl_weight,
         goal_entropy=goal_entropy,
+        way_back_m=way_back_m,
         device=device,
         end_effector=end_effector,
         task=task,

@@ -10,7 +10,7 @@ from latentarm.context import BELIEF, GRIPPER, ContextLayout, context_vector
 from latentarm.control.controller import Controller
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_WIDTH
 from latentarm.errors import UserError
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.models.saving import load_decoder
 from latentarm.robots.robot import Robot
 from latentarm.types import Context, FloatArray

@@ -5,10 +5,12 @@ from typing import Literal
 import numpy as np
 
 from latentarm.context import Named
-from latentarm.demonstrations.contexts import episode_contexts
+from latentarm.demonstrations.contexts import context_layout, episode_contexts
+from latentarm.demonstrations.held import held_things
 from latentarm.errors import UserError
+from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.stillness import moving_range
-from latentarm.types import Demonstrations, Episode, FloatArray, IntArray, Pairs
+from latentarm.types import BoolArray, Demonstrations, Episode, FloatArray, IntArray, Pairs
 
 
 def make_pairs(
@@ -18,6 +20,7 @@ def make_pairs(
     context: Named,
     rng: np.random.Generator,
     actions: Literal["displacement", "recorded"] = "displacement",
+    chain: Chain | None = None,
 ) -> Pairs:
     """Draw every context-action pair that the demonstrations hold.
 
@@ -40,6 +43,7 @@ def make_pairs(
         context: the features that the decoder sees, see `latentarm.context.feature_names`.
         rng: source of the noise.
         actions: ``"displacement"`` as above, or ``"recorded"`` for the actions in the episodes.
+        chain: the arm, which tells what it holds; where None, nothing is held.
 
     Returns:
         The pairs, episode by episode. Context (N, c), action (N, n) in rad/s.
@@ -57,6 +61,8 @@ def make_pairs(
     contexts: list[FloatArray] = []
     taken: list[FloatArray] = []
     owner: list[IntArray] = []
+    held: list[BoolArray] = []
+    layout = context_layout(demonstrations, context)
     for index, episode in enumerate(demonstrations.episodes):
         moving = _moving(episode)
         start, action = (
@@ -64,7 +70,9 @@ def make_pairs(
             if actions == "recorded"
             else _displaced(episode, moving, window)
         )
-        contexts.append(episode_contexts(episode, context, index)[start])
+        seen = episode_contexts(episode, context, index)
+        contexts.append(seen[start])
+        held.append(held_things(chain, layout, seen)[start])
         taken.append(action)
         owner.append(np.full(len(start), index, dtype=np.int64))
     clean = np.concatenate(contexts)
@@ -73,7 +81,11 @@ def make_pairs(
     noisy = clean.copy()
     noisy[:, : demonstrations.dof] += rng.normal(scale=state_noise_rad, size=(len(clean), demonstrations.dof))
     return Pairs(
-        context=noisy, clean_context=clean, action=np.concatenate(taken), episode=np.concatenate(owner)
+        context=noisy,
+        clean_context=clean,
+        action=np.concatenate(taken),
+        episode=np.concatenate(owner),
+        held=np.concatenate(held),
     )
 
 

@@ -40,6 +40,24 @@ def object_rows(poses: Mapping[str, Pose], names: Sequence[str]) -> FloatArray:
     return np.array([pose_rows(poses[name]) for name in names]).reshape(len(names), OBJECT)
 
 
+def moved_along(rows: FloatArray, before: Pose, after: Pose) -> FloatArray:
+    """Poses of things that a tool takes along, as decoders see them.
+
+    Args:
+        rows: (..., K, 9), where they were.
+        before: pose of the tool then, (...,).
+        after: pose of the tool now, (...,); leading axes broadcast.
+
+    Returns:
+        (..., K, 9).
+    """
+    turn = (after.rotation @ before.rotation.mT)[..., None, :, :]
+    away = rows[..., :3] - before.position[..., None, :]
+    position = after.position[..., None, :] + (turn @ away[..., None])[..., 0]
+    columns = turn @ rows[..., 3:].reshape(*rows.shape[:-1], 3, 2)
+    return np.concatenate([position, columns.reshape(*position.shape[:-1], 6)], axis=-1)
+
+
 def stored_rows(pose: Pose) -> FloatArray:
     """Poses as datasets store them, (..., 7): position, m, then the quaternion (w, x, y, z), w >= 0."""
     return np.concatenate([pose.position, quaternion(pose.rotation)], axis=-1)

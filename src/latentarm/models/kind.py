@@ -1,4 +1,4 @@
-"""A kind of latent action model without its training, a trained model, and its NumPy decoder."""
+"""A kind of latent action model without its training, and a trained model."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -30,7 +30,8 @@ class Dimensions:
         context: c.
         action: m.
         hidden: units of each hidden layer, the same in encoder and decoder.
-        tools: k, end-effectors of the arm; 0 where neither the model nor its context looks at them.
+        tools: k, end-effectors of the arm; 0 where nothing of the model looks at them.
+        way_back: units of each hidden layer of the way back's network; none where there is no way back.
     """
 
     seeds: int
@@ -39,6 +40,22 @@ class Dimensions:
     action: int
     hidden: tuple[int, ...]
     tools: int = 0
+    way_back: tuple[int, ...] = ()
+
+
+def network_shapes(networks: Mapping[str, Shape], seeds: int) -> dict[str, Shape]:
+    """Shape, with the leading seed axis, of every weight and bias by name (``decoder.0.weight``, ...).
+
+    Args:
+        networks: layer widths, input first, by network.
+        seeds: S.
+    """
+    return {
+        f"{network}.{layer}.{part}": (seeds, rows, width)
+        for network, sizes in networks.items()
+        for layer, (before, width) in enumerate(pairwise(sizes))
+        for part, rows in (("weight", before), ("bias", 1))
+    }
 
 
 class Runtime(ABC):
@@ -112,18 +129,13 @@ class ModelKind:
         return self.encoder in ("deterministic", "gaussian")
 
     def weight_shapes(self, dimensions: Dimensions) -> dict[str, Shape]:
-        """Shape, with the leading seed axis, of every learned tensor by name (``decoder.0.weight``, ...)."""
+        """Shape of every learned tensor by name, see `network_shapes`."""
         inputs, d = dimensions.context + dimensions.action, dimensions.latent
         outputs = {"deterministic": d, "gaussian": 2 * d}.get(self.encoder)
         networks = dict(self.decoder(dimensions))
         if outputs is not None:
             networks["encoder"] = (inputs, *dimensions.hidden, outputs)
-        return {
-            f"{network}.{layer}.{part}": (dimensions.seeds, rows, width)
-            for network, sizes in networks.items()
-            for layer, (before, width) in enumerate(pairwise(sizes))
-            for part, rows in (("weight", before), ("bias", 1))
-        }
+        return network_shapes(networks, dimensions.seeds)
 
     def tensor_shapes(self, dimensions: Dimensions) -> dict[str, Shape]:
         """Shape of every tensor of a saved model: the learned ones, the normalisers and the latent scale."""
@@ -227,62 +239,3 @@ class TrainedModel:
                 f"This model has no seed index {seed}: it was trained with {self.dimensions.seeds} "
                 f"(0 to {self.dimensions.seeds - 1})."
             )
-
-
-@final
-class Decoder:
-    """The decoder as the control loop runs it: one seed, NumPy alone, a few microseconds.
-
-    ``a_h = phi(u, c)`` in rad/s, with u in [-1, 1] spanning what the demonstrations used.
-
-    Nothing is checked in `decode`: the control loop has checked its input, and a wrong shape raises in NumPy.
-
-    Attributes:
-        kind: kind of model.
-        layout: the features that its contexts consist of.
-        latent_dim: d.
-        context_dim: c.
-        action_dim: m.
-    """
-
-    __slots__ = ("_frame", "_runtime", "action_dim", "context_dim", "kind", "latent_dim", "layout")
-
-    def __init__(self, trained: TrainedModel, seed: int = 0) -> None:
-        """Take one seed's decoder out of a trained model.
-
-        Args:
-            trained: the model.
-            seed: index of the seed, 0..S-1.
-
-        Raises:
-            UserError: there is no such seed.
-        """
-        trained.check_seed_index(seed)
-        self.kind = trained.kind.name
-        self.layout = trained.layout
-        self._frame = trained.frame
-        self.latent_dim = trained.dimensions.latent
-        self.context_dim = trained.dimensions.context
-        self.action_dim = trained.dimensions.action
-        self._runtime = trained.kind.runtime(trained, seed)
-
-    def decode(self, z: FloatArray, context: FloatArray) -> FloatArray:
-        """Joint velocities of latent actions in contexts.
-
-        Args:
-            z: (..., d), in input units.
-            context: (..., c); leading axes broadcast against those of ``z``.
-
-        Returns:
-            (..., m), rad/s.
-        """
-        return self._runtime(z, context if self._frame is None else self._frame.apply(context))
-
-    def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure | None:
-        """A proven enclosure of `decode` over all latent actions in [-1, 1]^d; None where none is known.
-
-        Args:
-            context: (..., c).
-            fineness: 1 for a control loop; more is tighter and takes longer.
-        """
-        return self._runtime.enclose(context if self._frame is None else self._frame.apply(context), fineness)

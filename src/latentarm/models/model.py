@@ -20,7 +20,8 @@ from latentarm.demonstrations.split import split_episodes
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import TrainingData
-from latentarm.models.kind import Decoder, Dimensions, ModelKind, TrainedModel, TrainingSummary
+from latentarm.models.decoder import Decoder
+from latentarm.models.kind import Dimensions, ModelKind, TrainedModel, TrainingSummary
 from latentarm.models.networks import Networks
 from latentarm.models.parameters import (
     MOST_SEEDS,
@@ -48,7 +49,9 @@ from latentarm.models.scaling import (
 )
 from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.torch_decoder import TorchDecoder
-from latentarm.models.training import Report, TrainingResult
+from latentarm.models.training import Report, TrainingResult, choose_device
+from latentarm.models.way_back.runtime import WayBack
+from latentarm.models.way_back.training import with_way_back
 from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.types import BoolArray, Demonstrations, FloatArray, StrPath
 
@@ -93,6 +96,8 @@ class LatentActionModel(BaseEstimator, ABC):
         patience: epochs without improvement on the validation episodes after which a seed stops.
         device: ``cpu``, ``cuda``, or ``auto`` for CUDA where there is one.
         checkpoint_interval_s: shortest time between two checkpoints of a training, s.
+        way_back_m: L, from how far off the demonstrations a full push is led back at their speed, m; 0 for no
+            way back (`latentarm.models.way_back`).
         trained_: what `fit` learned.
     """
 
@@ -122,6 +127,7 @@ class LatentActionModel(BaseEstimator, ABC):
         default="cpu", metadata={RANGE: Choice(("cpu", "cuda", "auto"))}
     )
     checkpoint_interval_s: float = field(default=5.0, metadata={RANGE: Real()})
+    way_back_m: float = field(default=0.0, metadata={RANGE: Real()})
     trained_: TrainedModel = field(init=False)
 
     @abstractmethod
@@ -180,11 +186,12 @@ class LatentActionModel(BaseEstimator, ABC):
 
         Warns:
             CollapseWarning: a latent dimension moves nothing; ``collapsed_`` says which.
+            NoWayBackWarning: a way back was asked for and would not help.
         """
         prepared = self._prepared(demonstrations, validation, chain, term)
         saved = None if checkpoint is None else Path(checkpoint)
         learned = self._learn(prepared.data, self._dimensions(prepared), prepared.term, saved, report)
-        self.trained_ = self._trained(prepared, learned)
+        self.trained_ = self._led_back(self._trained(prepared, learned), prepared, report)
         if self.collapsed_.any():
             seeds = self.trained_.summary.seeds
             warn(CollapseWarning(describe_collapse(self.kind.name, seeds, self.collapsed_)), stacklevel=2)
@@ -227,7 +234,11 @@ class LatentActionModel(BaseEstimator, ABC):
         check_rows("z", z, trained.dimensions.latent, seeds=trained.dimensions.seeds, rows=len(context))
         stacked = np.broadcast_to(z, (trained.dimensions.seeds, *z.shape[-2:]))
         latents, contexts = trained.latents.invert(stacked), _observed(trained, context)
-        return trained.actions.invert(self._decode_rows(trained.tensors, latents, contexts))
+        action = trained.actions.invert(self._decode_rows(trained.tensors, latents, contexts))
+        if not trained.dimensions.way_back:
+            return action
+        each = enumerate(zip(action, stacked, strict=True))
+        return np.stack([WayBack(trained, seed)(alone, z, context) for seed, (alone, z) in each])
 
     def decoder(self, seed: int = 0) -> Decoder:
         """The decoder of one seed as the control loop runs it.
@@ -304,8 +315,9 @@ class LatentActionModel(BaseEstimator, ABC):
             if not demonstrations.robot:
                 raise UserError(
                     f"The {self.kind.name} model with the context {' '.join(feature_names(self.context))}"
-                    " looks at the arm's tool, and the demonstrations do not say which arm they are of: name"
-                    " it when they are imported (--robot)."
+                    f"{' and a way back' if self.way_back_m else ''} looks at the arm's tool, and the"
+                    " demonstrations do not say which arm they are of: name it when they are imported"
+                    " (--robot)."
                 )
             chain = load_recorded_robot(demonstrations).chain
         if chain.dof != demonstrations.dof:
@@ -327,13 +339,12 @@ class LatentActionModel(BaseEstimator, ABC):
                 int(index) for index in split_episodes(demonstrations, self.validation_fraction, rng)[1]
             ]
         check_validation(validation, len(demonstrations.episodes))
-        rng = np.random.default_rng([self.data_seed, 1])
-        pairs = make_pairs(
-            demonstrations, self.window, self.state_noise_rad, self.context, rng, actions=self.actions
-        )
         layout = context_layout(demonstrations, self.context)
-        needs_arm = self.kind.sees_tools or layout.sees_tool_frame
+        needs_arm = self.kind.sees_tools or layout.sees_tool_frame or self.way_back_m > 0
         arm = self._arm(demonstrations, chain) if needs_arm else None
+        rng = np.random.default_rng([self.data_seed, 1])
+        how = (self.window, self.state_noise_rad, self.context, rng, self.actions)
+        pairs = make_pairs(demonstrations, *how, chain=arm)
         asked = Preparation(self.kind.damping_m2, self.looks_ahead, self.data_seed)
         return prepare(asked, pairs, layout, validation, arm, term)
 
@@ -349,7 +360,21 @@ class LatentActionModel(BaseEstimator, ABC):
                 f"{prepared.joints}: choose at most {prepared.joints}."
             )
         return Dimensions(
-            self.seeds, self.latent_dim, prepared.width, prepared.joints, self.hidden, prepared.tools
+            self.seeds,
+            self.latent_dim,
+            prepared.width,
+            prepared.joints,
+            self.hidden,
+            len(prepared.arm.tools) if prepared.arm else 0,
+        )
+
+    def _led_back(self, trained: TrainedModel, prepared: Prepared, report: Report | None) -> TrainedModel:
+        """The trained model with the way back that was asked for."""
+        if not self.way_back_m or prepared.arm is None:
+            return trained
+        device = choose_device(self.device)
+        return with_way_back(
+            trained, prepared.pairs, prepared.arm, self.way_back_m, self.data_seed, device, report
         )
 
     def _trained(self, prepared: Prepared, learned: TrainingResult) -> TrainedModel:
@@ -374,7 +399,7 @@ class LatentActionModel(BaseEstimator, ABC):
             layout=prepared.layout,
             tensors={
                 **weights,
-                **({} if prepared.frame is None else chain_tensors(prepared.frame.chain)),
+                **({} if prepared.arm is None else chain_tensors(prepared.arm)),
                 **prepared.contexts.tensors(),
                 "action.scale": prepared.actions.scale,
                 "latent.centre": scale.centre[:, 0],

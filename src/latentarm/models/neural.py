@@ -19,7 +19,7 @@ from latentarm.models.networks import Networks, networks_from_arrays
 from latentarm.models.prepared import side_by_side
 from latentarm.models.scaling import SPAN_QUANTILE
 from latentarm.models.term import ScaledTerm, Span
-from latentarm.models.training import Report, TrainingConfig, TrainingResult, train
+from latentarm.models.training import Report, TrainingConfig, TrainingResult, choose_device, train
 from latentarm.types import Demonstrations, FloatArray
 
 Start = Callable[[TrainingData, Dimensions], dict[str, FloatArray]]
@@ -79,7 +79,7 @@ class NeuralModel(LatentActionModel, ABC):
         data = side_by_side([one.data for one in prepared])
         learned = self._learn(data, self._dimensions(prepared[0]), None, None, None)
         for index, (model, own) in enumerate(zip(models, prepared, strict=True)):
-            model.trained_ = model._trained(own, learned.of_seed(index))
+            model.trained_ = model._led_back(model._trained(own, learned.of_seed(index)), own, None)
         return models
 
     def _first(self, data: TrainingData, dimensions: Dimensions) -> dict[str, FloatArray] | None:
@@ -169,18 +169,6 @@ class NeuralModel(LatentActionModel, ABC):
         with torch.no_grad():
             latents = torch.from_numpy(np.ascontiguousarray(latent))
             return self._action(networks, latents, _for_every_seed(networks, context)).numpy()
-
-
-def choose_device(name: str) -> torch.device:
-    """The torch device for ``cpu``, ``cuda`` or ``auto``.
-
-    Raises:
-        UserError: CUDA is asked for and this machine or this torch has none.
-    """
-    present = torch.cuda.is_available()
-    if name == "cuda" and not present:
-        raise UserError("The device is cuda, but torch finds no CUDA on this machine: use cpu, or auto.")
-    return torch.device("cuda" if present and name in ("cuda", "auto") else "cpu")
 
 
 def _for_every_seed(networks: Networks, values: FloatArray) -> Tensor:

@@ -49,7 +49,8 @@ class Prepared:
         actions: from actions in rad/s to those of ``data``.
         joints: m, joints that an action moves.
         width: c, entries of a context.
-        tools: k, end-effectors of the arm, where it is needed.
+        pairs: before all this.
+        arm: its kinematics, where something needs them.
         validation: episodes that decide when training stops.
         term: the further term of the loss, or None.
     """
@@ -61,7 +62,8 @@ class Prepared:
     actions: Normaliser
     joints: int
     width: int
-    tools: int
+    pairs: Pairs
+    arm: Chain | None
     validation: tuple[int, ...]
     term: ScaledTerm | None
 
@@ -136,7 +138,8 @@ def prepare(
         actions=actions,
         joints=joints,
         width=context.shape[1],
-        tools=len(arm.tools) if arm else 0,
+        pairs=pairs,
+        arm=arm,
         validation=tuple(int(episode) for episode in validation),
         term=term
         and ScaledTerm(

@@ -23,9 +23,11 @@ from latentarm.demonstrations.contexts import GRIPPER_SOURCES
 from latentarm.errors import UserError
 from latentarm.files import write_text, written_whole
 from latentarm.models.catalogue import KINDS, MODELS
-from latentarm.models.kind import Decoder, Dimensions, Shape, TrainedModel, TrainingSummary
+from latentarm.models.decoder import Decoder
+from latentarm.models.kind import Dimensions, Shape, TrainedModel, TrainingSummary
 from latentarm.models.parameters import check_parameters
 from latentarm.models.reading import Section
+from latentarm.models.way_back.runtime import pull_shapes
 from latentarm.plugins import Origin
 from latentarm.types import FloatArray, StrPath
 from latentarm.untrusted.opening import read_bytes
@@ -81,6 +83,7 @@ def write_model(folder: Path, trained: TrainedModel, run: Mapping[str, object]) 
             "action": dimensions.action,
             "hidden": list(dimensions.hidden),
             "tools": dimensions.tools,
+            "way_back": list(dimensions.way_back),
         },
         "layout": {
             "features": list(trained.layout.features),
@@ -132,6 +135,7 @@ def read_model(folder: Path) -> TrainedModel:
         action=sizes.integer("action", 1),
         hidden=tuple(sizes.integers("hidden", 1, longest=MOST_LAYERS)),
         tools=sizes.integer("tools", 0),
+        way_back=_way_back(sizes),
     )
     if kind.sees_tools and (dimensions.tools < 1 or dimensions.context < dimensions.action):
         raise UserError(
@@ -142,7 +146,9 @@ def read_model(folder: Path) -> TrainedModel:
     layout = (
         _earlier_layout(parameters, dimensions) if earlier else _layout(section.section("layout"), dimensions)
     )
-    shapes = kind.tensor_shapes(dimensions)
+    if dimensions.way_back and dimensions.tools < 1:
+        raise UserError(f"{path}: a way back needs an arm with a tool.")
+    shapes = {**kind.tensor_shapes(dimensions), **pull_shapes(dimensions, layout)}
     training = _renamed(section.section("training"))
     seeds = dimensions.seeds
     summary = TrainingSummary(
@@ -155,6 +161,13 @@ def read_model(folder: Path) -> TrainedModel:
     )
     tensors = read_tensors(folder / WEIGHTS_NAME, shapes, section.text("sha256"))
     return TrainedModel(kind, parameters.plain(), dimensions, layout, tensors, summary)
+
+
+def _way_back(sizes: Section) -> tuple[int, ...]:
+    """Hidden units of the way back's network; models from before there was one have none."""
+    if "way_back" not in sizes.plain():
+        return ()
+    return tuple(sizes.integers("way_back", 1, longest=MOST_LAYERS))
 
 
 def _earlier_layout(parameters: Section, dimensions: Dimensions) -> ContextLayout:

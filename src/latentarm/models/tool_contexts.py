@@ -100,7 +100,7 @@ class ToolContexts:
         return ToolContexts(
             chain=chain,
             contexts=contexts,
-            places=context_normaliser(_places(chain, context[:, : chain.dof])[0]),
+            places=context_normaliser(places_and_jacobian(chain, context[:, : chain.dof])[0]),
             rotation_weight=ROTATION_WEIGHT_M,
             damping=damping,
         )
@@ -152,8 +152,7 @@ class ToolContexts:
             (..., c + 9 k + 12 k n), laid out as in `ToolSizes`.
         """
         sizes = self.sizes
-        places, jacobian = _places(self.chain, context[..., : sizes.joints])
-        jacobian *= self.twist_weight[:, None]
+        places, jacobian = places_and_jacobian(self.chain, context[..., : sizes.joints])
         metric = jacobian.mT @ jacobian + self.damping * np.eye(sizes.joints)
         lift = np.asarray(np.linalg.solve(metric, jacobian.mT), dtype=np.float64)
         lead = context.shape[:-1]
@@ -169,7 +168,7 @@ class ToolContexts:
 
     def jacobian(self, state: FloatArray) -> FloatArray:
         """``J_w`` alone at states (..., n): (..., 6 k, n)."""
-        return _places(self.chain, state)[1] * self.twist_weight[:, None]
+        return places_and_jacobian(self.chain, state)[1]
 
     def action_normaliser(self, context: FloatArray, action: FloatArray) -> Normaliser:
         """One scale for all joints, so that the fastest tools, outliers aside, have the speed 1.
@@ -186,13 +185,18 @@ class ToolContexts:
     @cached_property
     def twist_weight(self) -> FloatArray:
         """(6 k,), the square root of W over k."""
-        one = np.concatenate([np.ones(3), np.full(3, self.rotation_weight)])
-        weight: FloatArray = np.tile(one, self.sizes.tools) / math.sqrt(self.sizes.tools)
-        return weight
+        return twist_weight(self.sizes.tools)
 
 
-def _places(chain: Chain, state: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Places (..., 9 k) of all tools at states (..., n), and their Jacobians (..., 6 k, n)."""
+def twist_weight(tools: int) -> FloatArray:
+    """The square root of W over k for all twists of k tools, (6 k,)."""
+    one = np.concatenate([np.ones(3), np.full(3, ROTATION_WEIGHT_M)])
+    weight: FloatArray = np.tile(one, tools) / math.sqrt(tools)
+    return weight
+
+
+def places_and_jacobian(chain: Chain, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Places (..., 9 k) of all tools at states (..., n), and ``J_w`` there, (..., 6 k, n)."""
     transforms = chain.link_transforms(state)
     places: list[FloatArray] = []
     jacobians: list[FloatArray] = []
@@ -200,4 +204,6 @@ def _places(chain: Chain, state: FloatArray) -> tuple[FloatArray, FloatArray]:
         pose = chain.tool_pose(transforms, tool)
         places.append(pose_rows(pose))
         jacobians.append(chain.jacobian_at(transforms, pose, tool))
-    return np.concatenate(places, axis=-1), np.concatenate(jacobians, axis=-2)
+    jacobian = np.concatenate(jacobians, axis=-2)
+    jacobian *= twist_weight(len(chain.tools))[:, None]
+    return np.concatenate(places, axis=-1), jacobian

@@ -11,6 +11,7 @@ from latentarm.models.networks import Networks, group_layers
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.torch_tool_contexts import TorchToolContexts
 from latentarm.models.torch_tool_frame import TorchToolFrame
+from latentarm.models.way_back.torch_way_back import TorchWayBack
 from latentarm.types import FloatArray
 
 Action = Callable[[Networks, Tensor, Tensor], Tensor]
@@ -68,7 +69,9 @@ class TorchDecoder:
             else _Normalise(tensor(contexts.centre), tensor(contexts.scale))
         )
         frame = None if trained.frame is None else TorchToolFrame(trained.frame, dtype)
-        self.observe = observe if frame is None else _Framed(frame, observe)
+        observe = observe if frame is None else _Framed(frame, observe)
+        self._way_back = TorchWayBack(trained, seed, dtype) if trained.dimensions.way_back else None
+        self.observe = observe if self._way_back is None else _LedBack(observe, self._way_back)
         """What the networks see of contexts: (..., c) to (..., o), of which the first c entries are the
         context, normalised, with poses in the tool's frame where that is asked for."""
         self.contexts = contexts.contexts if isinstance(contexts, ToolContexts) else contexts
@@ -85,10 +88,15 @@ class TorchDecoder:
         Returns:
             (..., m), rad/s.
         """
-        lead = z.shape[:-1]
+        lead, back = z.shape[:-1], observed[..., :0]
+        if self._way_back is not None:
+            observed, back = observed.split(
+                [observed.shape[-1] - self._way_back.width, self._way_back.width], dim=-1
+            )
         latent = (self._centre + self._scale * z).reshape(1, -1, self.latent_dim)
         action = self._action(self._networks, latent, observed.reshape(1, -1, observed.shape[-1]))
-        return (action * self._action_scale).reshape(*lead, self.action_dim)
+        action = (action * self._action_scale).reshape(*lead, self.action_dim)
+        return action if self._way_back is None else self._way_back(action, z, back)
 
 
 @final
@@ -98,6 +106,15 @@ class _Framed:
 
     def __call__(self, context: Tensor) -> Tensor:
         return self._observe(self._frame(context))
+
+
+@final
+class _LedBack:
+    def __init__(self, observe: Callable[[Tensor], Tensor], way_back: TorchWayBack) -> None:
+        self._observe, self._way_back = observe, way_back
+
+    def __call__(self, context: Tensor) -> Tensor:
+        return torch.cat([self._observe(context), self._way_back.observe(context)], dim=-1)
 
 
 @final

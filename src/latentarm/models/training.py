@@ -217,6 +217,18 @@ def threads_for(work: int) -> Generator[None]:
         torch.set_num_threads(before)
 
 
+def choose_device(name: str) -> torch.device:
+    """The torch device for ``cpu``, ``cuda`` or ``auto``.
+
+    Raises:
+        UserError: CUDA is asked for and this machine or this torch has none.
+    """
+    present = torch.cuda.is_available()
+    if name == "cuda" and not present:
+        raise UserError("The device is cuda, but torch finds no CUDA on this machine: use cpu, or auto.")
+    return torch.device("cuda" if present and name in ("cuda", "auto") else "cpu")
+
+
 def _unheard(epoch: int, epochs: int, loss: float) -> None:
     pass
 

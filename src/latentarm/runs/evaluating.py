@@ -31,7 +31,7 @@ from latentarm.metrics.samples import evenly_spread, moving_episodes, spread_con
 from latentarm.metrics.search import nearest_latents
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.verdict import THRESHOLDS, Finding, findings
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.models.saving import load_model
 from latentarm.models.scaling import CollapseWarning

@@ -60,6 +60,7 @@ class TrainConfig:
         batch_size: pairs per step, at most; the model's own number where None.
         kl_weight: lambda of equations 7 and 8, for models that have it; their own where None.
         goal_entropy: lambda_2 of equation 16; 0 leaves the entropy over goals out of the loss.
+        way_back_m: see `LatentActionModel`.
         device: where to train.
         end_effector: site, body or link of the robot's model file; the dataset's where None.
         task: what the run is driven at, a task of the catalogue; by the dataset's goals where None.
@@ -81,6 +82,7 @@ class TrainConfig:
     batch_size: int | None = None
     kl_weight: float | None = None
     goal_entropy: float = 0.0
+    way_back_m: float = 0.0
     device: Literal["cpu", "cuda", "auto"] = "cpu"
     end_effector: str | None = None
     task: str | None = None
@@ -199,6 +201,7 @@ def _model(config: TrainConfig) -> LatentActionModel:
         seed=config.seed,
         data_seed=config.seed,
         device=config.device,
+        way_back_m=config.way_back_m,
     )
     return replace(model, **chosen)
 

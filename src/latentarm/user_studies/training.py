@@ -10,7 +10,8 @@ from threadpoolctl import threadpool_limits
 from latentarm.assistance.annotation import annotate
 from latentarm.context import BELIEF
 from latentarm.errors import UserError
-from latentarm.models.kind import Decoder, TrainedModel
+from latentarm.models.decoder import Decoder
+from latentarm.models.kind import TrainedModel
 from latentarm.models.model import LatentActionModel
 from latentarm.operators.traits import Traits
 from latentarm.simulation.demonstrate import Demonstration, dataset_of, demonstrate_once

@@ -19,7 +19,7 @@ from latentarm.alignment.surroundings import Surroundings
 from latentarm.alignment.tool_space import ToolSpace, ToolSpaceAlignment
 from latentarm.alignment.training import FitConfig, FittedAlignments, fit_alignments
 from latentarm.kinematics.chain import Chain
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.operators.preference import ByPlace, HeightAndTilt, Imprecise, Preference, ToolAxes
 from latentarm.studies.alignment.preset import Preset, Stream

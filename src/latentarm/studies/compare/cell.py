@@ -9,7 +9,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.demonstrations.split import Fold, select_episodes
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.robots.robot import Robot

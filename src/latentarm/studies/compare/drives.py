@@ -21,7 +21,7 @@ from latentarm.metrics.drives import GoalDrive, goal_drive_rows
 from latentarm.metrics.ending import Ending
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.undone import undone_share
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.operators.catalogue import PEOPLE, usual_operator
 from latentarm.robots.catalogue import load_recorded_robot
 from latentarm.simulation.drive import Setup, simulate

@@ -11,7 +11,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from latentarm.demonstrations.split import select_episodes
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.models.model import LatentActionModel
 from latentarm.studies.fitting import fit_each, validation_episodes
 from latentarm.studies.properties.measures import (

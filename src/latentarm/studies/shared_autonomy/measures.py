@@ -10,7 +10,7 @@ import torch
 from latentarm.assistance.bound import Others, certified, certified_along, furthest, known_help, weighted
 from latentarm.assistance.entropy import entropy_over_goals, goal_probabilities, goal_progress
 from latentarm.kinematics.torch_chain import TorchChain
-from latentarm.models.kind import Decoder
+from latentarm.models.decoder import Decoder
 from latentarm.models.tool_contexts import ROTATION_WEIGHT_M, TWIST
 from latentarm.studies.shared_autonomy.choice import KNOWN
 from latentarm.studies.shared_autonomy.drive import GAIN_PER_S, STEP_S, Drives, Scene

@@ -10,7 +10,8 @@ from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
 from latentarm.metrics.looks import look_of
 from latentarm.metrics.task_drives import TaskDrive
-from latentarm.models.kind import Decoder, TrainedModel
+from latentarm.models.decoder import Decoder
+from latentarm.models.kind import TrainedModel
 from latentarm.robots.robot import Robot
 from latentarm.simulation.demonstrate import Demonstration
 from latentarm.simulation.task_drive import TaskTrace

@@ -1,0 +1,87 @@
+"""Which things of a demonstration move with the arm's tool: what its fork or its gripper holds."""
+
+from typing import Final
+
+import numpy as np
+
+from latentarm.context import OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
+from latentarm.kinematics.chain import Chain
+from latentarm.kinematics.pose_rows import moved_along
+from latentarm.types import BoolArray, FloatArray, Pose
+
+MOVES_M: Final = 0.001
+"""Between two samples less motion than this tells nothing, m."""
+
+ASTRAY: Final = 0.3
+"""A thing is held where it ends up within this share of its way from where the tool would have taken it."""
+
+
+def held_things(chain: Chain | None, layout: ContextLayout, context: FloatArray) -> BoolArray:
+    """Which things are held at each sample of an episode.
+
+    Where neither the thing nor the tool at it moves, what was known before holds on; at first nothing is
+    held.
+
+    Args:
+        chain: the arm, whose first tool holds things; None where it is not known: then nothing is held.
+        layout: of the contexts.
+        context: (T, c), of successive samples.
+
+    Returns:
+        (T, K), for the things that the context has.
+    """
+    held = np.zeros((len(context), len(layout.objects)), dtype=np.bool_)
+    if chain is None or len(context) < 2 or not layout.objects:
+        return held
+    rows = _rows(layout, context)
+    tool = chain.forward(context[:, : layout.joints])
+    before, after = (Pose(tool.position[part], tool.rotation[part]) for part in (_EARLIER, _LATER))
+    carried = moved_along(rows[:-1], before, after)[..., :3]
+    here, there = rows[:-1, :, :3], rows[1:, :, :3]
+    way = np.maximum(np.linalg.norm(carried - here, axis=-1), np.linalg.norm(there - here, axis=-1))
+    known = way > MOVES_M
+    # The newest sample at which something was known, per thing.
+    newest = np.maximum.accumulate(np.where(known, np.arange(len(known))[:, None], -1), axis=0)
+    along = np.linalg.norm(there - carried, axis=-1) < ASTRAY * way
+    held[:-1] = np.take_along_axis(along, np.maximum(newest, 0), axis=0) & (newest >= 0)
+    held[-1] = held[-2]
+    return held
+
+
+def moved_to(
+    chain: Chain | None, layout: ContextLayout, context: FloatArray, held: BoolArray, state: FloatArray
+) -> FloatArray:
+    """Contexts once the arm is elsewhere, and with it what it holds.
+
+    Args:
+        chain: the arm; None where it is not known: then nothing is held.
+        layout: of the contexts.
+        context: (N, c).
+        held: (N, K), of `held_things`.
+        state: (N, n), where the arm is then, rad.
+
+    Returns:
+        (N, c).
+    """
+    moved = context.copy()
+    moved[:, : layout.joints] = state
+    carries = held.any(axis=1)
+    if chain is None or not carries.any():
+        return moved
+    before, after = (chain.forward(one[carries, : layout.joints]) for one in (context, state))
+    rows = _rows(layout, context[carries])
+    there = np.where(held[carries, :, None], moved_along(rows, before, after), rows)
+    for feature in _THINGS & set(layout.features):
+        moved[carries, layout.columns(feature)] = there.reshape(len(there), -1)
+    return moved
+
+
+_THINGS: Final = {OBJECTS, OBJECTS_IN_TOOL}
+_EARLIER: Final = slice(None, -1)
+_LATER: Final = slice(1, None)
+
+
+def _rows(layout: ContextLayout, context: FloatArray) -> FloatArray:
+    """Where the things are, (N, K, 9)."""
+    feature = next(one for one in layout.features if one in _THINGS)
+    return context[:, layout.columns(feature)].reshape(len(context), -1, OBJECT)

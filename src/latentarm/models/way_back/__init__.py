@@ -1,0 +1,1 @@
+"""A way back to what was demonstrated, for every decoder: see `runtime.py`."""

@@ -1,0 +1,170 @@
+"""A way back to what was demonstrated, for any decoder H: ``phi(z, c) = cap[H(z, c) + ‖z‖ w(c)]``.
+
+The pull w leads from where the arm is to where demonstrations went. It acts in proportion to the push,
+whichever way that goes, so that whoever pushes is also brought back. A network D estimates the way,
+``D(c') = E[q - q' | c']`` for demonstrated states q that were displaced to q'. This is a denoiser, the score
+of the smoothed demonstrations, so that it averages to zero along their path (Vincent, "A Connection Between
+Score Matching and Denoising Autoencoders", 2011). With the metric G of the tools, the speed v of the
+demonstrations and ``h = min(v, ‖H‖_G / ‖z‖)``::
+
+    w = D min(v / L clip(2 - ‖D‖_G / GATE_M, 0, 1), STRENGTH h / ‖D‖_G)
+    cap[a] = a min(1, v ‖z‖ / ‖a‖_G)
+
+So, by construction, for every decoder and context and all weights:
+
+- ``phi(0, c) = 0``: rest is rest;
+- ``phi(a z, c) = a phi(z, c)`` for a > 0 where H has this property: half the push moves half as fast;
+- ``‖phi(z, c)‖_G <= v ‖z‖``;
+- ``<phi(z, c), H(z, c)>_G >= (1 - STRENGTH) / (1 + STRENGTH) ‖phi‖_G ‖H‖_G``: the pull is weaker than the
+  person, who can always move on against it;
+- ``w = 0`` beyond ``2 GATE_M``, where the network knows nothing.
+
+The opposite push does not take a motion back any more: both directions lead back.
+"""
+
+from typing import Final, final
+
+import numpy as np
+
+from latentarm.context import BELIEF, GRIPPER, JOINTS, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
+from latentarm.kinematics.chain import Chain
+from latentarm.models.enclosure import Enclosure
+from latentarm.models.kind import Dimensions, Shape, TrainedModel, network_shapes
+from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, network_output
+from latentarm.models.saved_chain import chain_of_tensors
+from latentarm.models.tool_contexts import PLACE, places_and_jacobian
+from latentarm.types import FloatArray
+
+NETWORK: Final = "way_back"
+"""Name of its network among a model's tensors."""
+
+GATE_M: Final = 0.06
+"""From this length of D on the pull fades, m, and beyond twice this length there is none."""
+
+STRENGTH: Final = 0.7
+"""How strong the pull is at most, relative to the person."""
+
+DAMPING_M2: Final = 1e-3
+"""Weight of a joint's motion by 1 rad in the metric, relative to the square of a tool's motion by 1 m."""
+
+
+@final
+class PullContexts:
+    """What D sees of a context: joints, tools, where things are, and what else the decoder sees.
+
+    Poses of things come twice: (..., K, 9) in the base frame, then positions (..., K, 3) and columns of
+    rotations (..., K, 6) in that of the first tool.
+
+    Args:
+        chain: the arm.
+        layout: of the contexts.
+    """
+
+    def __init__(self, chain: Chain, layout: ContextLayout) -> None:
+        self._chain = chain
+        self._joints = layout.columns(JOINTS)
+        self._things, self._others = pull_columns(layout)
+
+    def apply(self, context: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What D sees of contexts (..., c): (..., o), and the weighted Jacobian there (..., 6 k, n)."""
+        state = context[..., self._joints]
+        places, jacobian = places_and_jacobian(self._chain, state)
+        parts = [state, places]
+        if self._things is not None:
+            rows = context[..., self._things]
+            lead = rows.shape[:-1]
+            rows = rows.reshape(*lead, -1, OBJECT)
+            turned = places[..., 3:PLACE].reshape(*lead, 3, 2)
+            first, second = turned[..., 0], turned[..., 1]
+            axes = np.stack([first, second, np.cross(first, second)], axis=-1)
+            near = (rows[..., :3] - places[..., None, :3]) @ axes
+            columns = axes.mT[..., None, :, :] @ rows[..., 3:].reshape(*rows.shape[:-1], 3, 2)
+            parts += [one.reshape(*lead, -1) for one in (rows, near, columns)]
+        parts += [context[..., columns] for columns in self._others]
+        return np.concatenate(parts, axis=-1), jacobian
+
+
+def pull_columns(layout: ContextLayout) -> tuple[slice | None, list[slice]]:
+    """Where a context has the poses of things, None without any; and what else D sees as it is."""
+    things = next((layout.columns(one) for one in (OBJECTS, OBJECTS_IN_TOOL) if one in layout.features), None)
+    return things, [layout.columns(one) for one in (BELIEF, GRIPPER) if one in layout.features]
+
+
+def pull_width(layout: ContextLayout, tools: int) -> int:
+    """o, the entries that D sees of a context."""
+    things, others = pull_columns(layout)
+    count = 0 if things is None else len(layout.objects)
+    beside = sum(columns.stop - columns.start for columns in others)
+    return layout.joints + PLACE * tools + 2 * OBJECT * count + beside
+
+
+def pull_shapes(dimensions: Dimensions, layout: ContextLayout) -> dict[str, Shape]:
+    """Shape of every array of a model's way back by name; none where it has none."""
+    if not dimensions.way_back:
+        return {}
+    sizes = (pull_width(layout, dimensions.tools), *dimensions.way_back, dimensions.action)
+    return {
+        **network_shapes({NETWORK: sizes}, dimensions.seeds),
+        f"{NETWORK}.scale": (2,),
+    }
+
+
+@final
+class WayBack:
+    """The way back of one seed of a trained model that has one."""
+
+    def __init__(self, trained: TrainedModel, seed: int) -> None:
+        self._layers = halve_hidden(layers_of(trained, seed, NETWORK))
+        self._contexts = PullContexts(chain_of_tensors(trained.tensors), trained.layout)
+        self._speed, self._length = map(float, trained.tensors[f"{NETWORK}.scale"])
+
+    def __call__(self, action: FloatArray, z: FloatArray, context: FloatArray) -> FloatArray:
+        """The decoder's action with the way back.
+
+        Args:
+            action: (..., m), what the decoder alone gives, rad/s.
+            z: (..., d), in input units.
+            context: (..., c), with all poses in the base frame.
+
+        Returns:
+            (..., m), rad/s.
+        """
+        way, length, gain, jacobian = self._pull(context)
+        fastest = self._speed * np.sqrt(np.vecdot(z, z))[..., None]
+        person = np.minimum(fastest, metric_length(jacobian, action))
+        led = action + np.minimum(fastest * gain, STRENGTH * person / length) * way
+        return led * np.minimum(1.0, fastest / metric_length(jacobian, led))
+
+    def enclosed(self, enclosure: Enclosure, latent_dim: int, context: FloatArray) -> Enclosure:
+        """The enclosure of phi.
+
+        The pull is one vector times a number from 0 to its largest, and the cap multiplies by a number from
+        0 to 1: both are further directions in which each cell spreads.
+
+        Args:
+            enclosure: the decoder's alone in the same contexts.
+            latent_dim: d.
+            context: (..., c), with all poses in the base frame.
+        """
+        way, length, gain, _ = self._pull(context)
+        fastest = self._speed * np.sqrt(latent_dim)
+        half = 0.5 * fastest * np.minimum(gain, STRENGTH / length) * way
+        half = np.broadcast_to(half[..., None, :], enclosure.centre.shape)
+        middle = 0.5 * (enclosure.centre + half)
+        further = np.stack([half, middle], axis=-2)
+        return Enclosure(middle, np.concatenate([enclosure.spread, further], axis=-2), enclosure.remainder)
+
+    def _pull(self, context: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """D (..., m), rad; its length (..., 1), m; its factor (..., 1), 1/m; ``J_w`` (..., 6 k, n)."""
+        seen, jacobian = self._contexts.apply(context)
+        way = network_output(seen, self._layers)
+        length = metric_length(jacobian, way)
+        gain = np.clip(2.0 - length / GATE_M, 0.0, 1.0) / self._length
+        return way, length, gain, jacobian
+
+
+def metric_length(jacobian: FloatArray, vector: FloatArray) -> FloatArray:
+    """``‖a‖_G`` of joint velocities (..., m), given ``J_w`` (..., 6 k, m): (..., 1), positive."""
+    twist = np.matvec(jacobian, vector)
+    size = np.vecdot(twist, twist) + DAMPING_M2 * np.vecdot(vector, vector)
+    return np.sqrt(size + NORM_FLOOR)[..., None]
