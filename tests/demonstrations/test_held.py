@@ -5,6 +5,7 @@ import pytest
 
 from latentarm.context import OBJECT
 from latentarm.demonstrations.contexts import context_layout
+from latentarm.demonstrations.held import moved_to
 from latentarm.demonstrations.pairs import make_pairs
 from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.kinematics.pose_rows import moved_along, pose_rows, stored_rows
@@ -57,17 +58,18 @@ def test_what_moves_with_the_tool_is_held_also_while_both_rest(demonstrations):
     assert pairs.held[sample == 27, 0].all(), "those at rest are among them"
 
 
-def test_noise_on_the_state_takes_along_what_is_held_and_nothing_else(demonstrations):
-    pairs = pairs_of(demonstrations, 0.1, ARM.chain)
+def test_what_is_held_moves_along_and_nothing_else(demonstrations):
+    pairs = pairs_of(demonstrations, 0.0, ARM.chain)
     layout = context_layout(demonstrations, FEATURES)
-    columns = layout.columns("objects")
-    clean, noisy = (
-        one[:, columns].reshape(len(one), 2, OBJECT) for one in (pairs.clean_context, pairs.context)
-    )
-    before, after = (ARM.chain.forward(one[:, :3]) for one in (pairs.clean_context, pairs.context))
-    there = moved_along(clean, before, after)
-    np.testing.assert_allclose(noisy, np.where(pairs.held[..., None], there, clean), atol=1e-12)
-    assert np.abs(noisy - clean)[pairs.held].max() > 0.01
+    clean = pairs.clean_context
+    state = clean[:, :3] + np.random.default_rng(1).normal(scale=0.1, size=(len(clean), 3))
+    moved = moved_to(ARM.chain, layout, clean, pairs.held, state)
+    np.testing.assert_array_equal(moved[:, :3], state)
+    here, there = (one[:, 3:].reshape(len(one), 2, OBJECT) for one in (clean, moved))
+    before, after = (ARM.chain.forward(one) for one in (clean[:, :3], state))
+    expected = np.where(pairs.held[..., None], moved_along(here, before, after), here)
+    np.testing.assert_allclose(there, expected, atol=1e-12)
+    assert np.abs(there - here)[pairs.held].max() > 0.01
 
 
 def test_of_an_arm_that_is_not_known_nothing_is_held(demonstrations):
