@@ -3,12 +3,12 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Literal, final
 
 from latentarm.context import ContextLayout
 from latentarm.errors import UserError
 from latentarm.models.enclosure import Enclosure
+from latentarm.models.numpy_networks import network_shapes
 from latentarm.models.saved_chain import chain_of_tensors, chain_shapes
 from latentarm.models.scaling import Normaliser
 from latentarm.models.tool_contexts import ToolContexts, tool_shapes
@@ -41,21 +41,6 @@ class Dimensions:
     hidden: tuple[int, ...]
     tools: int = 0
     way_back: tuple[int, ...] = ()
-
-
-def network_shapes(networks: Mapping[str, Shape], seeds: int) -> dict[str, Shape]:
-    """Shape, with the leading seed axis, of every weight and bias by name (``decoder.0.weight``, ...).
-
-    Args:
-        networks: layer widths, input first, by network.
-        seeds: S.
-    """
-    return {
-        f"{network}.{layer}.{part}": (seeds, rows, width)
-        for network, sizes in networks.items()
-        for layer, (before, width) in enumerate(pairwise(sizes))
-        for part, rows in (("weight", before), ("bias", 1))
-    }
 
 
 class Runtime(ABC):

@@ -2,14 +2,16 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Final, cast, final
+from typing import TYPE_CHECKING, Final, cast, final
 
 import torch
 from torch import Tensor
 
-from latentarm.models.kind import Shape
 from latentarm.models.perceptron import Perceptrons
 from latentarm.types import FloatArray
+
+if TYPE_CHECKING:
+    from latentarm.models.kind import Shape
 
 Layer = tuple[Tensor, Tensor]
 """Weight (S, in, out) and bias (S, 1, out)."""
@@ -97,7 +99,7 @@ class FlatNetworks:
         offsets: where in a row of ``values`` each tensor begins, by name.
     """
 
-    def __init__(self, shapes: Mapping[str, Shape], device: torch.device) -> None:
+    def __init__(self, shapes: "Mapping[str, Shape]", device: torch.device) -> None:
         """Lay out zeros for tensors of the given shapes, each (S, in, out)."""
         self._shapes = dict(shapes)
         self.offsets: dict[str, int] = {}

@@ -1,18 +1,36 @@
 """Small networks as the control loop runs them: one seed, NumPy only, with scalings folded in."""
 
-from collections.abc import Sequence
-from typing import Final
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from latentarm.models.kind import TrainedModel
 from latentarm.types import FloatArray
+
+if TYPE_CHECKING:
+    from latentarm.models.kind import Shape, TrainedModel
 
 NORM_FLOOR: Final = 1e-12
 """Added to a squared column length under the root, so that a column of zeros does not divide by zero."""
 
 Layer = tuple[FloatArray, FloatArray]
 """Weight (in, out) and bias (out,)."""
+
+
+def network_shapes(networks: "Mapping[str, Shape]", seeds: int) -> "dict[str, Shape]":
+    """Shape, with the leading seed axis, of every weight and bias by name (``decoder.0.weight``, ...).
+
+    Args:
+        networks: layer widths, input first, by network.
+        seeds: S.
+    """
+    return {
+        f"{network}.{layer}.{part}": (seeds, rows, width)
+        for network, sizes in networks.items()
+        for layer, (before, width) in enumerate(pairwise(sizes))
+        for part, rows in (("weight", before), ("bias", 1))
+    }
 
 
 def halve_hidden(layers: Sequence[Layer]) -> list[Layer]:
@@ -40,7 +58,7 @@ def network_output(values: FloatArray, layers: Sequence[Layer]) -> FloatArray:
     return propagate(values @ weight + bias, rest)
 
 
-def layers_of(trained: TrainedModel, seed: int, network: str = "decoder") -> list[Layer]:
+def layers_of(trained: "TrainedModel", seed: int, network: str = "decoder") -> list[Layer]:
     """A network's weights (in, out) and biases (out,) of one seed, copied out of the stack."""
     tensors, count = trained.tensors, 0
     layers: list[Layer] = []
@@ -57,14 +75,14 @@ def scale_output(layers: list[Layer], scale: FloatArray) -> list[Layer]:
     return [*layers[:-1], (weight * scale, bias * scale)]
 
 
-def scale_latent(layer: Layer, trained: TrainedModel, seed: int) -> Layer:
+def scale_latent(layer: Layer, trained: "TrainedModel", seed: int) -> Layer:
     """Make a first layer that takes z take u instead: z = centre + scale u."""
     weight, bias = layer
     latents = trained.latents
     return latents.scale[seed, 0][:, None] * weight, bias + latents.centre[seed, 0] @ weight
 
 
-def scale_context(layer: Layer, trained: TrainedModel) -> Layer:
+def scale_context(layer: Layer, trained: "TrainedModel") -> Layer:
     """Make a first layer that takes a normalised context take a raw one."""
     weight, bias = layer
     scaled = weight / trained.tensors["context.scale"][:, None]

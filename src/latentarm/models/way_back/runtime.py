@@ -22,18 +22,26 @@ So, by construction, for every decoder and context and all weights:
 The opposite push does not take a motion back any more: both directions lead back.
 """
 
-from typing import Final, final
+from typing import TYPE_CHECKING, Final, final
 
 import numpy as np
 
 from latentarm.context import BELIEF, GRIPPER, JOINTS, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
 from latentarm.kinematics.chain import Chain
 from latentarm.models.enclosure import Enclosure
-from latentarm.models.kind import Dimensions, Shape, TrainedModel, network_shapes
-from latentarm.models.numpy_networks import NORM_FLOOR, halve_hidden, layers_of, network_output
+from latentarm.models.numpy_networks import (
+    NORM_FLOOR,
+    halve_hidden,
+    layers_of,
+    network_output,
+    network_shapes,
+)
 from latentarm.models.saved_chain import chain_of_tensors
 from latentarm.models.tool_contexts import PLACE, places_and_jacobian
 from latentarm.types import FloatArray
+
+if TYPE_CHECKING:
+    from latentarm.models.kind import Dimensions, Shape, TrainedModel
 
 NETWORK: Final = "way_back"
 """Name of its network among a model's tensors."""
@@ -98,7 +106,7 @@ def pull_width(layout: ContextLayout, tools: int) -> int:
     return layout.joints + PLACE * tools + 2 * OBJECT * count + beside
 
 
-def pull_shapes(dimensions: Dimensions, layout: ContextLayout) -> dict[str, Shape]:
+def pull_shapes(dimensions: "Dimensions", layout: ContextLayout) -> "dict[str, Shape]":
     """Shape of every array of a model's way back by name; none where it has none."""
     if not dimensions.way_back:
         return {}
@@ -113,7 +121,7 @@ def pull_shapes(dimensions: Dimensions, layout: ContextLayout) -> dict[str, Shap
 class WayBack:
     """The way back of one seed of a trained model that has one."""
 
-    def __init__(self, trained: TrainedModel, seed: int) -> None:
+    def __init__(self, trained: "TrainedModel", seed: int) -> None:
         self._layers = halve_hidden(layers_of(trained, seed, NETWORK))
         self._contexts = PullContexts(chain_of_tensors(trained.tensors), trained.layout)
         self._speed, self._length = map(float, trained.tensors[f"{NETWORK}.scale"])

@@ -1,19 +1,21 @@
 """`WayBack` in torch, differentiable with respect to z and the state."""
 
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import torch
 from torch import Tensor
 
 from latentarm.context import OBJECT
 from latentarm.kinematics.torch_chain import TorchChain
-from latentarm.models.kind import TrainedModel
 from latentarm.models.networks import group_layers, mlp
 from latentarm.models.numpy_networks import NORM_FLOOR
 from latentarm.models.saved_chain import chain_of_tensors
 from latentarm.models.tool_contexts import TWIST, twist_weight
 from latentarm.models.way_back.runtime import DAMPING_M2, GATE_M, NETWORK, STRENGTH, pull_columns
 from latentarm.types import FloatArray
+
+if TYPE_CHECKING:
+    from latentarm.models.kind import TrainedModel
 
 
 @final
@@ -26,7 +28,7 @@ class TorchWayBack:
         dtype: of all tensors.
     """
 
-    def __init__(self, trained: TrainedModel, seed: int, dtype: torch.dtype) -> None:
+    def __init__(self, trained: "TrainedModel", seed: int, dtype: torch.dtype) -> None:
         def tensor(values: FloatArray) -> Tensor:
             return torch.as_tensor(values, dtype=dtype)
 

@@ -13,8 +13,9 @@ from latentarm.context import GRIPPER, OBJECT, OBJECTS, OBJECTS_IN_TOOL, Context
 from latentarm.demonstrations.held import moved_to
 from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import Batch, TrainingData
-from latentarm.models.kind import TrainedModel, network_shapes
+from latentarm.models.kind import TrainedModel
 from latentarm.models.networks import Networks, mlp
+from latentarm.models.numpy_networks import network_shapes
 from latentarm.models.scaling import LEAST_SCALE, SPAN_QUANTILE, STILL, UNSEEN, Normaliser, context_normaliser
 from latentarm.models.tool_contexts import PLACE, TWIST, places_and_jacobian, twist_weight
 from latentarm.models.training import Report, TrainingConfig, TrainingResult, train
