@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Final, final
 
 import numpy as np
@@ -188,6 +188,7 @@ class ToolContexts:
         return twist_weight(self.sizes.tools)
 
 
+@cache
 def twist_weight(tools: int) -> FloatArray:
     """The square root of W over k for all twists of k tools, (6 k,)."""
     one = np.concatenate([np.ones(3), np.full(3, ROTATION_WEIGHT_M)])
