@@ -14,6 +14,7 @@ from latentarm.models.decoder import Decoder
 from latentarm.models.saved_chain import chain_of_tensors
 from latentarm.models.saving import load_decoder, read_model
 from latentarm.models.tool_contexts import places_and_jacobian
+from latentarm.models.way_back import training
 from latentarm.models.way_back.runtime import GATE_M, NETWORK, STRENGTH, WayBack, metric_length
 from latentarm.models.way_back.training import NOISE_M, NoWayBackWarning, displaced
 from latentarm.tasks.table_top import TableTop
@@ -29,7 +30,10 @@ def shown():
 
 @pytest.fixture(scope="module", params=KINDS)
 def model(request, shown):
-    return MODELS[request.param](**FEW_EPOCHS).fit(shown)
+    """One of which nobody asks how well it learned."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(training, "CONFIG", replace(training.CONFIG, epochs=2))
+        return MODELS[request.param](**FEW_EPOCHS).fit(shown)
 
 
 @pytest.fixture(scope="module")
