@@ -1,4 +1,4 @@
-"""Whether the computer let a process that only sleeps wake up in time.
+"""Detects when the computer is too busy for tests in real time.
 
 A page has 120 ms for its next input. A test in real time that failed while the computer kept everything
 waiting shows nothing, so it is run again, and the summary names it. One that fails while the computer gave it
@@ -39,7 +39,7 @@ class Canary:
         self._began_s = time.monotonic()
 
     def was_late(self) -> bool:
-        """Whether it was woken late since `begin`."""
+        """Whether it has woken up late since `begin`."""
         time.sleep(0.02)  # it too was kept waiting
         return any(float(line) >= self._began_s for line in self._file.read_text().splitlines())
 

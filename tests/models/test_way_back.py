@@ -15,7 +15,7 @@ from latentarm.models.saved_chain import chain_of_tensors
 from latentarm.models.saving import load_decoder, read_model
 from latentarm.models.tool_contexts import places_and_jacobian
 from latentarm.models.way_back import training
-from latentarm.models.way_back.runtime import GATE_M, NETWORK, STRENGTH, WayBack, metric_length
+from latentarm.models.way_back.runtime import DAMPING_M2, GATE_M, NETWORK, STRENGTH, WayBack, metric_length
 from latentarm.models.way_back.training import NOISE_M, NoWayBackWarning, displaced
 from latentarm.tasks.table_top import TableTop
 
@@ -66,7 +66,7 @@ def test_its_laws_hold_for_all_weights(model, chain, seed, size):
     np.testing.assert_array_equal(decoder.decode(0.0 * z, context), 0.0)
     assert (lengths <= speed * np.linalg.norm(z, axis=1) + 2e-6).all()
     along = np.vecdot(np.matvec(jacobian, action), np.matvec(jacobian, person))
-    along = along + 1e-3 * np.vecdot(action, person)
+    along = along + DAMPING_M2 * np.vecdot(action, person)
     least = (1 - STRENGTH) / (1 + STRENGTH) * lengths * metric_length(jacobian, person)[:, 0]
     assert (along >= least - 1e-6).all()
     if trained.kind.name == "homogeneous":

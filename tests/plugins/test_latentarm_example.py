@@ -58,7 +58,7 @@ COMMANDS = {
         *("drive", "mine", "--arm", "counting", "--belief", "nearness", "--controller", "latent_assist"),
         *("--drives", "1", "--jobs", "1", "--time-limit-s", "1", "--out", "driven"),
     ),
-    # What takes thousands of steps is tried with our own beliefs.
+    # Laws that take thousands of steps are tested on our own beliefs.
     "contracts": (
         *("-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "test_theirs.py"),
         *("-k", "not ten_thousand_steps and not change_their_mind"),

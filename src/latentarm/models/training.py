@@ -221,7 +221,7 @@ def choose_device(name: str) -> torch.device:
     """The torch device for ``cpu``, ``cuda`` or ``auto``.
 
     Raises:
-        UserError: CUDA is asked for and this machine or this torch has none.
+        UserError: CUDA was requested but is not available.
     """
     present = torch.cuda.is_available()
     if name == "cuda" and not present:

@@ -266,7 +266,7 @@ class Keeper:
         return opening
 
     def _jaw_has_torque(self) -> bool:
-        """Whether the jaw's torque is on. If it is off, writing a goal turns it on and the jaw jumps."""
+        """Whether the jaw's torque is on; if not, writing a goal turns it on and makes the jaw jump."""
         with suppress(OSError):
             return GRIPPER not in self._bus.limp()
         return False

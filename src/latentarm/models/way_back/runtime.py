@@ -1,7 +1,7 @@
 """A way back to what was demonstrated, for any decoder H: ``phi(z, c) = cap[H(z, c) + ‖z‖ w(c)]``.
 
-The pull w leads from where the arm is to where demonstrations went. It acts in proportion to the push,
-whichever way that goes, so that whoever pushes is also brought back. A network D estimates the way,
+The pull w moves the arm towards the demonstrated motions. It is proportional to the length of the push and
+does not depend on its direction. A network D predicts the displacement back to the demonstrations,
 ``D(c') = E[q - q' | c']`` for demonstrated states q that were displaced to q'. This is a denoiser, the score
 of the smoothed demonstrations, so that it averages to zero along their path (Vincent, "A Connection Between
 Score Matching and Denoising Autoencoders", 2011). With the metric G of the tools, the speed v of the
@@ -47,7 +47,7 @@ NETWORK: Final = "way_back"
 """Name of its network among a model's tensors."""
 
 GATE_M: Final = 0.06
-"""From this length of D on the pull fades, m, and beyond twice this length there is none."""
+"""The pull fades out as the length of D grows from this to twice this, m."""
 
 STRENGTH: Final = 0.7
 """How strong the pull is at most, relative to the person."""

@@ -85,13 +85,12 @@ def displaced(
     """
     state = context[:, : layout.joints]
     _, jacobian = places_and_jacobian(chain, state)
-    metric = jacobian.mT @ jacobian + DAMPING_M2 * np.eye(layout.joints)
     tools = len(chain.tools)
     noise = np.repeat([NOISE_M, NOISE_RAD], 3) * rng.normal(size=(len(state), tools, TWIST))
     twist = twist_weight(tools) * noise.reshape(len(state), -1)
     hidden = NULL_NOISE_RAD * rng.normal(size=state.shape)
     seen = twist - np.matvec(jacobian, hidden)
-    full = hidden + np.linalg.solve(metric, np.matvec(jacobian.mT, seen)[..., None])[..., 0]
+    full = hidden + np.linalg.solve(_metric(jacobian), np.matvec(jacobian.mT, seen)[..., None])[..., 0]
     scale = rng.uniform(size=(len(state), 1))
     there = state + scale * full
     return Displaced(moved_to(chain, layout, context, held, there), -scale * full, scale)
@@ -192,12 +191,19 @@ def _examples(
 
 
 def _shown(contexts: PullContexts, examples: Displaced) -> tuple[FloatArray, FloatArray]:
-    """What the network sees (N, o), and F (N, m m) with ``F^T F = G / (scale^2 + LEAST_DISPLACED^2)``."""
+    """Inputs of the network (N, o), and the root F (N, m m) of its loss's metric.
+
+    ``F^T F = G / (scale^2 + LEAST_DISPLACED^2)``, so that ``‖F x‖^2`` is the weighted squared error of x.
+    """
     seen, jacobian = contexts.apply(examples.context)
-    metric = jacobian.mT @ jacobian + DAMPING_M2 * np.eye(jacobian.shape[-1])
     counted = np.sqrt(np.square(examples.scale) + LEAST_DISPLACED**2)
-    factor = np.linalg.cholesky(metric).mT / counted[..., None]
+    factor = np.linalg.cholesky(_metric(jacobian)).mT / counted[..., None]
     return seen, factor.reshape(len(seen), -1)
+
+
+def _metric(jacobian: FloatArray) -> FloatArray:
+    """G (..., m, m), given ``J_w`` (..., 6 k, m)."""
+    return jacobian.mT @ jacobian + DAMPING_M2 * np.eye(jacobian.shape[-1])
 
 
 def _objective(networks: Networks, batch: Batch) -> Tensor:
