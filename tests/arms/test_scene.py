@@ -247,3 +247,14 @@ def test_only_an_arm_in_physics_has_a_scene(the_panda):
     arm = make_scene_arm("mujoco", the_panda, the_panda.home, lambda: 0.0, Scene())
     assert arm.scene_state().poses == {}
     assert arm.spec.gripper == the_panda.gripper
+
+
+@given(st.floats(0.003, 0.008), st.integers(1, 30))
+def test_grains_begin_inside_without_touching_each_other(radius_m, count):
+    made = cup(0.03, 0.2)
+    places = packed(made.interior, upright(0.0, 0.0), count, radius_m)
+    assert len(places) == count
+    assert (np.hypot(places[:, 0], places[:, 1]) <= made.interior.radius_m - radius_m).all()
+    assert (places[:, 2] >= made.interior.bottom_m + radius_m).all()
+    apart = np.linalg.norm(places[:, None] - places, axis=-1) + np.eye(count)
+    assert apart.min() > 2.0 * radius_m

@@ -120,7 +120,7 @@ def _add_grains(spec: mujoco.MjSpec, grains: Grains) -> None:
             body.add_joint(type=mujoco.mjtJoint.mjJNT_SLIDE, axis=list(axis), damping=[drag, 0.0, 0.0])
         body.add_geom(
             type=mujoco.mjtGeom.mjGEOM_SPHERE,
-            size=[grains.radius_m, 0.0, 0.0],
+            size=[grains.radius_m * grains.sizes[index % len(grains.sizes)], 0.0, 0.0],
             rgba=list(grains.colour),
             mass=grains.mass_kg,
             condim=1,

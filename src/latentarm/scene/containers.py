@@ -39,15 +39,18 @@ class Container:
     interior: Interior
 
 
-def cup(radius_m: float = 0.032, height_m: float = 0.09, colour: Colour = _CHINA) -> Container:
+def cup(
+    radius_m: float = 0.032, height_m: float = 0.09, colour: Colour = _CHINA, floor_m: float = WALL_M
+) -> Container:
     """An upright cup.
 
     Args:
         radius_m: of the inside, m. A gripper must open by more than ``2 * (radius_m + WALL_M)`` to take it.
         height_m: of the rim, m.
         colour: red, green, blue, opacity.
+        floor_m: thickness of its floor, m: a thick one makes the room in it shallow.
     """
-    return _round(radius_m, height_m, 0.0, colour)
+    return _round(radius_m, height_m, 0.0, colour, floor_m)
 
 
 def bowl(radius_m: float = 0.06, height_m: float = 0.05, colour: Colour = _CHINA) -> Container:
@@ -88,9 +91,11 @@ def box(half_m: tuple[float, float, float], colour: Colour = _WOOD) -> Container
     return Container(tuple(walls), Interior(min(x, y) - WALL_M, WALL_M, 2.0 * z))
 
 
-def _round(radius_m: float, height_m: float, flare_rad: float, colour: Colour) -> Container:
+def _round(
+    radius_m: float, height_m: float, flare_rad: float, colour: Colour, floor_m: float = WALL_M
+) -> Container:
     half = WALL_M / 2.0
-    parts = [Part("cylinder", (radius_m + WALL_M, half), (0.0, 0.0, half), colour=colour)]
+    parts = [Part("cylinder", (radius_m + WALL_M, floor_m / 2.0), (0.0, 0.0, floor_m / 2.0), colour=colour)]
     lean = height_m * np.tan(flare_rad)
     slant = height_m / np.cos(flare_rad)
     width = (radius_m + WALL_M + lean) * np.tan(np.pi / SIDES)
@@ -107,7 +112,7 @@ def _round(radius_m: float, height_m: float, flare_rad: float, colour: Colour) -
                 colour,
             )
         )
-    return Container(tuple(parts), Interior(float(radius_m + lean), WALL_M / 2.0, height_m))
+    return Container(tuple(parts), Interior(float(radius_m + lean), floor_m - half, height_m))
 
 
 def _quaternion(turn: Rotation) -> tuple[float, float, float, float]:
@@ -132,11 +137,20 @@ def packed(room: Interior, pose: Pose, count: int, radius_m: float) -> FloatArra
     """
     step = 2.0 * _APART * radius_m
     most = room.radius_m - _APART * radius_m
-    line = np.arange(-int(most / step), int(most / step) + 1) * step if most >= 0.0 else np.zeros(0)
-    layer = np.array([[x, y] for x in line for y in line if np.hypot(x, y) <= most]).reshape(-1, 2)
+    layer = _rings(most, step) if most >= 0.0 else np.zeros((0, 2))
     layers = int((room.top_m - room.bottom_m - step) / step) + 1
     if len(layer) * max(layers, 0) < count:
         raise UserError(f"{count} grains of {radius_m:g} m do not fit into a room {room.radius_m:g} m wide.")
     heights = room.bottom_m + (np.arange(layers) + 0.5) * step
     places = np.array([[x, y, z] for z in heights for x, y in layer])[:count]
     return places @ pose.rotation.T + pose.position
+
+
+def _rings(most_m: float, step_m: float) -> FloatArray:
+    """Places (K, 2) in a circle, at least a step apart: its middle and full rings about that."""
+    places = [np.zeros((1, 2))]
+    for radius in np.arange(1, int(most_m / step_m) + 1) * step_m:
+        count = int(np.pi / np.arcsin(0.5 * step_m / radius) + 1e-9)
+        angle = 2.0 * np.pi * np.arange(count) / count
+        places.append(radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1))
+    return np.concatenate(places)

@@ -114,14 +114,16 @@ class Bond:
 @final
 @dataclass(frozen=True, eq=False)
 class Grains:
-    """Equal round grains: flour, eggs, coffee, rice.
+    """Round grains: flour, eggs, coffee, rice.
 
     Attributes:
         name: what a person would call them; unique in its scene.
-        radius_m: of a grain, m.
+        radius_m: of the largest grains, m.
         mass_kg: of a grain, kg.
         positions: (K, 3), their middles when the scene begins, in the base frame of the arm, m.
         colour: red, green, blue, opacity, each in [0, 1].
+        sizes: radii of the grains as shares of the largest, in turn. Equal grains stand like a crystal and
+            then leave a cup all at once.
     """
 
     name: str
@@ -129,3 +131,4 @@ class Grains:
     mass_kg: float
     positions: FloatArray
     colour: tuple[float, float, float, float] = (0.9, 0.85, 0.7, 1.0)
+    sizes: tuple[float, ...] = (1.0,)

@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from latentarm.scene.containers import Colour, bowl, cup, packed
+from latentarm.scene.containers import WALL_M, Colour, bowl, cup, packed
 from latentarm.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating.table import at
 from latentarm.types import FloatArray, Pose
@@ -46,9 +46,11 @@ def counter() -> Thing:
     return Thing("counter", (block,), 20.0, at((x0 + x1) / 2, (y0 + y1) / 2, TOP_M), fixed=True)
 
 
-def counter_cup(name: str, x: float, y: float, colour: Colour = _BLUE, up_m: float = 0.0) -> Thing:
+def counter_cup(
+    name: str, x: float, y: float, colour: Colour = _BLUE, up_m: float = 0.0, floor_m: float = WALL_M
+) -> Thing:
     """A cup on the counter, or on something that stands on it."""
-    made = cup(CUP_RADIUS_M, CUP_HEIGHT_M, colour)
+    made = cup(CUP_RADIUS_M, CUP_HEIGHT_M, colour, floor_m)
     return Thing(name, made.parts, 0.06, at(x, y, TOP_M + up_m), friction=1.0, interior=made.interior)
 
 
@@ -59,11 +61,17 @@ def counter_bowl(name: str, x: float, y: float, radius_m: float = BOWL_RADIUS_M)
 
 
 def filled(
-    name: str, container: Thing, count: int, radius_m: float, grain_kg: float, colour: Colour
+    name: str,
+    container: Thing,
+    count: int,
+    radius_m: float,
+    grain_kg: float,
+    colour: Colour,
+    sizes: tuple[float, ...] = (1.0,),
 ) -> Grains:
     """Grains that begin in a container."""
     places = packed(container.room, container.pose, count, radius_m)
-    return Grains(name, radius_m, grain_kg, places, colour)
+    return Grains(name, radius_m, grain_kg, places, colour, sizes)
 
 
 def bearing_of(place: FloatArray) -> float:

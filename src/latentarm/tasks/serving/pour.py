@@ -27,10 +27,15 @@ LEFT_AT_M: Final[Region] = ((0.54, 0.58), (0.20, 0.24))
 RIGHT_AT_M: Final[Region] = ((0.54, 0.58), (-0.24, -0.20))
 """Where the right bowl stands."""
 
-GRAINS: Final = 24
+GRAINS: Final = 36
 
-LARGE_M: Final = 0.0065
-"""Radius of a grain: they fill the cup, or all of them would leave it at once."""
+GRAIN_M: Final = 0.0049
+SIZES: Final = (1.0, 0.96, 0.92, 0.88, 0.84)
+"""Radii of the grains, as shares of `GRAIN_M`, the largest."""
+
+FLOOR_M: Final = 0.059
+"""Thickness of the cup's floor: the cup is shallow and full, so that grains begin to leave it at a tilt of
+about 60 degrees, and more of them the farther it is tilted."""
 
 SHARE: Final = 0.2
 """Share of the grains that must end in each bowl."""
@@ -60,10 +65,10 @@ class Pour(CounterTask):
 
     def begin(self, choice: int, rng: np.random.Generator) -> Beginning:
         """Cup and bowls anywhere in their regions of the counter."""
-        cup = counter_cup("cup", *anywhere(CUP_AT_M, rng))
+        cup = counter_cup("cup", *anywhere(CUP_AT_M, rng), floor_m=FLOOR_M)
         left = counter_bowl("left bowl", *anywhere(LEFT_AT_M, rng))
         right = counter_bowl("right bowl", *anywhere(RIGHT_AT_M, rng))
-        grains = filled("grains", cup, GRAINS, LARGE_M, GRAIN_KG, FLOUR)
+        grains = filled("grains", cup, GRAINS, GRAIN_M, GRAIN_KG, FLOUR, SIZES)
         return Beginning(
             state=self.start(rng),
             scene=Scene((counter(), cup, left, right), (grains,)),
