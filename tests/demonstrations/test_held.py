@@ -84,3 +84,11 @@ def test_the_rows_of_a_thing_are_its_pose(demonstrations):
     np.testing.assert_allclose(
         pairs.clean_context[0, 3:].reshape(2, OBJECT), pose_rows(things[0]), atol=1e-12
     )
+
+
+def test_noise_on_states_takes_along_what_is_held(demonstrations):
+    noisy = pairs_of(demonstrations, 0.1, ARM.chain)
+    layout = context_layout(demonstrations, FEATURES)
+    expected = moved_to(ARM.chain, layout, noisy.clean_context, noisy.held, noisy.context[:, :3])
+    np.testing.assert_array_equal(noisy.context, expected)
+    assert np.abs(noisy.context - noisy.clean_context)[noisy.held.any(axis=1), 3:].max() > 0.01

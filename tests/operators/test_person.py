@@ -57,6 +57,17 @@ def test_a_person_without_the_new_traits_is_the_old_one_to_the_bit(planar, two_m
     np.testing.assert_array_equal(given, expected)
 
 
+def test_a_person_pushes_gently_where_that_is_fit(planar, one_mode):
+    def pushed(speed):
+        operator = SimulatedPerson(planar, Person(), PERIOD_S, LIMITS)
+        context, target = Context(planar.home, np.zeros(0)), planar.chain.forward(planar.home + 0.4)
+        rng = np.random.default_rng(0)
+        return float(np.linalg.norm(operator.act(context, one_mode, 0, target, rng, speed=speed).u))
+
+    beyond = LIMITS.dead_zone
+    assert pushed(0.3) - beyond == pytest.approx(0.3 * (pushed(1.0) - beyond))
+
+
 def test_one_who_anticipates_overshoots_less(planar, one_mode):
     late = Person(BoltzmannConfig(beta=1e6, horizon_s=0.2), hand=HandConfig(reaction_s=0.4))
     turn = np.concatenate([[0.3, -0.3], np.zeros(planar.dof - 2)])

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from latentarm.tasks.mishap import Mishap
-from latentarm.tasks.steps import RETRY_S, Progress, TaskStep, Waypoint
+from latentarm.tasks.steps import FINE_M, PATIENCE_S, RETRY_S, ROUGH_M, Progress, TaskStep, Waypoint
 from scene_states import at, standing
 
 TURN_30 = np.array(
@@ -82,22 +82,74 @@ def test_a_step_that_is_not_done_after_its_last_waypoint_is_tried_again(wait_s):
     assert progress.waypoint.pose is first.pose
 
 
-def test_people_come_closer_when_they_try_a_step_again():
-    there = point(0.0, wait_s=0.0)
+@pytest.mark.parametrize(("wait_s", "nearest_m"), [(0.0, ROUGH_M), (0.5, FINE_M)])
+def test_people_come_closer_with_each_try_of_a_step(wait_s, nearest_m):
+    there = point(0.0, wait_s=wait_s)
     progress = Progress([done_when_gripped("cup", there), done_when_gripped("lid", there)])
     progress.update(now(0.0, 0.015))  # near enough at first, and the step is not done from there
     progress.update(now(RETRY_S, 0.015))
-    assert (progress.careful, progress.waypoint.within_m) == (True, 0.01)
+    assert (progress.tries, progress.waypoint.within_m) == (1, 0.01)
     progress.update(now(2.0, 0.015))
     assert not progress.waits, "no longer near enough"
-    progress.update(now(3.0, 0.009))
-    assert progress.waits
-    closer = progress.waypoint
-    progress.update(now(3.0 + RETRY_S, 0.009))
-    assert progress.waypoint is closer, "and no closer than that"
-    progress.update(now(5.0, 0.009, "cup"))
+    for start_s in (3.0, 5.0, 7.0, 9.0):
+        progress.update(now(start_s, 0.0))
+        progress.update(now(start_s + RETRY_S, 0.0))
+    assert (progress.tries, progress.waypoint.within_m) == (5, nearest_m)
+    progress.update(now(20.0, 0.009, "cup"))
     assert progress.waypoint is there
-    assert not progress.careful
+    assert progress.tries == 0
+
+
+def looking(x, **changes):
+    """A waypoint where people look for something on the tines."""
+    return point(x, until=lambda state: "food" in state.stabbed, **changes)
+
+
+def test_people_press_on_until_they_see_what_they_look_for():
+    into, lifted = looking(0.0), point(1.0)
+    progress = Progress([done_when_gripped("cup", into, lifted)])
+    progress.update(now(0.0, 0.0))
+    progress.update(now(0.9 * PATIENCE_S, 0.0))
+    assert (progress.waypoint, progress.asks) == (into, None)
+    progress.update(now(0.9 * PATIENCE_S, 0.0, stabbed=frozenset({"food"})))
+    assert progress.waypoint is lifted
+
+
+def test_people_go_on_from_afar_where_they_see_what_they_look_for():
+    lifted = point(1.0)
+    progress = Progress([done_when_gripped("cup", looking(0.0), lifted)])
+    progress.update(now(0.0, 5.0, stabbed=frozenset({"food"})))
+    assert progress.waypoint is lifted
+
+
+def test_people_begin_again_with_more_care_when_they_do_not_see_it():
+    first, into = point(2.0), looking(0.0, within_m=0.008)
+    progress = Progress([done_when_gripped("cup", first, into, point(1.0))])
+    progress.update(now(0.0, 2.0))
+    progress.update(now(1.0, 0.0))
+    progress.update(now(1.0 + PATIENCE_S, 0.0))
+    assert progress.waypoint.pose is first.pose
+    progress.update(now(5.0, 2.0))
+    assert progress.waypoint.within_m == 0.004
+
+
+def test_people_begin_again_when_told_so():
+    first, second = point(0.0), point(1.0)
+    progress = Progress([done_when_gripped("cup", first, second)])
+    progress.update(now(0.0, 0.0))
+    assert progress.waypoint is second
+    progress.again()
+    assert (progress.waypoint.pose is first.pose, progress.tries) == (True, 1)
+
+
+def test_the_gripper_is_asked_where_nothing_is_waited_for():
+    """Fingers that closed beside a spoon are opened before the next try."""
+    before, about = point(0.0, gripper="open"), point(1.0, gripper="close", wait_s=1.0)
+    progress = Progress([done_when_gripped("cup", before, about)])
+    progress.update(now(0.0, 0.0))
+    assert progress.asks == "open"
+    progress.update(now(0.1, 0.0))
+    assert (progress.waypoint, progress.asks) == (about, None)
 
 
 def test_a_wait_is_over_when_the_step_is_done():

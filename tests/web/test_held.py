@@ -9,11 +9,10 @@ from latentarm.scene.scene import SceneState
 from latentarm.simulation.demonstrate import demonstrate_once
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.tasks.mishap import Mishap
-from latentarm.tasks.steps import Progress, TaskStep, Waypoint
+from latentarm.tasks.steps import LOST_M, LOST_S, Progress, TaskStep, Waypoint
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Pose
 from latentarm.web.arm_process.fills import Fills, vessels
-from latentarm.web.arm_process.held import LOST_M, LOST_S, Held
 from latentarm.web.arm_process.task_run import TaskRun, Todo
 
 NONE = frozenset()
@@ -119,14 +118,10 @@ def test_nothing_is_called_lost_or_short_in_a_run_that_succeeds(name):
     for choice in range(len(task.choices)):
         shown = demonstrate_once(task, choice, np.random.default_rng(0))
         begun = task.begin(choice, np.random.default_rng(0))
-        progress, held, fills = (
-            Progress(begun.steps, begun.failures),
-            Held(begun.steps),
-            Fills(vessels(begun)),
-        )
+        progress, fills = Progress(begun.steps, begun.failures), Fills(vessels(begun))
         for state in shown.states:
             progress.update(state)
-            assert held.see(progress.done, state, state.time_s) is None
+            assert progress.lost is None
             fills.see(state, state.time_s)
             assert not fills.short
         assert shown.progress.succeeded

@@ -6,7 +6,7 @@ import numpy as np
 
 from latentarm.context import Named
 from latentarm.demonstrations.contexts import context_layout, episode_contexts
-from latentarm.demonstrations.held import held_things
+from latentarm.demonstrations.held import held_things, moved_to
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.stillness import moving_range
@@ -78,14 +78,15 @@ def make_pairs(
     clean = np.concatenate(contexts)
     if not len(clean):
         raise UserError("The arm never moves in these demonstrations, so there is nothing to learn from.")
-    noisy = clean.copy()
-    noisy[:, : demonstrations.dof] += rng.normal(scale=state_noise_rad, size=(len(clean), demonstrations.dof))
+    holding = np.concatenate(held)
+    there = clean[:, : demonstrations.dof]
+    there = there + rng.normal(scale=state_noise_rad, size=there.shape)
     return Pairs(
-        context=noisy,
+        context=moved_to(chain, layout, clean, holding, there),
         clean_context=clean,
         action=np.concatenate(taken),
         episode=np.concatenate(owner),
-        held=np.concatenate(held),
+        held=holding,
     )
 
 

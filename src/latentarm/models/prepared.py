@@ -7,6 +7,7 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.context import ContextLayout
+from latentarm.demonstrations.held import moved_to
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.batches import TrainingData
@@ -14,7 +15,7 @@ from latentarm.models.scaling import Normaliser, action_normaliser, feature_norm
 from latentarm.models.term import LossTerm, ScaledTerm
 from latentarm.models.tool_contexts import ToolContexts
 from latentarm.models.tool_frame import ToolFrame
-from latentarm.types import FloatArray, Pairs
+from latentarm.types import BoolArray, FloatArray, Pairs
 
 AHEAD_S: Final = 0.1
 """How far ahead models look (those that do), s: as long as a short press of the stick."""
@@ -114,13 +115,13 @@ def prepare(
         rng = np.random.default_rng([asked.data_seed, 2])
         elsewhere = observed(term.contexts(context, joints, rng))
 
-    def later(before: FloatArray, taken: FloatArray) -> FloatArray:
-        """Observations (N, o) where actions (N, m) lead from contexts (N, c); (N, 0) if unused."""
+    def later(side: BoolArray) -> FloatArray:
+        """Observations (N, o) where the actions of some pairs lead, with what is held; (N, 0) if unused."""
+        before = pairs.context[side]
         if not asked.looks_ahead:
             return before[:, :0]
-        after = before.copy()
-        after[:, :joints] += AHEAD_S * taken
-        return observed(after)
+        after = before[:, :joints] + AHEAD_S * pairs.action[side]
+        return observed(moved_to(arm, layout, before, pairs.held[side], after))
 
     return Prepared(
         data=TrainingData(
@@ -129,8 +130,8 @@ def prepare(
             validation_context=observed(pairs.context[outside]),
             validation_action=actions.apply(pairs.action[outside]),
             elsewhere=elsewhere,
-            later=later(context, action),
-            validation_later=later(pairs.context[outside], pairs.action[outside]),
+            later=later(~outside),
+            validation_later=later(outside),
         ),
         frame=frame,
         contexts=contexts,

@@ -9,6 +9,8 @@ from typing import Final, final
 import numpy as np
 
 from latentarm.control.controller import Controller
+from latentarm.kinematics.chain import Chain
+from latentarm.operators.carrying import carried
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.moment import Moment
 from latentarm.types import FloatArray
@@ -26,11 +28,13 @@ class Anticipation:
     person predicts with the controller itself. Whatever else moves or stops the arm they see late.
 
     Args:
+        chain: the arm, whose first tool holds things.
         limits: what the loop makes of inputs.
         period_s: time between calls, s.
     """
 
-    def __init__(self, limits: LoopLimits, period_s: float) -> None:
+    def __init__(self, chain: Chain, limits: LoopLimits, period_s: float) -> None:
+        self._chain = chain
         self._limits = limits
         self._period_s = period_s
         self._moments = deque[Moment](maxlen=max(round(LONGEST_S / period_s), 1))
@@ -54,13 +58,13 @@ class Anticipation:
             seen: what they see.
             controller: what their inputs go to.
         """
-        state = seen.context.state
+        here = seen.context
         for u, mode, time_s in self._since(seen):
             if self._limits.is_push(u):
-                here = replace(seen.context, state=state)
                 action = controller.action(controller.latent(u, here, mode), here, mode)
-                state = state + time_s * self._limits.slowed(action)
-        return replace(seen, context=replace(seen.context, state=state), mode=moment.mode)
+                state = here.state + time_s * self._limits.slowed(action)
+                here = carried(self._chain, seen.context, seen.held, state)
+        return replace(seen, context=here, mode=moment.mode)
 
     def _since(self, seen: Moment) -> Iterator[tuple[FloatArray, int, float]]:
         """What was pushed from then on, in which mode, and for how long, s."""

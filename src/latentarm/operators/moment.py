@@ -1,12 +1,17 @@
 """What a simulated person sees at one moment."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, final
 
-from latentarm.types import Context, FloatArray, Pose
+import numpy as np
+
+from latentarm.types import BoolArray, Context, FloatArray, Pose
 
 USUAL_WITHIN_M: Final = 0.02
 """How near a simulated person has to come for which their figures are stated, m."""
+
+
+NOTHING_HELD: Final[BoolArray] = np.zeros(0, dtype=np.bool_)
 
 
 @final
@@ -20,6 +25,8 @@ class Moment:
         target: the pose that they want the tool at.
         u: (d,), the input that has just been given.
         within_m: how near they have to come to it, m.
+        speed: share of their usual speed that is fit there, in (0, 1].
+        held: (K,), which of the context's things the tool holds.
     """
 
     context: Context
@@ -27,3 +34,5 @@ class Moment:
     target: Pose
     u: FloatArray
     within_m: float = USUAL_WITHIN_M
+    speed: float = 1.0
+    held: BoolArray = field(default_factory=lambda: NOTHING_HELD)

@@ -5,8 +5,8 @@ from abc import ABC, abstractmethod
 import numpy as np
 
 from latentarm.control.controller import Controller
-from latentarm.operators.moment import USUAL_WITHIN_M
-from latentarm.types import Context, Input, Pose
+from latentarm.operators.moment import NOTHING_HELD, USUAL_WITHIN_M
+from latentarm.types import BoolArray, Context, Input, Pose
 
 
 class Operator(ABC):
@@ -29,6 +29,8 @@ class Operator(ABC):
         target: Pose,
         rng: np.random.Generator,
         within_m: float = USUAL_WITHIN_M,
+        speed: float = 1.0,
+        held: BoolArray = NOTHING_HELD,
     ) -> Input:
         """The simulated person's input for this step.
 
@@ -39,6 +41,8 @@ class Operator(ABC):
             target: the pose that the simulated person wants the tool at.
             rng: source of all randomness.
             within_m: how near they have to come to it, m.
+            speed: share of their usual speed that is fit there, in (0, 1].
+            held: (K,), which of the context's things the tool holds.
 
         Returns:
             Inputs in [-1, 1]^d, and whether the next mode is asked for.

@@ -16,13 +16,13 @@ from latentarm.operators.imagination import Imagination, Settled
 from latentarm.operators.lapses import LapseConfig, Lapsing
 from latentarm.operators.linear_guess import LinearGuess, LinearGuessConfig
 from latentarm.operators.loop_limits import UNLIMITED, LoopLimits
-from latentarm.operators.moment import USUAL_WITHIN_M, Moment
+from latentarm.operators.moment import NOTHING_HELD, USUAL_WITHIN_M, Moment
 from latentarm.operators.operator import Operator
 from latentarm.operators.own_speed import OwnSpeed
 from latentarm.operators.page_rates import PageRates, Screen, Wire
 from latentarm.operators.planning import Planning, PlanningConfig
 from latentarm.robots.robot import Robot
-from latentarm.types import Context, Input, Pose
+from latentarm.types import BoolArray, Context, Input, Pose
 
 
 @final
@@ -82,7 +82,7 @@ class SimulatedPerson(Operator):
         self._hand = Hand(person.hand, period_s)
         self._speed = person.speed
         self._limits = limits
-        self._anticipation = Anticipation(limits, period_s) if person.anticipates else None
+        self._anticipation = Anticipation(robot.chain, limits, period_s) if person.anticipates else None
         self._screen = Screen(person.page, period_s) if person.page else None
         self._wire = Wire(person.page, period_s) if person.page else None
         self.reset()
@@ -105,16 +105,18 @@ class SimulatedPerson(Operator):
         target: Pose,
         rng: np.random.Generator,
         within_m: float = USUAL_WITHIN_M,
+        speed: float = 1.0,
+        held: BoolArray = NOTHING_HELD,
     ) -> Input:
         """See, learn, decide and move the hand."""
         u = np.zeros(controller.input_dim) if self._given is None else self._given.u
-        moment = Moment(context, mode, target, u, within_m)
+        moment = Moment(context, mode, target, u, within_m, speed, held)
         seen = self._hand.sees(moment if self._screen is None else self._screen.shown(moment))
         self._imagination.saw(seen)
         if self._anticipation is not None and not self._decision.holding:
             seen = self._anticipation.now(moment, seen, controller)
         meant = self._decision.decide(seen, controller, self._imagination, rng)
-        meant = replace(meant, u=self._speed.pushed(meant.u, self._limits))
+        meant = replace(meant, u=OwnSpeed(speed * self._speed.share).pushed(meant.u, self._limits))
         if self._anticipation is not None:
             self._anticipation.meant(moment, meant.u)
         self._given = self._hand.gives(meant, rng)

@@ -1,6 +1,6 @@
 """A simulated person who plans a few seconds ahead when one step brings the tool no closer."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final, final
 
 import numpy as np
@@ -8,13 +8,14 @@ import numpy as np
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.operators.boltzmann import BoltzmannConfig, OneStep
+from latentarm.operators.carrying import carried
 from latentarm.operators.decision import Decision
 from latentarm.operators.hand import within_reach
 from latentarm.operators.imagination import Imagination
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.moment import Moment
 from latentarm.robots.robot import Robot
-from latentarm.types import Context, FloatArray, Input, IntArray
+from latentarm.types import FloatArray, Input, IntArray
 
 BEYOND: Final = 0.01
 """Initial inputs of a plan lie this far beyond the dead zone: within it nothing they do changes anything, and
@@ -168,9 +169,7 @@ class Planning(Decision):
             varied = np.concatenate(
                 [tried[:, None], tried[:, None] + inward[:, None] * np.eye(tried.shape[1])], axis=1
             )
-            ends = self._imagined(
-                varied.reshape(*varied.shape[:2], *shape[1:]), length, moment.context, controller, moment.mode
-            )
+            ends = self._imagined(varied.reshape(*varied.shape[:2], *shape[1:]), length, moment, controller)
             residual = self._residual(ends, moment)
             slope = (residual[:, 1:] - residual[:, :1]) / inward[..., None]
             return residual[:, 0], slope.mT
@@ -190,21 +189,22 @@ class Planning(Decision):
         return flat.reshape(shape), left
 
     def _imagined(
-        self, plans: FloatArray, length: IntArray, context: Context, controller: Controller, mode: int
+        self, plans: FloatArray, length: IntArray, moment: Moment, controller: Controller
     ) -> FloatArray:
         """States (P, V, n) at the end of plans (P, V, L, d) of so many pieces.
 
         The arm rests in a piece where the first of the V variations of a plan is in the dead zone: so the
         others, which differ from it by `DIFFERENCE`, show no step at its edge for a slope.
         """
-        step_s = self._planning.piece_s / self._planning.steps
+        step_s, mode = self._planning.piece_s / self._planning.steps, moment.mode
+        context = moment.context
         state = np.broadcast_to(context.state, (*plans.shape[:2], len(context.state)))
         ends: list[FloatArray] = []
         for piece in range(plans.shape[2]):
             u = within_reach(plans[:, :, piece])
             pushed = self._limits.is_push(u[:, :1])[..., None]
             for _ in range(self._planning.steps):
-                here = replace(context, state=state)
+                here = carried(self._chain, context, moment.held, state)
                 action = controller.action(controller.latent(u, here, mode), here, mode)
                 state = state + step_s * np.where(pushed, self._limits.slowed(action), 0.0)
             ends.append(state)

@@ -157,7 +157,7 @@ def drive_task(
         step(Input(np.zeros(controller.input_dim)), 0.0, reading, clock.now_s())
         arm.enable()
         step.enable()
-        rearming = _Rearming(step)
+        rearming = _Rearming(step, follow.progress)
         for tick in range(1, int(task.time_limit_s * RATE_HZ) + 1):
             clock.wait_until(tick * step.dt_s)
             reading, state = arm.read(), arm.scene_state()
@@ -207,21 +207,31 @@ def _given(
     controller: Controller,
     rng: np.random.Generator,
 ) -> Input:
-    """What the person does: push the stick towards the waypoint, or let go there and wait."""
+    """What the person does: push the stick towards the waypoint, and let go where the gripper is to act."""
     waypoint = progress.waypoint
-    if waypoint is None or progress.waits:
+    if waypoint is None or progress.asks is not None:
         return Input(np.zeros(controller.input_dim), gripper=progress.asks)
-    target, within_m = waypoint.pose(state), waypoint.within_m
-    return operator.act(step.context(reading.q), controller, step.mode, target, rng, within_m)
+    carries = state.stabbed | state.gripped
+    return operator.act(
+        step.context(reading.q),
+        controller,
+        step.mode,
+        waypoint.pose(state),
+        rng,
+        waypoint.within_m,
+        waypoint.speed,
+        np.array([name in carries for name in controller.objects], dtype=np.bool_),
+    )
 
 
 @final
 class _Rearming:
-    """What the person does about stops: they let go, find out why, and enable the arm again."""
+    """What the person does about stops: they let go, enable the arm again, and begin the step again."""
 
-    def __init__(self, step: Step) -> None:
+    def __init__(self, step: Step, progress: Progress) -> None:
         self.stops = 0
         self._step = step
+        self._progress = progress
         self._since_s: float | None = None
 
     def lets_go(self, time_s: float) -> bool:
@@ -234,6 +244,7 @@ class _Rearming:
             self._since_s = time_s
         elif time_s - self._since_s >= REARM_S:
             self._step.enable()
+            self._progress.again()
         return True
 
 
@@ -321,8 +332,7 @@ class _Watch:
 
     def _stuck(self, waypoint: Waypoint, state: SceneState) -> bool:
         missed = waypoint.missed_by(state)
-        waits = self.progress.waits and not self.progress.careful
-        if waypoint is not self._waypoint or missed < self._nearest - NEARER or waits:
+        if waypoint is not self._waypoint or missed < self._nearest - NEARER or self.progress.waits:
             self._waypoint, self._nearest, self._nearer_s = waypoint, missed, state.time_s
         return state.time_s - self._nearer_s > STUCK_S
 

@@ -37,6 +37,22 @@ class Above:
 
 @final
 @dataclass(frozen=True)
+class Taken:
+    """A thing is between the fingers or on the tines.
+
+    Attributes:
+        thing: its name.
+    """
+
+    thing: str
+
+    def __call__(self, state: SceneState) -> bool:
+        """Whether it is."""
+        return self.thing in state.stabbed | state.gripped
+
+
+@final
+@dataclass(frozen=True)
 class Stabbed:
     """A thing is on the tines, and has left what it lay on.
 
@@ -71,8 +87,7 @@ class CarriedOver:
     def __call__(self, state: SceneState) -> bool:
         """Whether it is."""
         away = state.poses[self.thing].position - state.poses[self.over].position
-        held = self.thing in state.stabbed | state.gripped
-        return bool(held and np.hypot(away[0], away[1]) <= self.aside_m)
+        return bool(Taken(self.thing)(state) and np.hypot(away[0], away[1]) <= self.aside_m)
 
 
 @final

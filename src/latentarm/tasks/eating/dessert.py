@@ -11,7 +11,7 @@ from latentarm.scene.interior import Interior
 from latentarm.scene.scene import Scene
 from latentarm.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating.fork_task import OFF_M, ForkTask, fallen
-from latentarm.tasks.eating.stabbing import above, over, stab
+from latentarm.tasks.eating.stabbing import above, carried_over, risen, stab
 from latentarm.tasks.eating.table import (
     MARSHMALLOW_HALF_M,
     STAND_M,
@@ -139,19 +139,22 @@ def icing(name: str, x: float, y: float) -> Thing:
 def _steps(rice: Interior) -> tuple[TaskStep, ...]:
     enter, leave = -0.035, 0.035
     low = MARSHMALLOW_HALF_M + 0.006
+    over_it = partial(carried_over, food=MARSHMALLOW)
     through = (
-        Waypoint(partial(over, thing="icing", height_m=0.07, tilt_rad=SCOOP_RAD, out_m=enter)),
-        Waypoint(partial(over, thing="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=enter), speed=0.6),
-        Waypoint(partial(over, thing="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=leave), speed=0.6),
-        Waypoint(partial(over, thing="icing", height_m=0.08, tilt_rad=SCOOP_RAD, out_m=leave)),
+        Waypoint(partial(over_it, thing="icing", height_m=0.07, tilt_rad=SCOOP_RAD, out_m=enter)),
+        Waypoint(partial(over_it, thing="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=enter), speed=0.6),
+        Waypoint(partial(over_it, thing="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=leave), speed=0.6),
+        Waypoint(partial(over_it, thing="icing", height_m=0.08, tilt_rad=SCOOP_RAD, out_m=leave)),
     )
     into = (
-        Waypoint(partial(over, thing="rice bowl", height_m=0.09)),
-        Waypoint(partial(over, thing="rice bowl", height_m=0.018), speed=0.4, wait_s=0.3),
+        Waypoint(partial(over_it, thing="rice bowl", height_m=0.09)),
+        Waypoint(partial(over_it, thing="rice bowl", height_m=0.018), speed=0.4, wait_s=0.3),
     )
-    high = Waypoint(partial(over, thing="own plate", height_m=0.09))
+    # Drawn sideways over the rim, the marshmallow would be scraped off.
+    out = Waypoint(partial(risen, height_m=STAND_M + 0.09))
+    high = Waypoint(partial(over_it, thing="own plate", height_m=0.09))
     down = Waypoint(
-        partial(over, thing="own plate", height_m=MARSHMALLOW_HALF_M + 0.006), wait_s=0.5, speed=0.5
+        partial(over_it, thing="own plate", height_m=MARSHMALLOW_HALF_M + 0.006), wait_s=0.5, speed=0.5
     )
     centre = np.array([*OWN_M, STAND_M + MARSHMALLOW_HALF_M])
     laid = Placed(MARSHMALLOW, centre, np.array([0.8 * SMALL_M, 0.8 * SMALL_M, 0.015]), let_go=False)
@@ -164,14 +167,20 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
         stab(MARSHMALLOW),
         with_it("above", "icing", "over the icing", iced, through[:1]),
         with_it("scooped", "icing", "drawn through the icing", swept, through),
-        with_it("above", "rice bowl", "over the rice", CarriedOver(MARSHMALLOW, "rice bowl", 0.03), into[:1]),
+        with_it(
+            "above",
+            "rice bowl",
+            "over the rice",
+            CarriedOver(MARSHMALLOW, "rice bowl", 0.03),
+            (out, *into[:1]),
+        ),
         with_it("dipped", "rice bowl", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),
         with_it(
             "above",
             "own plate",
             "over the own plate",
             CarriedOver(MARSHMALLOW, "own plate", 0.03),
-            (*into[:1], high),
+            (out, high),
         ),
         with_it("placed", "own plate", "set down", laid, (high, down)),
     )

@@ -8,7 +8,7 @@ import numpy as np
 from latentarm.scene.scene import Scene, SceneState
 from latentarm.scene.thing import Bond, Food, Part, Thing
 from latentarm.tasks.eating.fork_task import ForkTask, fallen
-from latentarm.tasks.eating.stabbing import above, over, stab
+from latentarm.tasks.eating.stabbing import above, carried_over, stab
 from latentarm.tasks.eating.table import PLATE_RADIUS_M, STAND_M, at, fork, plate
 from latentarm.tasks.predicates import Apart, CarriedOver, Placed
 from latentarm.tasks.scene_task import Beginning
@@ -80,25 +80,25 @@ class Entree(ForkTask):
         )
 
     def _steps(self, turn: float) -> tuple[TaskStep, ...]:
-        along = turn + np.pi / 2
+        along, apart = turn + np.pi / 2, Apart("tofu", "slice")
         ready = Waypoint(partial(_at_cut, height_m=0.04, turn_rad=along), within_m=0.008, within_rad=0.2)
         through = Waypoint(
             partial(_at_cut, height_m=-2.0 * HALF_M[2] + 0.003, turn_rad=along),
             within_m=0.006,
             within_rad=0.2,
-            wait_s=0.1,
             speed=0.5,
+            until=apart,
         )
         out = Waypoint(partial(_at_cut, height_m=0.05, turn_rad=along), within_rad=0.3)
-        high = Waypoint(partial(over, thing="own plate", height_m=0.10, turn_rad=along))
-        low = partial(over, thing="own plate", height_m=HALF_M[2] + 0.006, turn_rad=along)
-        down = Waypoint(low, wait_s=0.5, speed=0.5)
+        over_plate = partial(carried_over, food="slice", thing="own plate", turn_rad=along)
+        high = Waypoint(partial(over_plate, height_m=0.10))
+        down = Waypoint(partial(over_plate, height_m=HALF_M[2] + 0.006), wait_s=0.5, speed=0.5)
         centre = np.array([*OWN_M, STAND_M + HALF_M[2]])
         carried = CarriedOver("slice", "own plate", 0.03)
         laid = Placed("slice", centre, np.array([*(2 * [0.7 * PLATE_RADIUS_M]), 0.015]), let_go=False)
         return (
             above("slice", along),
-            TaskStep("cut", "slice", "a slice cut off", Apart("tofu", "slice"), (ready, through, out)),
+            TaskStep("cut", "slice", "a slice cut off", apart, (ready, through, out)),
             stab("slice", along, HALF_M[2]),
             TaskStep("above", "own plate", "above the plate", carried, (high,), "slice"),
             TaskStep("placed", "own plate", "the slice on the plate", laid, (high, down), "slice"),

@@ -74,6 +74,9 @@ STIR_RAD: Final = 0.9
 
 STIR_STROKES: Final = 6
 
+STROKE_M: Final = 0.009
+"""How near the end of a stroke the spoon must come: there is 12 mm of room under it."""
+
 
 @final
 class ApplePie(CounterTask):
@@ -114,7 +117,7 @@ class ApplePie(CounterTask):
                 *(spilled(name, things["bowl"]) for name in CHOICES[:2]),
             ),
             goals=(),
-            objects=("egg cup", "flour cup", "apple", "bowl", "bin", "shelf"),
+            objects=("egg cup", "flour cup", "apple", "spoon", "bowl", "bin", "shelf"),
             text=f"the {what} of the pie",
         )
 
@@ -193,7 +196,9 @@ def _apple_steps(things: Mapping[str, Thing], rooms: Mapping[str, Interior]) -> 
     spoon_up = 0.115
     strokes = _Strokes(spoon_up + 0.012)
     enter = Waypoint(partial(strokes.pose, index=0, up_m=BOWL_HEIGHT_M + 0.03))
-    to_and_fro = [Waypoint(partial(strokes.pose, index=index)) for index in range(STIR_STROKES)]
+    to_and_fro = [
+        Waypoint(partial(strokes.pose, index=index), within_m=STROKE_M) for index in range(STIR_STROKES)
+    ]
     above = Waypoint(partial(over, thing="bowl", height_m=spoon_up + 0.10))
     apple_in = Within("apple", "bowl", rooms["bowl"])
     stirred = Stirred("spoon", "bowl", rooms["bowl"], STIR_TURNS)

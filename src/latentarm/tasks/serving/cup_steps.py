@@ -7,7 +7,7 @@ import numpy as np
 
 from latentarm.scene.interior import Interior
 from latentarm.scene.scene import SceneState
-from latentarm.tasks.predicates import CarriedOver, Holding, Poured
+from latentarm.tasks.predicates import CarriedOver, Holding, Poured, Taken
 from latentarm.tasks.serving.counter import GRIP_M, TOP_M, bearing_of, hand, pouring
 from latentarm.tasks.steps import TaskStep, Waypoint
 from latentarm.types import FloatArray, Pose
@@ -41,7 +41,12 @@ def take(cup: str, stands_m: float = TOP_M, grip_m: float = GRIP_M) -> tuple[Tas
     """
     before = Waypoint(partial(_at, cup=cup, back_m=BEFORE_M, up_m=grip_m), gripper="open")
     about = Waypoint(
-        partial(_at, cup=cup, back_m=0.0, up_m=grip_m), within_m=0.007, gripper="close", wait_s=1.2, speed=0.6
+        partial(_at, cup=cup, back_m=0.0, up_m=grip_m),
+        within_m=0.007,
+        gripper="close",
+        wait_s=1.2,
+        speed=0.6,
+        until=Taken(cup),
     )
     lifted = Waypoint(partial(_lifted, cup=cup, height_m=stands_m + grip_m + LIFT_M))
     return (
@@ -89,10 +94,12 @@ def pour(
 
 def _at(state: SceneState, cup: str, back_m: float, up_m: float) -> Pose:
     """The hand at a cup, or a little before it."""
-    place = state.poses[cup].position
+    pose = state.poses[cup]
+    # Along its own axis: a spoon leans in its holder.
+    place = pose.position + up_m * pose.rotation[:, 2]
     bearing = bearing_of(place)
     out = np.array([np.cos(bearing), np.sin(bearing), 0.0])
-    return hand(place - back_m * out + np.array([0.0, 0.0, up_m + 0.5 * back_m]), bearing)
+    return hand(place - back_m * out + np.array([0.0, 0.0, 0.5 * back_m]), bearing)
 
 
 def _lifted(state: SceneState, cup: str, height_m: float) -> Pose:

@@ -53,7 +53,8 @@ class Guide:
         waypoint = waypoints[self._index]
         if self._arrived_s is None and waypoint.reached(state):
             self._arrived_s = state.time_s
-        if self._arrived_s is None or _still_asked(waypoint, state) is not None:
+        looked_for = waypoint.until is None or waypoint.until(state)
+        if self._arrived_s is None or _still_asked(waypoint, state) is not None or not looked_for:
             return
         last = self._index == len(waypoints) - 1
         if state.time_s - self._arrived_s >= (RETRY_S if last else waypoint.wait_s):

@@ -14,7 +14,6 @@ from latentarm.tasks.task import Task
 from latentarm.types import FloatArray, Pose
 from latentarm.web.arm_process.fills import Fills, Vessel, vessels
 from latentarm.web.arm_process.guide import Guide
-from latentarm.web.arm_process.held import Held
 from latentarm.web.protocol.report import Lost, TaskState, ToGo, Why
 
 _FEW: Final = 2
@@ -95,9 +94,7 @@ class TaskRun:
         self._arm = arm if isinstance(arm, SceneArm) else None
         self._chain = chain
         self._progress = Progress(todo.steps, todo.failures)
-        self._held = Held(todo.steps)
         self._guide = Guide()
-        self._lost: Lost | None = None
         self._to_go: ToGo | None = None
         self._fills = Fills(todo.vessels)
         self._looked_s = -math.inf
@@ -137,23 +134,26 @@ class TaskRun:
             self._began_s = time_s
         if self._began_s is None and not looks:
             return
-        state = self._scene_state(q)
+        state = replace(self._scene_state(q), time_s=time_s)
         if self._began_s is not None:
             self._time_s = time_s - self._began_s
             if steered or self._arm is not None:
                 self._progress.update(state)
-            self._lost = None if self._over else self._held.see(self._progress.done, state, time_s)
         if looks or self._over:
             self._looked_s = time_s
-            self._to_go = self._guide.look(self._step, replace(state, time_s=time_s))
+            self._to_go = self._guide.look(self._step, state)
             self._fills.see(state, time_s)
 
     @property
     def _step(self) -> TaskStep | None:
         """What is to be done now."""
-        if self._progress.failure is not None:
-            return None
-        return self._progress.step if self._lost is None else self._todo.steps[self._lost.step]
+        return None if self._progress.failure is not None else self._progress.step
+
+    @property
+    def _lost(self) -> Lost | None:
+        """What is no longer held, and is to be taken again."""
+        index = self._progress.lost
+        return None if index is None or self._over else Lost(thing=self._todo.steps[index].thing, step=index)
 
     @property
     def _over(self) -> bool:

@@ -1,0 +1,24 @@
+"""What a simulated person expects of things that the tool holds: they move with it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from latentarm.kinematics.chain import Chain
+from latentarm.kinematics.pose_rows import moved_along
+from latentarm.types import BoolArray, Context, FloatArray
+
+
+def carried(chain: Chain, context: Context, held: BoolArray, state: FloatArray) -> Context:
+    """The context once the arm is elsewhere, and with it what it holds.
+
+    Args:
+        chain: the arm, whose first tool holds things.
+        context: now.
+        held: (K,), which of its things are held.
+        state: (..., n), where the arm is then, rad.
+    """
+    if not held.any():
+        return replace(context, state=state)
+    moved = moved_along(context.objects, chain.forward(context.state), chain.forward(state))
+    return replace(context, state=state, objects=np.where(held[:, None], moved, context.objects))
