@@ -11,7 +11,7 @@ from latentarm.scene.interior import Interior
 from latentarm.scene.scene import Scene
 from latentarm.scene.thing import Grains, Part, Thing
 from latentarm.tasks.eating.fork_task import OFF_M, ForkTask, fallen
-from latentarm.tasks.eating.stabbing import above, carried_over, risen, stab
+from latentarm.tasks.eating.stabbing import above, carried_over, stab
 from latentarm.tasks.eating.table import (
     MARSHMALLOW_HALF_M,
     STAND_M,
@@ -150,8 +150,8 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
         Waypoint(partial(over_it, thing="rice bowl", height_m=0.09)),
         Waypoint(partial(over_it, thing="rice bowl", height_m=0.018), speed=0.4, wait_s=0.3),
     )
-    # Drawn sideways over the rim, the marshmallow would be scraped off.
-    out = Waypoint(partial(risen, height_m=STAND_M + 0.09))
+    # Drawn sideways out of the icing, the marshmallow would be scraped off on the dish.
+    out = (through[-1], Waypoint(partial(over_it, thing="icing", height_m=0.10)))
     high = Waypoint(partial(over_it, thing="own plate", height_m=0.09))
     down = Waypoint(
         partial(over_it, thing="own plate", height_m=MARSHMALLOW_HALF_M + 0.006), wait_s=0.5, speed=0.5
@@ -172,7 +172,7 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
             "rice bowl",
             "over the rice",
             CarriedOver(MARSHMALLOW, "rice bowl", 0.03),
-            (out, *into[:1]),
+            (*out, *into[:1]),
         ),
         with_it("dipped", "rice bowl", "dipped in rice", Within(MARSHMALLOW, "rice bowl", dipped), into),
         with_it(
@@ -180,7 +180,7 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
             "own plate",
             "over the own plate",
             CarriedOver(MARSHMALLOW, "own plate", 0.03),
-            (out, high),
+            (*into[:1], high),
         ),
         with_it("placed", "own plate", "set down", laid, (high, down)),
     )

@@ -106,13 +106,6 @@ def carried_over(
     return Pose(pose.position + pose.rotation @ away, pose.rotation)
 
 
-def risen(state: SceneState, height_m: float) -> Pose:
-    """The fork straight above where it is, at a height in the base frame of the arm."""
-    place = state.tool.position.copy()
-    place[2] = height_m
-    return Pose(place, state.tool.rotation)
-
-
 def _over_plate(state: SceneState, thing: str, height_m: float, turn_rad: float | None) -> Pose:
     """The same, at a height in the base frame of the arm, wherever the thing is."""
     place = state.poses[thing].position.copy()
