@@ -1,31 +1,45 @@
 """`latentarm reproduce tasks`: tasks with things in physics, shown and driven by simulated people."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from latentarm.metrics.looks import look_of
+from latentarm.runs.results_folder import package_versions
+from latentarm.runs.source import source_digest
 from latentarm.simulation.guide import GuidingHand
 from latentarm.simulation.task_drive import REARM_S, STUCK_S
+from latentarm.studies import fitting, streams
 from latentarm.studies.page import render_page
 from latentarm.studies.study import Grid, Report, Request, Study, again
+from latentarm.studies.tasks import cell as cells
+from latentarm.studies.tasks import moved, runs
+from latentarm.studies.tasks import preset as presets
 from latentarm.studies.tasks.cell import (
     DriveCell,
     Shown,
     ShownCell,
     Trained,
     TrainingCell,
-    blocks,
     drive,
     show,
     train,
     training_set,
 )
-from latentarm.studies.tasks.figures import steps_figure
+from latentarm.studies.tasks.figures import success_figure
+from latentarm.studies.tasks.kept import KEEP_DRIVES, KEEP_MODELS, KEEP_SHOWN, MODELS, RUNS
 from latentarm.studies.tasks.moved import MOVED, TASKS, task_of
 from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm.studies.tasks.rows import STUDY as NAME
 from latentarm.studies.tasks.rows import Measured, rows_of, runs_as_json
 from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Driver, Run
-from latentarm.studies.tasks.tables import failure_table, measure_table, summary_tables
+from latentarm.studies.tasks.tables import (
+    failure_table,
+    measure_table,
+    success_table,
+    summary_tables,
+    time_table,
+)
 from latentarm.types import Row
 
 if TYPE_CHECKING:
@@ -34,30 +48,33 @@ if TYPE_CHECKING:
 
 def _measure(request: Request[Preset], grid: Grid) -> Measured:
     preset, seed = request.preset, request.seed
-    shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label)
+    shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label, KEEP_SHOWN)
     training = [
-        TrainingCell(task, model, context, demonstrations, preset, seed)
+        TrainingCell(task, Condition(context, model, way_back), demonstrations, preset, seed)
         for task, demonstrations in (
             (task, training_set(task, _trains(shown, task))) for task in request.tasks
         )
         for model in preset.models
         for context in (preset.moved_contexts if task in MOVED else (preset.context,))
+        for way_back in (False, True)
     ]
-    trained = grid.run("Models", train, training, lambda cell: f"{cell.task}, {cell.model}, {cell.context}")
-    driven = grid.run("Drives", drive, _drive_cells(request, trained), _drive_label)
+    trained = grid.run(
+        "Models", train, training, lambda cell: f"{cell.task}, {cell.condition.label}", KEEP_MODELS
+    )
+    driven = grid.run("Drives", drive, _drive_cells(request, trained), _drive_label, KEEP_DRIVES)
     return Measured(shown, trained, driven)
 
 
 def _shown_cells(request: Request[Preset]) -> list[ShownCell]:
     preset = request.preset
     return [
-        ShownCell(task, stream, numbers, request.seed)
+        ShownCell(task, stream, number, request.seed)
         for task in request.tasks
         for stream, count in (
             (Stream.DEMONSTRATIONS, preset.demonstrations),
             (Stream.RUNS, preset.runs),
         )
-        for numbers in blocks(count, preset.block)
+        for number in range(count)
     ]
 
 
@@ -66,34 +83,33 @@ def _trains(shown: Sequence[Shown], task: str) -> list[Shown]:
 
 
 def _drive_cells(request: Request[Preset], trained: Sequence[Trained]) -> list[DriveCell]:
+    """Number by number, so that a study that was stopped has as many runs of each condition."""
     preset = request.preset
     return [
-        DriveCell(task, driver, preset.person, numbers, request.seed)
+        DriveCell(task, driver, person, number, request.seed)
+        for number in range(preset.runs)
         for task in request.tasks
         for driver in (
             Driver(Condition(SWITCHING)),
             *(one.driver for one in trained if one.task == task),
         )
-        for numbers in blocks(preset.runs, preset.block)
+        if number < preset.others or driver.condition in (Condition(SWITCHING), preset.default)
+        for person in preset.people
     ]
 
 
 def _shown_label(cell: ShownCell) -> str:
-    return f"{cell.task}, {DEMONSTRATOR}, {cell.stream.name.lower()} {_span(cell.numbers)}"
+    return f"{cell.task}, {DEMONSTRATOR}, {cell.stream.name.lower()} {cell.number}"
 
 
 def _drive_label(cell: DriveCell) -> str:
-    return f"{cell.task}, {cell.driver.condition.label}, runs {_span(cell.numbers)}"
-
-
-def _span(numbers: range) -> str:
-    return f"{numbers[0]} to {numbers[-1]}"
+    return f"{cell.task}, {cell.driver.condition.label}, {cell.person}, run {cell.number}"
 
 
 def _report(request: Request[Preset], measured: Measured) -> Report:
     by_task = {task: measured.runs(task) for task in request.tasks}
     rows = rows_of(by_task)
-    figures = {"steps": steps_figure(by_task)}
+    figures = {"success": success_figure(by_task)}
     return Report(
         rows=rows,
         page=_page(request, measured, by_task, rows, figures),
@@ -101,7 +117,6 @@ def _report(request: Request[Preset], measured: Measured) -> Report:
         documents={"runs.json": runs_as_json(by_task)},
         timings=_timings(measured),
         tables=summary_tables(rows, by_task),
-        models={one.folder: one.model for one in measured.trained},
     )
 
 
@@ -124,6 +139,11 @@ def _page(
         tasks=tasks,
         moved={name: MOVED[name].about for name in tasks if name in MOVED},
         demonstrated={name: measured.demonstrated(name) for name in tasks},
+        refused=[
+            f"{look_of(one.task).label} ({one.condition.label})" for one in measured.trained if one.refused
+        ],
+        success_tables={name: success_table(runs) for name, runs in by_task.items()},
+        time_tables={name: time_table(runs) for name, runs in by_task.items()},
         measure_tables={name: measure_table(rows, runs, name) for name, runs in by_task.items()},
         failure_tables={name: failure_table(runs) for name, runs in by_task.items()},
     )
@@ -133,7 +153,7 @@ def _timings(measured: Measured) -> dict[str, object]:
     """How long models were fitted and each condition was driven, s."""
     drives: dict[tuple[str, str], float] = {}
     for one in measured.driven:
-        place = one.task, one.condition.label
+        place = one.task, f"{one.condition.label}, {one.condition.person}"
         drives[place] = drives.get(place, 0.0) + one.drive_s
     return {
         "models": [
@@ -147,6 +167,12 @@ def _timings(measured: Measured) -> dict[str, object]:
     }
 
 
+def _depends_on(request: Request[Preset]) -> dict[str, object]:
+    """The code that measures a cell, so that a study does not go on with other code."""
+    modules = [Path(module.__file__ or "") for module in (cells, fitting, moved, presets, runs, streams)]
+    return {"code": source_digest(modules), "versions": package_versions()}
+
+
 STUDY: Final = Study(
     name=NAME,
     command="reproduce tasks",
@@ -155,6 +181,9 @@ STUDY: Final = Study(
     simulated=("arms", "people", "things"),
     measure=_measure,
     report=_report,
-    figures=("steps",),
+    figures=("success",),
     documents=("runs.json",),
+    depends_on=_depends_on,
+    kept=(RUNS, MODELS),
+    options=("people", "runs"),
 )
