@@ -94,7 +94,14 @@ def test_every_condition_has_its_runs_of_the_same_scene(done):
 
 def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
     _, out = done
-    assert {path.name for path in out.iterdir()} == {CONFIG, *ALWAYS_MADE, "runs.json", "success.png", *KEPT}
+    assert {path.name for path in out.iterdir()} == {
+        CONFIG,
+        *ALWAYS_MADE,
+        "runs.json",
+        "verdict.json",
+        "success.png",
+        *KEPT,
+    }
     page = (out / "results.md").read_text()
     assert "**simulated**" in page
     assert "--preset tiny --task marshmallows --seed 0" in page
@@ -104,6 +111,7 @@ def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
         "PCA + way back, joints objects_in_tool",
         "mode switching",
         "success.png",
+        "**not decided: 0 runs per cell",
         "No way back** was better than none",
     ):
         assert words in page

@@ -42,6 +42,14 @@ class Measured:
             condition: tuple(sorted(runs, key=lambda run: run.number)) for condition, runs in found.items()
         }
 
+    def fit_s(self, context: str) -> dict[Condition, float]:
+        """The decoders that see a context, and how long each trained for all tasks, s."""
+        found: dict[Condition, float] = {}
+        for one in self.trained:
+            if one.condition.name == context:
+                found[one.condition] = found.get(one.condition, 0.0) + one.fit_s
+        return found
+
     def demonstrated(self, task: str) -> tuple[int, float]:
         """How many demonstrations of a task trained the models, and how long these were together, s."""
         kept = [

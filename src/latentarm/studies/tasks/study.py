@@ -32,6 +32,7 @@ from latentarm.studies.tasks.moved import MOVED, TASKS, task_of
 from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm.studies.tasks.rows import STUDY as NAME
 from latentarm.studies.tasks.rows import Measured, rows_of, runs_as_json
+from latentarm.studies.tasks.rule import Verdict, decide
 from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Driver, Run
 from latentarm.studies.tasks.tables import (
     failure_table,
@@ -108,15 +109,16 @@ def _drive_label(cell: DriveCell) -> str:
 
 def _report(request: Request[Preset], measured: Measured) -> Report:
     by_task = {task: measured.runs(task) for task in request.tasks}
+    verdict = decide(by_task, measured.fit_s(request.preset.context))
     rows = rows_of(by_task)
     figures = {"success": success_figure(by_task)}
     return Report(
         rows=rows,
-        page=_page(request, measured, by_task, rows, figures),
+        page=_page(request, measured, by_task, rows, figures, verdict),
         figures=figures,
-        documents={"runs.json": runs_as_json(by_task)},
+        documents={"runs.json": runs_as_json(by_task), "verdict.json": verdict.as_json()},
         timings=_timings(measured),
-        tables=summary_tables(rows, by_task),
+        tables=[*summary_tables(rows, by_task), f"Default by the rule: {verdict.sentence}."],
     )
 
 
@@ -126,6 +128,7 @@ def _page(
     by_task: Mapping[str, Mapping[Condition, Sequence[Run]]],
     rows: Sequence[Row],
     figures: "Mapping[str, Figure]",
+    verdict: Verdict,
 ) -> str:
     tasks = {name: task_of(name, Stream.RUNS) for name in by_task}
     return render_page(
@@ -133,6 +136,7 @@ def _page(
         command=again(STUDY, request),
         preset=request.preset,
         figures=figures,
+        verdict=verdict,
         hand=GuidingHand(),
         stuck_s=STUCK_S,
         rearm_s=REARM_S,
@@ -182,7 +186,7 @@ STUDY: Final = Study(
     measure=_measure,
     report=_report,
     figures=("success",),
-    documents=("runs.json",),
+    documents=("runs.json", "verdict.json"),
     depends_on=_depends_on,
     kept=(RUNS, MODELS),
     options=("people", "runs"),
