@@ -20,7 +20,15 @@ from latentarm.studies.tasks.figures import success_figure
 from latentarm.studies.tasks.kept import MODELS
 from latentarm.studies.tasks.preset import PRESETS, Preset
 from latentarm.studies.tasks.rows import rows_of, runs_as_json
-from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Run, kept_in, time_ratios
+from latentarm.studies.tasks.runs import (
+    DEMONSTRATOR,
+    ORIENTED,
+    SWITCHING,
+    Condition,
+    Run,
+    kept_in,
+    time_ratios,
+)
 from latentarm.studies.tasks.study import STUDY
 from latentarm.studies.tasks.tables import failure_table, measure_table, success_table, time_table
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
@@ -39,7 +47,8 @@ TINY = Preset(
     people=("greedy",),
 )
 ASKED = Request(Path("nowhere"), TINY, ("marshmallows",), jobs=1, quiet=True)
-DRIVEN = [Condition(SWITCHING), *(Condition(TINY.context, "pca", way_back) for way_back in (False, True))]
+LEARNED = [Condition(TINY.context, "pca", way_back) for way_back in (False, True)]
+DRIVEN = [Condition(SWITCHING), Condition(ORIENTED), *LEARNED]
 
 KEPT = ("runs", MODELS)
 
@@ -108,6 +117,7 @@ def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
     for words in (
         "scripted demonstrator | – | 1 of 1",
         "| simulated | greedy |",
+        "position by the stick, orientation learned",
         "PCA + way back, joints objects_in_tool",
         "mode switching",
         "success.png",
@@ -119,7 +129,7 @@ def test_the_folder_holds_what_was_made_and_the_page_reads_by_itself(done):
 
 def test_the_models_that_were_driven_with_are_kept(done):
     _, out = done
-    kept = out / MODELS / kept_in("marshmallows", DRIVEN[1])
+    kept = out / MODELS / kept_in("marshmallows", LEARNED[0])
     assert load_decoder(kept).kind == "pca"
     assert read_object(kept / CONFIG)["preset"]["name"] == TINY.name
 
@@ -134,7 +144,7 @@ def stopped(done, tmp_path, monkeypatch):
     out = tmp_path / "run"
     shutil.copytree(done[1], out)
     (out / "results.json").unlink()
-    for name in ("show", "train"):
+    for name in ("show", "train", "orient"):
         monkeypatch.setattr(f"latentarm.studies.tasks.study.{name}", never)
     return out
 
@@ -162,7 +172,7 @@ def test_more_people_and_runs_are_added(stopped, monkeypatch):
     more = replace(TINY, people=("unsteady", "greedy"), runs=2)
     for _ in range(2):
         run_study(STUDY, replace(ASKED, out=stopped, preset=more))
-        added = [("unsteady", 0)] * 3 + [("unsteady", 1), ("greedy", 1)] * 3
+        added = [("unsteady", 0)] * 4 + [("unsteady", 1), ("greedy", 1)] * 4
         assert measured == added, "the second time nothing is missing"
 
 
@@ -187,14 +197,19 @@ def test_a_study_does_not_go_on_with_other_code(stopped, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "changed", "said"),
     [
-        ("greedy/end_effector/0.json", {"done": "1"}, "'done' must be a whole number"),
-        ("greedy/end_effector/0.json", {"number": 3}, "is no run 0 of this study: remove it"),
-        ("demonstrations/0.json", {"sha256": "0"}, "does not have the SHA-256"),
-        ("demonstrations/0.json", {"shapes": {}}, "has no states"),
+        ("runs/marshmallows/greedy/end_effector/0.json", {"done": "1"}, "'done' must be a whole number"),
+        (
+            "runs/marshmallows/greedy/end_effector/0.json",
+            {"number": 3},
+            "is no run 0 of this study: remove it",
+        ),
+        ("runs/marshmallows/demonstrations/0.json", {"sha256": "0"}, "does not have the SHA-256"),
+        ("runs/marshmallows/demonstrations/0.json", {"text": 3}, "'text' must be a text"),
+        ("models/marshmallows/learned_orientation.json", {"shapes": {"0.weight": [10**9]}}, "not a model's"),
     ],
 )
 def test_a_damaged_cell_is_named(stopped, name, changed, said):
-    path = stopped / "runs" / "marshmallows" / name
+    path = stopped / name
     path.write_text(json.dumps(json.loads(path.read_text()) | changed))
     with pytest.raises(UserError, match=said):
         run_study(STUDY, replace(ASKED, out=stopped))

@@ -8,6 +8,7 @@ from typing import Final, final
 from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
+from latentarm.controllers.learned_orientation import LearnedOrientationController, OrientationMap
 from latentarm.metrics.looks import look_of
 from latentarm.metrics.task_drives import TaskDrive
 from latentarm.models.decoder import Decoder
@@ -20,6 +21,7 @@ from latentarm.tasks.steps import TaskStep
 
 DEMONSTRATOR: Final = "demonstrator"
 SWITCHING: Final = "end_effector"
+ORIENTED: Final = "learned_orientation"
 
 
 @final
@@ -28,7 +30,8 @@ class Condition:
     """What moves the arm, and who steers it.
 
     Attributes:
-        name: `DEMONSTRATOR`, `SWITCHING`, or for a model what its decoder sees, a name of `CONTEXTS`.
+        name: `DEMONSTRATOR`, `SWITCHING`, `ORIENTED`, or for a model what its decoder sees, a name of
+            `CONTEXTS`.
         model: a name of `latentarm.models.catalogue.KINDS`, or None.
         way_back: whether the model has a way back.
         person: a simulated person by name; None for the demonstrator, and for what all people steer with.
@@ -70,11 +73,13 @@ class Driver:
 
     Attributes:
         condition: what it is called.
-        decoders: of the models, which take turns; empty for mode switching.
+        decoders: of the models, which take turns.
+        orientation: of the tool, where the person only moves it. Without either they switch modes.
     """
 
     condition: Condition
     decoders: tuple[Decoder, ...] = ()
+    orientation: OrientationMap | None = None
 
     def controller(self, robot: Robot, number: int) -> Controller:
         """The controller of one run.
@@ -83,6 +88,8 @@ class Driver:
             robot: the arm.
             number: of the run.
         """
+        if self.orientation is not None:
+            return LearnedOrientationController(robot, self.orientation)
         if not self.decoders:
             return EndEffectorController(robot)
         return LatentController(self.decoders[number % len(self.decoders)])

@@ -12,8 +12,8 @@ from latentarm.simulation.task_drive import REARM_S, STUCK_S
 from latentarm.studies import fitting, streams
 from latentarm.studies.page import render_page
 from latentarm.studies.study import Grid, Report, Request, Study, again
-from latentarm.studies.tasks import cell as cells
-from latentarm.studies.tasks import moved, runs
+from latentarm.studies.tasks import cell as measuring
+from latentarm.studies.tasks import moved, orientation, runs
 from latentarm.studies.tasks import preset as presets
 from latentarm.studies.tasks.cell import (
     DriveCell,
@@ -27,8 +27,16 @@ from latentarm.studies.tasks.cell import (
     training_set,
 )
 from latentarm.studies.tasks.figures import success_figure
-from latentarm.studies.tasks.kept import KEEP_DRIVES, KEEP_MODELS, KEEP_SHOWN, MODELS, RUNS
+from latentarm.studies.tasks.kept import (
+    KEEP_DRIVES,
+    KEEP_MODELS,
+    KEEP_ORIENTATIONS,
+    KEEP_SHOWN,
+    MODELS,
+    RUNS,
+)
 from latentarm.studies.tasks.moved import MOVED, TASKS, task_of
+from latentarm.studies.tasks.orientation import OrientationCell, Oriented, orient
 from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm.studies.tasks.rows import STUDY as NAME
 from latentarm.studies.tasks.rows import Measured, rows_of, runs_as_json
@@ -50,11 +58,10 @@ if TYPE_CHECKING:
 def _measure(request: Request[Preset], grid: Grid) -> Measured:
     preset, seed = request.preset, request.seed
     shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label, KEEP_SHOWN)
+    sets = {task: training_set(task, _trains(shown, task)) for task in request.tasks}
     training = [
         TrainingCell(task, Condition(context, model, way_back), demonstrations, preset, seed)
-        for task, demonstrations in (
-            (task, training_set(task, _trains(shown, task))) for task in request.tasks
-        )
+        for task, demonstrations in sets.items()
         for model in preset.models
         for context in (preset.moved_contexts if task in MOVED else (preset.context,))
         for way_back in (False, True)
@@ -62,7 +69,10 @@ def _measure(request: Request[Preset], grid: Grid) -> Measured:
     trained = grid.run(
         "Models", train, training, lambda cell: f"{cell.task}, {cell.condition.label}", KEEP_MODELS
     )
-    driven = grid.run("Drives", drive, _drive_cells(request, trained), _drive_label, KEEP_DRIVES)
+    orienting = [OrientationCell(task, demonstrations, preset, seed) for task, demonstrations in sets.items()]
+    oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task, KEEP_ORIENTATIONS)
+    cells = _drive_cells(request, (*oriented, *trained))
+    driven = grid.run("Drives", drive, cells, _drive_label, KEEP_DRIVES)
     return Measured(shown, trained, driven)
 
 
@@ -83,7 +93,7 @@ def _trains(shown: Sequence[Shown], task: str) -> list[Shown]:
     return [one for one in shown if (one.cell.task, one.cell.stream) == (task, Stream.DEMONSTRATIONS)]
 
 
-def _drive_cells(request: Request[Preset], trained: Sequence[Trained]) -> list[DriveCell]:
+def _drive_cells(request: Request[Preset], learned: Sequence[Trained | Oriented]) -> list[DriveCell]:
     """Number by number, so that a study that was stopped has as many runs of each condition."""
     preset = request.preset
     return [
@@ -92,7 +102,7 @@ def _drive_cells(request: Request[Preset], trained: Sequence[Trained]) -> list[D
         for task in request.tasks
         for driver in (
             Driver(Condition(SWITCHING)),
-            *(one.driver for one in trained if one.task == task),
+            *(one.driver for one in learned if one.task == task),
         )
         if number < preset.others or driver.condition in (Condition(SWITCHING), preset.default)
         for person in preset.people
@@ -173,7 +183,10 @@ def _timings(measured: Measured) -> dict[str, object]:
 
 def _depends_on(request: Request[Preset]) -> dict[str, object]:
     """The code that measures a cell, so that a study does not go on with other code."""
-    modules = [Path(module.__file__ or "") for module in (cells, fitting, moved, presets, runs, streams)]
+    modules = [
+        Path(module.__file__ or "")
+        for module in (measuring, fitting, moved, orientation, presets, runs, streams)
+    ]
     return {"code": source_digest(modules), "versions": package_versions()}
 
 
