@@ -20,8 +20,8 @@ from latentarm.runs.results_folder import CONFIG
 from latentarm.simulation.film import Camera, Film, strip
 from latentarm.simulation.task_drive import TaskSetup, drive_task
 from latentarm.studies.streams import generator
-from latentarm.studies.study import MODELS
-from latentarm.studies.tasks.cell import ShownCell, TrainingCell, blocks, show, train, training_set
+from latentarm.studies.tasks.cell import ShownCell, TrainingCell, show, train, training_set
+from latentarm.studies.tasks.kept import MODELS
 from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm.studies.tasks.rows import STUDY
 from latentarm.studies.tasks.runs import Condition, Driver, choice_of, decoders_of, kept_in
@@ -40,12 +40,10 @@ CAMERAS: dict[str, Camera] = dict.fromkeys(("avoid", "pour", "reach_and_pour", "
 
 def learned(task: str, model: str, preset: Preset, seed: int, jobs: int) -> Driver:
     """The models of the study, trained anew."""
-    cells = [
-        ShownCell(task, Stream.DEMONSTRATIONS, numbers, seed)
-        for numbers in blocks(preset.demonstrations, preset.block)
-    ]
+    cells = [ShownCell(task, Stream.DEMONSTRATIONS, number, seed) for number in range(preset.demonstrations)]
     shown = run_grid(show, cells, jobs=jobs, backend="joblib", label=lambda cell: task, bars=True)
-    return train(TrainingCell(task, model, preset.context, training_set(task, shown), preset, seed)).driver
+    condition = Condition(preset.context, model, way_back=True)
+    return train(TrainingCell(task, condition, training_set(task, shown), preset, seed)).driver
 
 
 def sizes_of(study: Path) -> tuple[Preset, int]:
@@ -63,7 +61,7 @@ def sizes_of(study: Path) -> tuple[Preset, int]:
 
 def kept(task: str, model: str, preset: Preset, study: Path) -> Driver:
     """The models that a study kept."""
-    condition = Condition(preset.context, model)
+    condition = Condition(preset.context, model, way_back=True)
     return Driver(condition, decoders_of(read_model(study / MODELS / kept_in(task, condition))))
 
 
@@ -76,7 +74,7 @@ def film(task: str, model: str, driver: Driver, preset: Preset, seed: int) -> No
     made = make_scene_task(task)
     for number in range(preset.runs):
         watched = Film()
-        setup = TaskSetup(made, driver.controller(made.robot, number), PEOPLE[preset.person])
+        setup = TaskSetup(made, driver.controller(made.robot, number), PEOPLE[preset.people[0]])
         rng = generator(seed, task, Stream.RUNS, number)
         trace = drive_task(setup, choice_of(made, number), rng, watched.sees)
         print(f"{task}, run {number}: {trace.why} after {trace.figures.time_s:.1f} s {trace.ended_in}")

@@ -1,10 +1,11 @@
 """`latentarm reproduce`: the paper's simulations, a command for each study of the catalogue."""
 
+import inspect
 import sys
 from pathlib import Path
 from typing import Annotated
 
-from tyro.conf import arg
+from tyro.conf import UseAppendAction, arg
 
 from latentarm.commands.configuration import Command, write_options
 from latentarm.commands.options import StudyOptions
@@ -28,20 +29,42 @@ def command_of(name: str) -> Command:
     def reproduce(
         options: StudyOptions,
         preset: Annotated[str, arg(metavar=presets, help=about_presets)] = "paper",
-        task: Annotated[str, arg(metavar=choices, help=entry.about_tasks)] = ALL,
+        task: Annotated[
+            UseAppendAction[tuple[str, ...]],
+            arg(metavar=choices, help=f"{entry.about_tasks} May be given several times; by default all."),
+        ] = (),
         out: Annotated[Path, arg(metavar="DIR", help="Folder for page, figures and results.json.")] = Path(
             "reproduced", name
         ),
+        people: Annotated[
+            UseAppendAction[tuple[str, ...]],
+            arg(metavar="NAME", help="Simulated person who drives, also several; by default the preset's."),
+        ] = (),
+        runs: Annotated[
+            int | None, arg(metavar="N", help="Runs in each condition; by default the preset's.")
+        ] = None,
     ) -> int:
-        return _reproduce(name, preset, task, out, options)
+        return _reproduce(name, preset, task, out, options, people, runs)
 
+    if not entry.people:
+        signature = inspect.signature(reproduce)
+        asked = [one for key, one in signature.parameters.items() if key not in ("people", "runs")]
+        reproduce.__signature__ = signature.replace(parameters=asked)  # pyright: ignore[reportFunctionMemberAccess]
     reproduce.__doc__ = (
         f"{entry.summary}\n\nFor example: latentarm reproduce {name} --preset smoke --task {entry.tasks[0]}"
     )
     return reproduce
 
 
-def _reproduce(name: str, preset: str, task: str, out: Path, options: StudyOptions) -> int:
+def _reproduce(
+    name: str,
+    preset: str,
+    task: tuple[str, ...],
+    out: Path,
+    options: StudyOptions,
+    people: tuple[str, ...],
+    runs: int | None,
+) -> int:
     """Run a study and print it at a glance."""
     from latentarm.studies.page import SMOKE
     from latentarm.studies.study import Request, run_study
@@ -49,10 +72,11 @@ def _reproduce(name: str, preset: str, task: str, out: Path, options: StudyOptio
     study = load_study(name)
     if preset not in study.presets:
         raise UserError(f"There is no preset {preset!r}: choose from {', '.join(study.presets)}.")
+    sizes = study.presets[preset]
     request = Request(
         out=out,
-        preset=study.presets[preset],
-        tasks=() if task == ALL else (task,),
+        preset=sizes.asked(people, runs) if people or runs is not None else sizes,
+        tasks=() if ALL in task else task,
         seed=options.seed,
         jobs=options.jobs,
         backend=options.backend,

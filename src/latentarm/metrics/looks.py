@@ -9,6 +9,7 @@ LOOKS: Final[dict[str, Look]] = {
     "latent": Look("latent actions", "#0072B2", "o", "-"),
     "latent_assist": Look("latent actions + shared autonomy", "#009E73", "D", "-"),
     "end_effector": Look("mode switching", "#7f7f7f", "s", ":"),
+    "learned_orientation": Look("position by the stick, orientation learned", "#882255", "P", "--"),
     "two_sticks": Look("two sticks, mode switching", "#56B4E9", "<", ":"),
     "retargeting": Look("retargeting", "#E69F00", "^", "--"),
     "demonstrator": Look("scripted demonstrator", "#000000", "D", "-"),

@@ -66,6 +66,17 @@ class Section:
             raise self._wrong(key, f"a whole number of at least {least}")
         return value
 
+    def truth(self, key: str) -> bool:
+        """True or false, as it stands under a key."""
+        value = self._get(key)
+        if not isinstance(value, bool):
+            raise self._wrong(key, "true or false")
+        return value
+
+    def number(self, key: str) -> float:
+        """The number under a key; NaN for null, which stands for a missing figure."""
+        return float(self.array(key, (), gaps=True))
+
     def integers(
         self, key: str, least: int, *, length: int | None = None, longest: int | None = None
     ) -> list[int]:

@@ -6,12 +6,13 @@ there change nothing of its result.
 
 import traceback
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, cast
 
 from joblib import Parallel, delayed
+from joblib.parallel import get_active_backend
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from latentarm.errors import UserError
@@ -31,10 +32,12 @@ class _Measured(Generic[Result]):
     """What comes back from wherever a cell was measured.
 
     Attributes:
+        index: of the cell.
         result: what the function returned.
         warnings: category and text of what was warned of meanwhile.
     """
 
+    index: int
     result: Result
     warnings: tuple[tuple[type[Warning], str], ...]
 
@@ -48,6 +51,7 @@ def run_grid(
     label: Callable[[Cell], str],
     bars: bool,
     unit: str = "cells",
+    keep: Callable[[Cell, Result], None] | None = None,
 ) -> list[Result]:
     """Measure every cell, each on one process.
 
@@ -61,6 +65,7 @@ def run_grid(
         label: what a cell is called when it fails or warns.
         bars: show on standard error how far the grid is.
         unit: what a cell is called on the bar.
+        keep: is given each cell with its result as soon as there is one, in any order; with Ray at the end.
 
     Returns:
         The results in the order of the cells.
@@ -74,20 +79,27 @@ def run_grid(
     with BACKENDS[backend](jobs) as workers, counting_bar(bars) as bar:
         # One cell at a time per process: a cell takes seconds, and the bar then advances with each.
         one_by_one: dict[str, Any] = {"batch_size": 1, "pre_dispatch": workers}
-        parallel = Parallel(n_jobs=workers, **one_by_one)
+        active: Any = get_active_backend()[0]
+        order = "generator_unordered" if active.supports_return_generator else "list"
+        parallel = Parallel(n_jobs=workers, return_as=order, **one_by_one)
+        found: dict[int, _Measured[Result]] = {}
         try:
             with warnings.catch_warnings():
                 # A process that has grown, as one that trained a model has, makes way for a new one.
                 warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
                 measured = parallel(
-                    delayed(_measure)(function, cell, label(cell))
-                    for cell in _watched(cells, workers, bar, unit)
+                    delayed(_measure)(function, index, cell, label(cell))
+                    for index, cell in enumerate(_watched(cells, workers, bar, unit))
                 )
+                for entry in cast(Iterable[_Measured[Result]], measured):
+                    found[entry.index] = entry
+                    if keep is not None:
+                        keep(cells[entry.index], entry.result)
         except BrokenProcessPool as error:
             raise UserError(
                 "A process of the grid was killed, most likely because memory ran out: try fewer with --jobs."
             ) from error
-    results = cast(list[_Measured[Result]], measured)
+    results = [found[index] for index in range(len(cells))]
     for cell, entry in zip(cells, results, strict=True):
         for category, text in entry.warnings:
             warnings.warn(f"{label(cell)}: {text}", category, stacklevel=2)
@@ -106,7 +118,7 @@ def check_processes(jobs: int, backend: str) -> None:
         raise UserError(f"There is no backend {backend!r}: choose from {', '.join(BACKENDS)}.")
 
 
-def _measure(function: Callable[[Cell], Result], cell: Cell, name: str) -> _Measured[Result]:
+def _measure(function: Callable[[Cell], Result], index: int, cell: Cell, name: str) -> _Measured[Result]:
     """Measure one cell; runs in any process.
 
     Errors are replaced by ones that hold only text, because others may not survive pickling.
@@ -124,7 +136,7 @@ def _measure(function: Callable[[Cell], Result], cell: Cell, name: str) -> _Meas
             raise UserError(f"{name}: {error}") from error
         except Exception as error:
             raise CellError(f"{name} failed.\n{traceback.format_exc()}") from error
-    return _Measured(result, tuple((warning.category, str(warning.message)) for warning in caught))
+    return _Measured(index, result, tuple((warning.category, str(warning.message)) for warning in caught))
 
 
 def _watched(cells: Sequence[Cell], workers: int, bar: Progress, unit: str) -> Iterator[Cell]:

@@ -31,13 +31,19 @@ class ResultsFolder:
     Attributes:
         name: as in `CONFIG` and in every row of ``results.json``.
         made: every file that it may write, beside `CONFIG`.
+        kept: folders of finished parts, which a further run goes on from.
+        grows: keys of what was asked for that may differ in a run that goes on.
     """
 
     name: str
     made: tuple[str, ...]
+    kept: tuple[str, ...] = ()
+    grows: tuple[str, ...] = ()
 
     def claim(self, out: Path, about: Mapping[str, object]) -> None:
         """Make room for a new run: one that asked for the same is replaced, anything else is left alone.
+
+        Where finished parts are kept, the new run may ask for more or less of them.
 
         Args:
             out: the folder.
@@ -53,17 +59,14 @@ class ResultsFolder:
                 f"{out} already exists and is not an earlier run of this command: choose another folder with"
                 f" --out, such as {vacant_name(out)}."
             )
-        if earlier is not None and any((out / name).exists() for name in self.made):
-            wanted = cast(dict[str, object], json.loads(json.dumps(about)))
+        if earlier is not None and any((out / name).exists() for name in (*self.made, *self.kept)):
+            fixed = {key: value for key, value in about.items() if key not in self.grows}
+            wanted = cast(dict[str, object], json.loads(json.dumps(fixed)))
             refuse_other_results(out, out, {key: earlier.get(key) for key in wanted}, wanted)
         if out.exists():
             for name in self.made:
                 (out / name).unlink(missing_ok=True)
-        versions = {
-            "python": platform.python_version(),
-            **{package: version(package) for package in PACKAGES},
-        }
-        write_json(out / CONFIG, {**about, "versions": versions, "git_commit": git_commit()})
+        write_json(out / CONFIG, {**about, "versions": package_versions(), "git_commit": git_commit()})
 
     def _earlier(self, out: Path) -> dict[str, Any] | None:
         """What an earlier run of this study was asked for; None where the folder holds none."""
@@ -72,6 +75,14 @@ class ResultsFolder:
         except UserError:
             return None
         return config if config.get("study") == self.name else None
+
+
+def package_versions() -> dict[str, str]:
+    """Versions of `PACKAGES` and of Python."""
+    return {
+        "python": platform.python_version(),
+        **{package: version(package) for package in PACKAGES},
+    }
 
 
 def refuse_other_results(

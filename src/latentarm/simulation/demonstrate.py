@@ -129,20 +129,27 @@ def demonstrate(
     all_of_them = run_grid(
         _demonstrate, calls, jobs=jobs, backend="joblib", label=_name_of, bars=bars, unit="demonstrations"
     )
-    return dataset_of(task, all_of_them), all_of_them
+    succeeded = [one.episode for one in all_of_them if one.progress.succeeded]
+    return dataset_of(task, succeeded, all_of_them[0].objects), all_of_them
 
 
-def dataset_of(task: SceneTask, demonstrations: Sequence[Demonstration]) -> Demonstrations:
-    """Those demonstrations of a task that succeeded, as a dataset."""
+def dataset_of(task: SceneTask, episodes: Sequence[Episode], objects: tuple[str, ...]) -> Demonstrations:
+    """Demonstrations of a task as a dataset.
+
+    Args:
+        task: what was demonstrated.
+        episodes: of the dataset.
+        objects: see `Demonstration`.
+    """
     robot = task.robot
     return Demonstrations(
-        episodes=tuple(one.episode for one in demonstrations if one.progress.succeeded),
+        episodes=tuple(episodes),
         rate_hz=1.0 / (PERIOD_S * SAMPLE_TICKS),
         joint_names=robot.joint_names,
         robot=robot.name,
         end_effector=robot.end_effector,
         limits=robot.stated_limits,
-        objects=demonstrations[0].objects,
+        objects=objects,
     )
 
 

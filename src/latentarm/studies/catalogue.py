@@ -24,12 +24,14 @@ class Entry:
         tasks: names of all its tasks, as in its `Study`.
         about_tasks: what they are, in a few words.
         presets: what each of its presets is, by its name in the `Study`.
+        people: whether one can choose which simulated people drive, and how often.
     """
 
     summary: str
     tasks: tuple[str, ...]
     about_tasks: str
     presets: Mapping[str, str]
+    people: bool = False
 
 
 STUDIES: Final[Mapping[str, Entry]] = {
@@ -57,10 +59,11 @@ STUDIES: Final[Mapping[str, Entry]] = {
         {"paper": _PAPER, "smoke": _SMOKE},
     ),
     "tasks": Entry(
-        "Let simulated people do tasks with food in physics, by mode switching and by latent actions.",
+        "Let simulated people do tasks with things in physics, by mode switching and by latent actions.",
         (*SCENE_TASKS, "moved_marshmallows", "moved_reach_and_pour"),
         "One of the tasks, or all of them; in moved ones things stand where no demonstration had them.",
-        {"paper": _PAPER, "smoke": _SMOKE},
+        {"paper": _PAPER, "small": "few runs and fewer demonstrations", "smoke": _SMOKE},
+        people=True,
     ),
 }
 

@@ -18,8 +18,8 @@ SMOKE: Final = "smoke"
 def render_page(template: str, preset: Any, **content: Any) -> str:
     """A page from its template.
 
-    Templates have the filters ``label`` (of a model, a condition or a task), ``listed`` (``A, B and C``),
-    ``g`` (a number without trailing zeros) and ``image`` (a figure by its name).
+    Templates have the filters ``label`` (of a model, a condition or a task), ``literal`` (as code),
+    ``listed`` (``A, B and C``), ``g`` (a number without trailing zeros) and ``image`` (a figure by its name).
 
     Args:
         template: path below `STUDIES`, such as ``properties/page.md``.
@@ -34,7 +34,7 @@ def render_page(template: str, preset: Any, **content: Any) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters.update(label=_label, listed=listed, g=_short, image=_image)
+    environment.filters.update(label=_label, literal="`{}`".format, listed=listed, g=_short, image=_image)
     judged = preset.name != SMOKE
     page = environment.get_template(template).render(content, preset=preset, judged=judged)
     return page if judged else page.replace("\n", f" (preset {SMOKE})\n", 1)

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, TypeVar
 from latentarm.errors import UserError
 from latentarm.files import write_text
 from latentarm.metrics.results import write_results
-from latentarm.models.kind import TrainedModel
-from latentarm.models.saving import write_model
 from latentarm.parallel.grid import check_processes, run_grid
 from latentarm.runs.checks import check_seed
 from latentarm.runs.results_folder import ResultsFolder, write_json
@@ -26,9 +24,6 @@ if TYPE_CHECKING:
 
 ALWAYS_MADE: Final = ("results.json", "results.md", "hypotheses.json", "timings.json")
 """Files that every study writes."""
-
-MODELS: Final = "models"
-"""The folder of the models that a study keeps."""
 
 Cell = TypeVar("Cell")
 Result = TypeVar("Result")
@@ -79,6 +74,19 @@ class Request(Generic[Preset]):
         check_processes(self.jobs, self.backend)
 
 
+@dataclass(frozen=True)
+class Keep(Generic[Cell, Result]):
+    """How the results of cells are kept in a study's folder, so that it goes on where it was stopped.
+
+    Attributes:
+        read: the kept result of a cell; None where there is none. Raises a `UserError` where it is damaged.
+        write: keeps the result of a cell, whole or not at all.
+    """
+
+    read: Callable[[Path, Cell], Result | None]
+    write: Callable[[Path, Cell, Result], None]
+
+
 class Grid:
     """Runs grids of cells as a request says, and keeps how long that took.
 
@@ -101,6 +109,7 @@ class Grid:
         function: Callable[[Cell], Result],
         cells: Sequence[Cell],
         label: Callable[[Cell], str],
+        keep: Keep[Cell, Result] | None = None,
     ) -> list[Result]:
         """Measure cells side by side; see `latentarm.parallel.grid.run_grid`.
 
@@ -109,19 +118,27 @@ class Grid:
             function: measures one cell.
             cells: all of them, the longest first.
             label: what a cell is called when it fails or warns.
+            keep: where results are kept; those that are there are not measured again.
         """
-        self.say(f"{what}: {len(cells)} cells.")
+        out = self._request.out
+        found = [None if keep is None else keep.read(out, cell) for cell in cells]
+        missing = [cell for cell, one in zip(cells, found, strict=True) if one is None]
+        there = f", {len(cells) - len(missing)} of them kept from before" if len(missing) < len(cells) else ""
+        self.say(f"{what}: {len(cells)} cells{there}.")
         began = perf_counter()
-        results = run_grid(
-            function,
-            cells,
-            jobs=self._request.jobs,
-            backend=self._request.backend,
-            label=label,
-            bars=self._request.bars,
+        measured = iter(
+            run_grid(
+                function,
+                missing,
+                jobs=self._request.jobs,
+                backend=self._request.backend,
+                label=label,
+                bars=self._request.bars,
+                keep=None if keep is None else lambda cell, result: keep.write(out, cell, result),
+            )
         )
         self.took_s += perf_counter() - began
-        return results
+        return [next(measured) if one is None else one for one in found]
 
 
 @dataclass(frozen=True)
@@ -136,7 +153,6 @@ class Report:
         documents: further JSON files by name.
         timings: how long parts took, s, apart from the grids.
         tables: the study at a glance, for a terminal.
-        models: to keep below `MODELS`, by folder.
     """
 
     rows: list[Row]
@@ -146,7 +162,6 @@ class Report:
     documents: Mapping[str, object] = field(default_factory=dict)
     timings: Mapping[str, object] = field(default_factory=dict)
     tables: "Sequence[RenderableType]" = ()
-    models: Mapping[str, TrainedModel] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -164,6 +179,9 @@ class Study(Generic[Preset, Measured]):
         figures: names of all figures that it may draw.
         documents: names of all JSON files that it may write in addition to `ALWAYS_MADE`.
         depends_on: what else the figures depend on, for ``config.json``.
+        kept: folders of results of cells, see `Keep`.
+        options: names of the preset's fields that the command line may change. With the same ``out`` and
+            other values of these, or other tasks, a study goes on from what is kept.
     """
 
     name: str
@@ -176,12 +194,16 @@ class Study(Generic[Preset, Measured]):
     figures: tuple[str, ...]
     documents: tuple[str, ...] = ()
     depends_on: Callable[[Request[Preset]], Mapping[str, object]] = lambda request: {}
+    kept: tuple[str, ...] = ()
+    options: tuple[str, ...] = ()
 
     def about(self, request: Request[Preset]) -> dict[str, object]:
         """What the figures depend on."""
+        sizes = asdict(request.preset)  # pyright: ignore[reportArgumentType]
         return {
             "study": self.name,
-            "preset": asdict(request.preset),  # pyright: ignore[reportArgumentType]
+            **{name: sizes.pop(name) for name in self.options},
+            "preset": sizes,
             "tasks": list(request.tasks),
             "seed": request.seed,
             **dict.fromkeys(self.simulated, "simulated"),
@@ -201,7 +223,8 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
     request = _with_tasks(study, request)
     made = (*ALWAYS_MADE, *study.documents, *(f"{name}.png" for name in study.figures))
     about = study.about(request)
-    ResultsFolder(study.name, made).claim(request.out, about)
+    grows = ("tasks", *study.options) if study.kept else ()
+    ResultsFolder(study.name, made, study.kept, grows).claim(request.out, about)
     grid = Grid(request)
     measured = study.measure(request, grid)
     grid.say("Drawing, testing the hypotheses, writing the page.")
@@ -213,8 +236,6 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
     write_json(request.out / "hypotheses.json", [one.as_json() for one in tests])
     for name, document in report.documents.items():
         write_json(request.out / name, document)
-    for folder, model in report.models.items():
-        write_model(request.out / MODELS / folder, model, about)
     timings = {"backend": request.backend, "jobs": request.jobs, "grid_s": grid.took_s, **report.timings}
     write_json(request.out / "timings.json", timings)
     write_results(request.out / "results.json", report.rows, about)
@@ -223,8 +244,13 @@ def run_study(study: Study[Preset, Measured], request: Request[Preset]) -> Repor
 
 def again(study: Study[Preset, Any], request: Request[Preset]) -> str:
     """The command that repeats the study."""
-    task = f" --task {request.tasks[0]}" if len(request.tasks) == 1 else ""
-    return f"latentarm {study.command} --preset {request.preset.name}{task} --seed {request.seed}"
+    usual = study.presets.get(request.preset.name)
+    words = [f" --task {task}" for task in request.tasks if request.tasks != study.tasks]
+    for name in study.options:
+        value = getattr(request.preset, name)
+        if usual is not None and value != getattr(usual, name):
+            words += [f" --{name} {one}" for one in (value if isinstance(value, tuple) else (value,))]
+    return f"latentarm {study.command} --preset {request.preset.name}{''.join(words)} --seed {request.seed}"
 
 
 def _with_tasks(study: Study[Preset, Any], request: Request[Preset]) -> Request[Preset]:

@@ -142,7 +142,7 @@ def _demonstrated(cell: TrainingCell, task: SceneTask, belief: bool) -> tuple[De
         kept.append(replace(shown, states=()))
         goals.append(task.begin(choice, _stream(*stream)).goals)
         took_s += shown.seconds
-    dataset = replace(dataset_of(task, kept), episodes=tuple(one.episode for one in kept))
+    dataset = dataset_of(task, [one.episode for one in kept], kept[0].objects)
     if belief:
         with_belief = [
             annotate(replace(dataset, episodes=(one.episode,), goals=of)).episodes[0]

@@ -1,16 +1,18 @@
 """The study's cells: demonstrations, models that learn from them, and drives with these."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import perf_counter
 from typing import final
 
 from threadpoolctl import threadpool_limits
 
+from latentarm.demonstrations.validation import validate
 from latentarm.errors import UserError
 from latentarm.models.kind import TrainedModel
-from latentarm.operators.catalogue import PEOPLE, OperatorName
-from latentarm.simulation.demonstrate import Demonstration, dataset_of, demonstrate_once
+from latentarm.operators.catalogue import PEOPLE
+from latentarm.operators.names import OperatorName
+from latentarm.simulation.demonstrate import dataset_of, demonstrate_once
 from latentarm.simulation.task_drive import TaskSetup, drive_task
 from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.streams import generator, integer, sequence
@@ -23,27 +25,26 @@ from latentarm.studies.tasks.runs import (
     choice_of,
     decoders_of,
     driven_run,
-    kept_in,
     shown_run,
 )
-from latentarm.types import Demonstrations
+from latentarm.types import Demonstrations, Episode
 
 
 @final
 @dataclass(frozen=True)
 class ShownCell:
-    """Some runs of the scripted demonstrator.
+    """A run of the scripted demonstrator.
 
     Attributes:
         task: a name of `latentarm.studies.tasks.moved.TASKS`.
-        stream: what the runs are for: `Stream.RUNS` or `Stream.DEMONSTRATIONS`.
-        numbers: of the runs.
+        stream: what the run is for: `Stream.RUNS` or `Stream.DEMONSTRATIONS`.
+        number: of the run.
         seed: of the study.
     """
 
     task: str
     stream: Stream
-    numbers: range
+    number: int
     seed: int
 
 
@@ -54,13 +55,15 @@ class Shown:
 
     Attributes:
         cell: what was asked for.
-        runs: in order.
-        demonstrations: of these runs, without how things stood in between.
+        run: how it went.
+        episode: the demonstration; None where it failed.
+        objects: names of the things whose poses the episode holds.
     """
 
     cell: ShownCell
-    runs: tuple[Run, ...]
-    demonstrations: tuple[Demonstration, ...]
+    run: Run
+    episode: Episode | None
+    objects: tuple[str, ...]
 
 
 def show(cell: ShownCell) -> Shown:
@@ -70,15 +73,11 @@ def show(cell: ShownCell) -> Shown:
         UserError: the arm cannot be used.
     """
     task = task_of(cell.task, cell.stream)
-    runs: list[Run] = []
-    demonstrations: list[Demonstration] = []
     with threadpool_limits(limits=1):
-        for number in cell.numbers:
-            choice = choice_of(task, number)
-            shown = demonstrate_once(task, choice, generator(cell.seed, cell.task, cell.stream, number))
-            runs.append(shown_run(task, number, shown))
-            demonstrations.append(replace(shown, states=()))
-    return Shown(cell, tuple(runs), tuple(demonstrations))
+        rng = generator(cell.seed, cell.task, cell.stream, cell.number)
+        shown = demonstrate_once(task, choice_of(task, cell.number), rng)
+    run = shown_run(task, cell.number, shown)
+    return Shown(cell, run, shown.episode if run.success else None, shown.objects)
 
 
 @final
@@ -88,16 +87,14 @@ class TrainingCell:
 
     Attributes:
         task: a name of `latentarm.studies.tasks.moved.TASKS`.
-        model: a name of `latentarm.models.catalogue.MODELS`.
-        context: what its decoder sees, a name of `CONTEXTS`.
+        condition: which kind of model, what its decoder sees, and whether it has a way back.
         demonstrations: to learn from.
         preset: sizes of the study.
         seed: of the study.
     """
 
     task: str
-    model: str
-    context: str
+    condition: Condition
     demonstrations: Demonstrations
     preset: Preset
     seed: int
@@ -110,7 +107,7 @@ class Trained:
 
     Attributes:
         task: a name of `latentarm.studies.tasks.moved.TASKS`.
-        condition: which kind of model, and what its decoder sees.
+        condition: see `TrainingCell`.
         model: with all its seeds.
         fit_s: how long the fit took, s.
     """
@@ -126,9 +123,9 @@ class Trained:
         return Driver(self.condition, decoders_of(self.model))
 
     @property
-    def folder(self) -> str:
-        """Where the study keeps the model, below `latentarm.studies.study.MODELS`."""
-        return kept_in(self.task, self.condition)
+    def refused(self) -> bool:
+        """Whether a way back was asked for that is no better than none."""
+        return self.condition.way_back and not self.model.dimensions.way_back
 
 
 def train(cell: TrainingCell) -> Trained:
@@ -137,45 +134,50 @@ def train(cell: TrainingCell) -> Trained:
     Raises:
         UserError: the preset's sizes make no sense.
     """
-    preset = cell.preset
+    preset, condition = cell.preset, cell.condition
     with threadpool_limits(limits=1):
         began = perf_counter()
         model = fit_model(
-            cell.model,
+            condition.model or "",
             cell.demonstrations,
             validation=validation_episodes(cell.demonstrations),
             fit={"chain": task_of(cell.task, Stream.DEMONSTRATIONS).robot.chain},
             latent_dim=2,
-            context=CONTEXTS[cell.context],
+            context=CONTEXTS[condition.name],
             seeds=preset.seeds,
             seed=integer(sequence(cell.seed, cell.task, Stream.NETWORKS)),
             epochs=preset.epochs,
             batch_size=preset.batch_size,
             hidden=preset.hidden,
             state_noise_rad=preset.state_noise_rad,
+            way_back_m=preset.way_back_m if condition.way_back else 0.0,
         )
-        condition = Condition(cell.context, cell.model)
         return Trained(cell.task, condition, model.trained_, perf_counter() - began)
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class DriveCell:
-    """Some runs of a simulated person who drives.
+    """A run of a simulated person who drives.
 
     Attributes:
         task: a name of `latentarm.studies.tasks.moved.TASKS`.
         driver: what they steer with.
-        person: a name of `PEOPLE`.
-        numbers: of the runs.
+        person: who they are.
+        number: of the run.
         seed: of the study.
     """
 
     task: str
     driver: Driver
     person: OperatorName
-    numbers: range
+    number: int
     seed: int
+
+    @property
+    def condition(self) -> Condition:
+        """What they steer with, and who they are."""
+        return self.driver.condition.by(self.person)
 
 
 @final
@@ -185,14 +187,14 @@ class Driven:
 
     Attributes:
         task: a name of `latentarm.studies.tasks.moved.TASKS`.
-        condition: what the person steered with.
-        runs: in order.
+        condition: see `DriveCell`.
+        run: how it went.
         drive_s: how long the simulation took, s.
     """
 
     task: str
     condition: Condition
-    runs: tuple[Run, ...]
+    run: Run
     drive_s: float
 
 
@@ -203,16 +205,14 @@ def drive(cell: DriveCell) -> Driven:
         UserError: the arm cannot be used, or the decoder is for another arm.
     """
     task = task_of(cell.task, Stream.RUNS)
-    runs: list[Run] = []
     with threadpool_limits(limits=1):
         began = perf_counter()
-        for number in cell.numbers:
-            choice = choice_of(task, number)
-            setup = TaskSetup(task, cell.driver.controller(task.robot, number), PEOPLE[cell.person])
-            # The same number gives the same scene and start to the demonstrator and in every condition.
-            trace = drive_task(setup, choice, generator(cell.seed, cell.task, Stream.RUNS, number))
-            runs.append(driven_run(task, number, trace))
-        return Driven(cell.task, cell.driver.condition, tuple(runs), perf_counter() - began)
+        setup = TaskSetup(task, cell.driver.controller(task.robot, cell.number), PEOPLE[cell.person])
+        # The same number gives the same scene and start to the demonstrator and in every condition.
+        rng = generator(cell.seed, cell.task, Stream.RUNS, cell.number)
+        trace = drive_task(setup, choice_of(task, cell.number), rng)
+        run = driven_run(task, cell.number, trace)
+        return Driven(cell.task, cell.condition, run, perf_counter() - began)
 
 
 def training_set(task: str, shown: Sequence[Shown]) -> Demonstrations:
@@ -225,16 +225,12 @@ def training_set(task: str, shown: Sequence[Shown]) -> Demonstrations:
     Raises:
         UserError: fewer than two succeeded, and a model needs one to learn from and one for validation.
     """
-    each = [one for part in shown for one in part.demonstrations]
-    succeeded = sum(one.progress.succeeded for one in each)
-    if succeeded < 2:
+    episodes = [one.episode for one in shown if one.episode is not None]
+    if len(episodes) < 2:
         raise UserError(
-            f"{succeeded} demonstrations of the task {task} succeeded, and a model needs two or more: take a"
-            " preset with more demonstrations."
+            f"{len(episodes)} demonstrations of the task {task} succeeded, and a model needs two or more:"
+            " take a preset with more demonstrations."
         )
-    return dataset_of(task_of(task, Stream.DEMONSTRATIONS), each)
-
-
-def blocks(count: int, size: int) -> list[range]:
-    """The numbers 0 to ``count``, in blocks for the cells of a grid."""
-    return [range(first, min(first + size, count)) for first in range(0, count, size)]
+    dataset = dataset_of(task_of(task, Stream.DEMONSTRATIONS), episodes, shown[0].objects)
+    validate(dataset, f"The demonstrations of the task {task}")
+    return dataset

@@ -1,15 +1,19 @@
 """How large the study is, what is driven with, and its streams of randomness."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import Final, final
+from typing import Final, cast, final
 
-from latentarm.operators.catalogue import OperatorName
+from latentarm.errors import UserError
+from latentarm.models.catalogue import DEFAULT_MODEL
+from latentarm.operators.catalogue import PEOPLE, OperatorName
+from latentarm.studies.tasks.runs import Condition
 
 CONTEXTS: Final[Mapping[str, tuple[str, ...]]] = {
     "joints": ("joints",),
     "joints objects": ("joints", "objects"),
+    "joints objects_in_tool": ("joints", "objects_in_tool"),
 }
 """What a decoder may see, by the name of the condition; the model's parameter ``context`` for each."""
 
@@ -21,10 +25,12 @@ class Preset:
 
     Attributes:
         name: what it is called on the command line.
-        runs: of each task, by the scripted demonstrator and in every condition.
+        runs: of each task by each person, with mode switching and with the default; by the scripted
+            demonstrator as many.
+        others: the same with everything else, at most.
         demonstrations: further runs of the demonstrator, those that succeed train the models; a fifth of them
             is for validation and decides which epoch is best.
-        models: kinds that are driven with.
+        models: kinds that are driven with, each without and with a way back.
         context: what their decoders see, a name of `CONTEXTS`.
         moved_contexts: the same, side by side, where things were moved.
         seeds: models of each kind, used in turn, so that no figure depends on one of them.
@@ -32,28 +38,52 @@ class Preset:
         batch_size: pairs per step.
         hidden: units of each hidden layer.
         state_noise_rad: SD of the noise on training states, rad.
-        person: who drives.
-        block: runs that one cell of the grid takes.
+        way_back_m: length of the way back, m.
+        people: who drives, names of `PEOPLE`.
+
+    Raises:
+        UserError: a person is unknown or named twice, nobody drives, or there are no runs.
     """
 
     name: str
     runs: int = 50
+    others: int = 20
     demonstrations: int = 60
-    models: tuple[str, ...] = ("cvae", "homogeneous")
-    context: str = "joints objects"
-    moved_contexts: tuple[str, ...] = ("joints", "joints objects")
+    models: tuple[str, ...] = ("cvae", "homogeneous", "low_turning")
+    context: str = "joints objects_in_tool"
+    moved_contexts: tuple[str, ...] = ("joints", "joints objects_in_tool")
     seeds: int = 3
     epochs: int = 60
     batch_size: int = 256
     hidden: tuple[int, ...] = (64, 64)
     state_noise_rad: float = 0.01
-    person: OperatorName = "planning"
-    block: int = 5
+    way_back_m: float = 0.06
+    people: tuple[OperatorName, ...] = ("planning", "greedy", "unsteady", "learning")
+
+    def __post_init__(self) -> None:
+        for person in self.people:
+            if person not in PEOPLE:
+                raise UserError(f"There is no simulated person {person!r}: choose from {', '.join(PEOPLE)}.")
+        if not self.people or len(set(self.people)) < len(self.people):
+            raise UserError("Name at least one simulated person, and none twice.")
+        if self.runs < 1:
+            raise UserError(f"The number of runs is {self.runs}: it must be at least 1.")
+
+    @property
+    def default(self) -> Condition:
+        """The default model with the way back."""
+        return Condition(self.context, DEFAULT_MODEL, way_back=True)
+
+    def asked(self, people: tuple[str, ...], runs: int | None) -> "Preset":
+        """The preset with other people and runs, where any are named."""
+        named = cast(tuple[OperatorName, ...], people)
+        return replace(self, people=named or self.people, runs=self.runs if runs is None else runs)
 
 
 PRESETS: Final[dict[str, Preset]] = {
     "paper": Preset("paper"),
-    "smoke": Preset("smoke", runs=2, demonstrations=6, seeds=1, epochs=6, block=1),
+    "small": Preset("small", runs=2, demonstrations=40, seeds=2),
+    "smoke": Preset("smoke", runs=2, demonstrations=6, seeds=1, epochs=6, people=("planning",)),
 }
 
 

@@ -34,22 +34,28 @@ class Measured:
         found: dict[Condition, list[Run]] = {}
         for one in self.shown:
             if (one.cell.task, one.cell.stream) == (task, Stream.RUNS):
-                found.setdefault(Condition(DEMONSTRATOR), []).extend(one.runs)
+                found.setdefault(Condition(DEMONSTRATOR), []).append(one.run)
         for one in self.driven:
             if one.task == task:
-                found.setdefault(one.condition, []).extend(one.runs)
+                found.setdefault(one.condition, []).append(one.run)
         return {
             condition: tuple(sorted(runs, key=lambda run: run.number)) for condition, runs in found.items()
         }
 
+    def fit_s(self, context: str) -> dict[Condition, float]:
+        """The decoders that see a context, and how long each trained for all tasks, s."""
+        found: dict[Condition, float] = {}
+        for one in self.trained:
+            if one.condition.name == context:
+                found[one.condition] = found.get(one.condition, 0.0) + one.fit_s
+        return found
+
     def demonstrated(self, task: str) -> tuple[int, float]:
         """How many demonstrations of a task trained the models, and how long these were together, s."""
         kept = [
-            run
+            one.run
             for one in self.shown
-            if (one.cell.task, one.cell.stream) == (task, Stream.DEMONSTRATIONS)
-            for run in one.runs
-            if run.success
+            if (one.cell.task, one.cell.stream) == (task, Stream.DEMONSTRATIONS) and one.run.success
         ]
         return len(kept), sum(run.time_s for run in kept)
 
@@ -60,14 +66,21 @@ def rows_of(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> list[Ro
         row
         for task, conditions in by_task.items()
         for condition, runs in conditions.items()
-        for row in _rows(Subject(STUDY, task, condition.model, condition.name), runs)
+        for row in _rows(Subject(STUDY, task, condition.model, condition.row), runs)
     ]
 
 
 def runs_as_json(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> list[dict[str, object]]:
     """Every run."""
     return [
-        {"task": task, "model": condition.model, "condition": condition.name, **run.as_json()}
+        {
+            "task": task,
+            "model": condition.model,
+            "condition": condition.name,
+            "way_back": condition.way_back,
+            "person": condition.person,
+            **run.as_json(),
+        }
         for task, conditions in by_task.items()
         for condition, runs in conditions.items()
         for run in runs

@@ -1,13 +1,14 @@
 """One run of a task with things, by the scripted demonstrator or by a simulated person who drives."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import isfinite
 from typing import Final, final
 
 from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
+from latentarm.controllers.learned_orientation import LearnedOrientationController, OrientationMap
 from latentarm.metrics.looks import look_of
 from latentarm.metrics.task_drives import TaskDrive
 from latentarm.models.decoder import Decoder
@@ -20,25 +21,49 @@ from latentarm.tasks.steps import TaskStep
 
 DEMONSTRATOR: Final = "demonstrator"
 SWITCHING: Final = "end_effector"
+ORIENTED: Final = "learned_orientation"
 
 
 @final
 @dataclass(frozen=True)
 class Condition:
-    """Who or what moves the arm.
+    """What moves the arm, and who steers it.
 
     Attributes:
-        name: `DEMONSTRATOR`, `SWITCHING`, or for a model what its decoder sees, a name of `CONTEXTS`.
+        name: `DEMONSTRATOR`, `SWITCHING`, `ORIENTED`, or for a model what its decoder sees, a name of
+            `CONTEXTS`.
         model: a name of `latentarm.models.catalogue.KINDS`, or None.
+        way_back: whether the model has a way back.
+        person: a simulated person by name; None for the demonstrator, and for what all people steer with.
     """
 
     name: str
     model: str | None = None
+    way_back: bool = False
+    person: str | None = None
+
+    def by(self, person: str | None) -> "Condition":
+        """The same with another person."""
+        return replace(self, person=person)
 
     @property
     def label(self) -> str:
-        """How tables and figures call it."""
-        return look_of(self.name).label if self.model is None else f"{look_of(self.model).label}, {self.name}"
+        """How tables and figures call what moves the arm."""
+        if self.model is None:
+            return look_of(self.name).label
+        return f"{look_of(self.model).label}{' + way back' if self.way_back else ''}, {self.name}"
+
+    @property
+    def row(self) -> str:
+        """The condition of a row, whose model stands beside it."""
+        return ", ".join(filter(None, (self.name, "way back" if self.way_back else "", self.person)))
+
+    @property
+    def folder(self) -> str:
+        """The name of its folder, among those of a task."""
+        return f"{self.model or ''}{'_way_back' if self.way_back else ''}_{self.name}".strip("_").replace(
+            " ", "_"
+        )
 
 
 @final
@@ -48,11 +73,13 @@ class Driver:
 
     Attributes:
         condition: what it is called.
-        decoders: of the models, which take turns; empty for mode switching.
+        decoders: of the models, which take turns.
+        orientation: of the tool, where the person only moves it. Without either they switch modes.
     """
 
     condition: Condition
     decoders: tuple[Decoder, ...] = ()
+    orientation: OrientationMap | None = None
 
     def controller(self, robot: Robot, number: int) -> Controller:
         """The controller of one run.
@@ -61,6 +88,8 @@ class Driver:
             robot: the arm.
             number: of the run.
         """
+        if self.orientation is not None:
+            return LearnedOrientationController(robot, self.orientation)
         if not self.decoders:
             return EndEffectorController(robot)
         return LatentController(self.decoders[number % len(self.decoders)])
@@ -110,7 +139,13 @@ def decoders_of(model: TrainedModel) -> tuple[Decoder, ...]:
 
 def kept_in(task: str, condition: Condition) -> str:
     """The folder of a condition's model, among those of the study's models."""
-    return f"{task}/{condition.model}_{condition.name.replace(' ', '_')}"
+    return f"{task}/{condition.folder}"
+
+
+def time_ratios(runs: Sequence[Run], beside: Sequence[Run]) -> list[float]:
+    """Times of runs, compared with others of the same scenes and starts, where both succeeded."""
+    others = {run.number: run.time_s for run in beside if run.success}
+    return [run.time_s / others[run.number] for run in runs if run.success and run.number in others]
 
 
 def choice_of(task: SceneTask, number: int) -> int:
@@ -146,14 +181,6 @@ def driven_run(task: SceneTask, number: int, trace: TaskTrace) -> Run:
         time_s=trace.figures.time_s,
         figures=trace.measured,
     )
-
-
-def through(runs: Sequence[Run]) -> list[float]:
-    """Share of the runs that did the first k steps, for k = 0, 1, ... up to all steps."""
-    most = max(len(run.steps) for run in runs)
-    return [
-        sum(run.done >= min(count, len(run.steps)) for run in runs) / len(runs) for count in range(most + 1)
-    ]
 
 
 def step_names(runs: Sequence[Run]) -> list[str]:

@@ -1,31 +1,54 @@
 """`latentarm reproduce tasks`: tasks with things in physics, shown and driven by simulated people."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from latentarm.metrics.looks import look_of
+from latentarm.runs.results_folder import package_versions
+from latentarm.runs.source import source_digest
 from latentarm.simulation.guide import GuidingHand
 from latentarm.simulation.task_drive import REARM_S, STUCK_S
+from latentarm.studies import fitting, streams
 from latentarm.studies.page import render_page
 from latentarm.studies.study import Grid, Report, Request, Study, again
+from latentarm.studies.tasks import cell as measuring
+from latentarm.studies.tasks import moved, orientation, runs
+from latentarm.studies.tasks import preset as presets
 from latentarm.studies.tasks.cell import (
     DriveCell,
     Shown,
     ShownCell,
     Trained,
     TrainingCell,
-    blocks,
     drive,
     show,
     train,
     training_set,
 )
-from latentarm.studies.tasks.figures import steps_figure
+from latentarm.studies.tasks.figures import success_figure
+from latentarm.studies.tasks.kept import (
+    KEEP_DRIVES,
+    KEEP_MODELS,
+    KEEP_ORIENTATIONS,
+    KEEP_SHOWN,
+    MODELS,
+    RUNS,
+)
 from latentarm.studies.tasks.moved import MOVED, TASKS, task_of
+from latentarm.studies.tasks.orientation import OrientationCell, Oriented, orient
 from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm.studies.tasks.rows import STUDY as NAME
 from latentarm.studies.tasks.rows import Measured, rows_of, runs_as_json
+from latentarm.studies.tasks.rule import Verdict, decide
 from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Driver, Run
-from latentarm.studies.tasks.tables import failure_table, measure_table, summary_tables
+from latentarm.studies.tasks.tables import (
+    failure_table,
+    measure_table,
+    success_table,
+    summary_tables,
+    time_table,
+)
 from latentarm.types import Row
 
 if TYPE_CHECKING:
@@ -34,30 +57,35 @@ if TYPE_CHECKING:
 
 def _measure(request: Request[Preset], grid: Grid) -> Measured:
     preset, seed = request.preset, request.seed
-    shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label)
+    shown = grid.run("Demonstrations", show, _shown_cells(request), _shown_label, KEEP_SHOWN)
+    sets = {task: training_set(task, _trains(shown, task)) for task in request.tasks}
     training = [
-        TrainingCell(task, model, context, demonstrations, preset, seed)
-        for task, demonstrations in (
-            (task, training_set(task, _trains(shown, task))) for task in request.tasks
-        )
+        TrainingCell(task, Condition(context, model, way_back), demonstrations, preset, seed)
+        for task, demonstrations in sets.items()
         for model in preset.models
         for context in (preset.moved_contexts if task in MOVED else (preset.context,))
+        for way_back in (False, True)
     ]
-    trained = grid.run("Models", train, training, lambda cell: f"{cell.task}, {cell.model}, {cell.context}")
-    driven = grid.run("Drives", drive, _drive_cells(request, trained), _drive_label)
+    trained = grid.run(
+        "Models", train, training, lambda cell: f"{cell.task}, {cell.condition.label}", KEEP_MODELS
+    )
+    orienting = [OrientationCell(task, demonstrations, preset, seed) for task, demonstrations in sets.items()]
+    oriented = grid.run("Orientations", orient, orienting, lambda cell: cell.task, KEEP_ORIENTATIONS)
+    cells = _drive_cells(request, (*oriented, *trained))
+    driven = grid.run("Drives", drive, cells, _drive_label, KEEP_DRIVES)
     return Measured(shown, trained, driven)
 
 
 def _shown_cells(request: Request[Preset]) -> list[ShownCell]:
     preset = request.preset
     return [
-        ShownCell(task, stream, numbers, request.seed)
+        ShownCell(task, stream, number, request.seed)
         for task in request.tasks
         for stream, count in (
             (Stream.DEMONSTRATIONS, preset.demonstrations),
             (Stream.RUNS, preset.runs),
         )
-        for numbers in blocks(count, preset.block)
+        for number in range(count)
     ]
 
 
@@ -65,43 +93,42 @@ def _trains(shown: Sequence[Shown], task: str) -> list[Shown]:
     return [one for one in shown if (one.cell.task, one.cell.stream) == (task, Stream.DEMONSTRATIONS)]
 
 
-def _drive_cells(request: Request[Preset], trained: Sequence[Trained]) -> list[DriveCell]:
+def _drive_cells(request: Request[Preset], learned: Sequence[Trained | Oriented]) -> list[DriveCell]:
+    """Number by number, so that a study that was stopped has as many runs of each condition."""
     preset = request.preset
     return [
-        DriveCell(task, driver, preset.person, numbers, request.seed)
+        DriveCell(task, driver, person, number, request.seed)
+        for number in range(preset.runs)
         for task in request.tasks
         for driver in (
             Driver(Condition(SWITCHING)),
-            *(one.driver for one in trained if one.task == task),
+            *(one.driver for one in learned if one.task == task),
         )
-        for numbers in blocks(preset.runs, preset.block)
+        if number < preset.others or driver.condition in (Condition(SWITCHING), preset.default)
+        for person in preset.people
     ]
 
 
 def _shown_label(cell: ShownCell) -> str:
-    return f"{cell.task}, {DEMONSTRATOR}, {cell.stream.name.lower()} {_span(cell.numbers)}"
+    return f"{cell.task}, {DEMONSTRATOR}, {cell.stream.name.lower()} {cell.number}"
 
 
 def _drive_label(cell: DriveCell) -> str:
-    return f"{cell.task}, {cell.driver.condition.label}, runs {_span(cell.numbers)}"
-
-
-def _span(numbers: range) -> str:
-    return f"{numbers[0]} to {numbers[-1]}"
+    return f"{cell.task}, {cell.driver.condition.label}, {cell.person}, run {cell.number}"
 
 
 def _report(request: Request[Preset], measured: Measured) -> Report:
     by_task = {task: measured.runs(task) for task in request.tasks}
+    verdict = decide(by_task, measured.fit_s(request.preset.context))
     rows = rows_of(by_task)
-    figures = {"steps": steps_figure(by_task)}
+    figures = {"success": success_figure(by_task)}
     return Report(
         rows=rows,
-        page=_page(request, measured, by_task, rows, figures),
+        page=_page(request, measured, by_task, rows, figures, verdict),
         figures=figures,
-        documents={"runs.json": runs_as_json(by_task)},
+        documents={"runs.json": runs_as_json(by_task), "verdict.json": verdict.as_json()},
         timings=_timings(measured),
-        tables=summary_tables(rows, by_task),
-        models={one.folder: one.model for one in measured.trained},
+        tables=[*summary_tables(rows, by_task), f"Default by the rule: {verdict.sentence}."],
     )
 
 
@@ -111,6 +138,7 @@ def _page(
     by_task: Mapping[str, Mapping[Condition, Sequence[Run]]],
     rows: Sequence[Row],
     figures: "Mapping[str, Figure]",
+    verdict: Verdict,
 ) -> str:
     tasks = {name: task_of(name, Stream.RUNS) for name in by_task}
     return render_page(
@@ -118,12 +146,18 @@ def _page(
         command=again(STUDY, request),
         preset=request.preset,
         figures=figures,
+        verdict=verdict,
         hand=GuidingHand(),
         stuck_s=STUCK_S,
         rearm_s=REARM_S,
         tasks=tasks,
         moved={name: MOVED[name].about for name in tasks if name in MOVED},
         demonstrated={name: measured.demonstrated(name) for name in tasks},
+        refused=[
+            f"{look_of(one.task).label} ({one.condition.label})" for one in measured.trained if one.refused
+        ],
+        success_tables={name: success_table(runs) for name, runs in by_task.items()},
+        time_tables={name: time_table(runs) for name, runs in by_task.items()},
         measure_tables={name: measure_table(rows, runs, name) for name, runs in by_task.items()},
         failure_tables={name: failure_table(runs) for name, runs in by_task.items()},
     )
@@ -133,7 +167,7 @@ def _timings(measured: Measured) -> dict[str, object]:
     """How long models were fitted and each condition was driven, s."""
     drives: dict[tuple[str, str], float] = {}
     for one in measured.driven:
-        place = one.task, one.condition.label
+        place = one.task, f"{one.condition.label}, {one.condition.person}"
         drives[place] = drives.get(place, 0.0) + one.drive_s
     return {
         "models": [
@@ -147,6 +181,15 @@ def _timings(measured: Measured) -> dict[str, object]:
     }
 
 
+def _depends_on(request: Request[Preset]) -> dict[str, object]:
+    """The code that measures a cell, so that a study does not go on with other code."""
+    modules = [
+        Path(module.__file__ or "")
+        for module in (measuring, fitting, moved, orientation, presets, runs, streams)
+    ]
+    return {"code": source_digest(modules), "versions": package_versions()}
+
+
 STUDY: Final = Study(
     name=NAME,
     command="reproduce tasks",
@@ -155,6 +198,9 @@ STUDY: Final = Study(
     simulated=("arms", "people", "things"),
     measure=_measure,
     report=_report,
-    figures=("steps",),
-    documents=("runs.json",),
+    figures=("success",),
+    documents=("runs.json", "verdict.json"),
+    depends_on=_depends_on,
+    kept=(RUNS, MODELS),
+    options=("people", "runs"),
 )

@@ -1,7 +1,8 @@
 """The study's tables: in Markdown for the page, and at a glance for a terminal."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from statistics import median
 from typing import Final
 
 from rich.box import SIMPLE_HEAD
@@ -11,7 +12,7 @@ from latentarm.metrics.looks import look_of
 from latentarm.metrics.measures import label_of, unit_of
 from latentarm.metrics.table import ABSENT, format_figure
 from latentarm.studies.page import markdown_table
-from latentarm.studies.tasks.runs import Condition, Run, step_names
+from latentarm.studies.tasks.runs import SWITCHING, Condition, Run, step_names, time_ratios
 from latentarm.types import Row
 
 SUCCESS: Final = "success_rate"
@@ -33,32 +34,74 @@ GLANCE: Final = ("steps_done", "time_s", "input_magnitude")
 """Measures in a terminal's table."""
 
 
+def success_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
+    """How many runs of one task succeeded: what moves the arm down, people across."""
+    return _by_person(runs, lambda condition: _succeeded(runs[condition]))
+
+
+def time_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
+    """Median time of the runs of one task that succeeded, s, and how it compares with mode switching.
+
+    Behind it stands the median ratio to the time of the same person's run by mode switching with the same
+    scene, over those of which both succeeded.
+    """
+
+    def text(condition: Condition) -> str:
+        times = [run.time_s for run in runs[condition] if run.success]
+        switched = Condition(SWITCHING).by(condition.person)
+        ratios = [] if condition == switched else time_ratios(runs[condition], runs.get(switched, ()))
+        beside = f" ({median(ratios):.2f})" if ratios else ""
+        return f"{median(times):.0f}{beside}" if times else ABSENT
+
+    return _by_person(runs, text)
+
+
+def _by_person(runs: Mapping[Condition, Sequence[Run]], text: Callable[[Condition], str]) -> str:
+    """A table of one text for each condition; the demonstrator is left out."""
+    driven = [condition for condition in runs if condition.person is not None]
+    people = dict.fromkeys(condition.person for condition in driven)
+    lines = [
+        [what.label, *(text(what.by(person)) if what.by(person) in runs else None for person in people)]
+        for what in dict.fromkeys(condition.by(None) for condition in driven)
+    ]
+    return markdown_table(["simulated", *map(str, people)], lines)
+
+
 def measure_table(rows: Sequence[Row], runs: Mapping[Condition, Sequence[Run]], task: str) -> str:
     """One task: conditions down, measures across; those that no condition has are left out."""
     found = _found(rows, task)
     measures = [name for name in SHOWN if any(name in of for of in found.values())]
-    lines = [[condition.label, *_line(found[condition], runs[condition], measures)] for condition in runs]
-    return markdown_table(["simulated", "succeeded", *map(_name, measures)], lines)
+    lines = [
+        [condition.label, condition.person, *_line(_of(found, condition), runs[condition], measures)]
+        for condition in runs
+    ]
+    return markdown_table(["simulated", "person", "succeeded", *map(_name, measures)], lines)
 
 
 def failure_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
     """Where the runs of one task ended that did not succeed, and why; empty where all succeeded.
 
-    Steps and reasons down, in the order of the steps; conditions across.
+    People, steps and reasons down, in the order of the steps; what moves the arm across.
     """
     names = step_names([run for all_of_them in runs.values() for run in all_of_them])
-    ends = {
-        condition: Counter((run.done, run.why) for run in of if not run.success)
-        for condition, of in runs.items()
-    }
-    places = sorted({place for counts in ends.values() for place in counts})
-    if not places:
+    ends = Counter(
+        (condition, run.done, run.why) for condition, of in runs.items() for run in of if not run.success
+    )
+    if not ends:
         return ""
+    people = list(dict.fromkeys(condition.person for condition in runs))
+    moves = dict.fromkeys(condition.by(None) for condition in runs)
+    places = sorted({(people.index(condition.person), done, why) for condition, done, why in ends})
     lines = [
-        [_step(names, done), why, *(str(ends[condition][done, why] or ABSENT) for condition in runs)]
-        for done, why in places
+        [
+            people[who],
+            _step(names, done),
+            why,
+            *(str(ends[what.by(people[who]), done, why] or ABSENT) for what in moves),
+        ]
+        for who, done, why in places
     ]
-    return markdown_table(["ended in step", "why", *(condition.label for condition in runs)], lines)
+    return markdown_table(["person", "ended in step", "why", *(what.label for what in moves)], lines)
 
 
 def summary_tables(
@@ -75,23 +118,37 @@ def _summary(rows: Sequence[Row], runs: Mapping[Condition, Sequence[Run]], task:
     for name in ("succeeded", *map(_name, GLANCE)):
         table.add_column(name, justify="right")
     for condition, of in runs.items():
-        table.add_row(condition.label, *_line(found[condition], of, GLANCE))
+        who = "" if condition.person is None else f", {condition.person}"
+        table.add_row(condition.label + who, *_line(_of(found, condition), of, GLANCE))
     return table
 
 
-def _found(rows: Sequence[Row], task: str) -> dict[Condition, dict[str, Row]]:
+Found = Mapping[tuple[str | None, str | None], Mapping[str, Row]]
+
+
+def _found(rows: Sequence[Row], task: str) -> Found:
     """The rows of a task that have a figure, by condition and measure."""
-    found: dict[Condition, dict[str, Row]] = {}
+    found: dict[tuple[str | None, str | None], dict[str, Row]] = {}
     for row in rows:
         if row.task == task and row.mean is not None:
-            found.setdefault(Condition(row.condition or "", row.model), {})[row.measure] = row
+            found.setdefault((row.model, row.condition), {})[row.measure] = row
     return found
 
 
+def _of(found: Found, condition: Condition) -> Mapping[str, Row]:
+    return found[condition.model, condition.row]
+
+
 def _line(found: Mapping[str, Row], runs: Sequence[Run], measures: Sequence[str]) -> list[str]:
-    succeeded = f"{sum(run.success for run in runs)} of {len(runs)}"
     figures = (found.get(name) for name in measures)
-    return [succeeded, *(ABSENT if row is None else format_figure(row.mean, row.sd) for row in figures)]
+    return [
+        _succeeded(runs),
+        *(ABSENT if row is None else format_figure(row.mean, row.sd) for row in figures),
+    ]
+
+
+def _succeeded(runs: Sequence[Run]) -> str:
+    return f"{sum(run.success for run in runs)} of {len(runs)}"
 
 
 def _name(measure: str) -> str:
