@@ -124,11 +124,15 @@ def test_they_find_the_mode_that_leads_there_by_its_name():
     assert np.linalg.norm(end.position - away(0.0, 0.0, -0.12, 0.0, 0.0, 0.0).position) < 0.03
 
 
-def test_a_stick_of_one_axis_has_two_directions(planar, any_axes):
+def test_one_axis_has_two_directions_and_a_stick_with_a_lever_those_of_both():
     assert full_pushes(1).tolist() == [[1.0], [-1.0]]
+    np.testing.assert_array_equal(full_pushes(3)[:DIRECTIONS, :2], full_pushes(2))
+    assert full_pushes(3)[DIRECTIONS:].tolist() == [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]
+
+
+def test_any_number_of_axes_leads_nearer(planar, any_axes):
     target = planar.chain.forward(planar.home + 0.4)
-    given, _, end = driven(PEOPLE["reading"], planar, any_axes, target, 200)
-    assert given.shape[1] == any_axes.input_dim
+    _, _, end = driven(PEOPLE["reading"], planar, any_axes, target, 200)
     before = np.linalg.norm(planar.chain.forward(planar.home).position - target.position)
     assert np.linalg.norm(end.position - target.position) < before
 

@@ -17,13 +17,13 @@ STRETCHES: Final = 6
 
 
 def full_pushes(axes: int) -> FloatArray:
-    """A full push in every direction of the ring, (K, axes): for one axis right and left alone.
+    """A full push in every direction of the ring, (K, axes), and after these both ways along other axes.
 
-    A stick of more than two axes is one of two axes here, and the others rest.
+    A stick of one axis has no ring. Of more axes, the first two are a stick and each other one a lever.
     """
     if axes == 1:
         return np.array([[1.0], [-1.0]])
-    pushes = np.zeros((DIRECTIONS, axes))
     angle = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
-    pushes[:, 0], pushes[:, 1] = np.cos(angle), np.sin(angle)
-    return pushes.round(12)
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1).round(12) @ np.eye(2, axes)
+    levers = np.eye(axes)[2:]
+    return np.concatenate([ring, levers, -levers])

@@ -91,7 +91,7 @@ class GhostPaths:
         self._normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
         self._offsets = np.array([plane.normal @ plane.point for plane in planes])
         self._goals = np.array([goal.configuration for goal in task.goals])
-        self._pushes = full_pushes(controller.input_dim)
+        self._pushes = full_pushes(controller.input_dim)[:DIRECTIONS]
         self._way: _Way | None = None
         self._whole: tuple[Meaning, Ghosts] | None = None
 
