@@ -143,11 +143,9 @@ def test_help_shows_in_the_state(site):
 
 def test_ghosts_are_sent_again_only_when_they_have_moved(site):
     with site.page() as page:
-        page.wait(lambda state: state["ghosts"])
-        time.sleep(0.3)  # those of the mode before are gone
-        assert {name: len(path) for name, path in page.state["ghosts"].items()} == dict.fromkeys(
-            ("up", "down", "left", "right"), 6
-        )
+        page.wait(lambda state: state["ghosts"] and state["ghosts"]["ring"])
+        paths = dict.fromkeys(("up", "down", "left", "right"), 6)
+        assert {name: len(path) for name, path in page.state["ghosts"].items()} == {**paths, "ring": 32}
         with site.raw() as socket:
             socket.send(HELLO)
             heard = [json.loads(socket.recv()) for _ in range(15)]

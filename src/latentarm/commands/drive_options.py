@@ -63,9 +63,9 @@ class DriveOptions:
         OperatorName | None,
         arg(
             help="Simulated operator: greedy knows what each input does and looks one step ahead (equation"
-            " 24); learning has only a linear guess of that, learned while driving; unsteady has a reaction"
-            " time and tremor; planning looks up to 4 s ahead where one step leads no nearer. By default"
-            " planning on held-out episodes, else greedy."
+            " 24); learning has only a linear guess of that, learned while driving; reading reads it off the"
+            " page's ring; unsteady has a reaction time and tremor; planning looks up to 4 s ahead where one"
+            " step leads no nearer. By default planning on held-out episodes, else greedy."
         ),
     ] = None
     beta: Annotated[float, arg(help="Rationality of the simulated operator (equation 24), 1/m².")] = 2000.0

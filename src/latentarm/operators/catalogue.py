@@ -2,20 +2,23 @@
 
 from typing import Final
 
-from latentarm.operators.hand import UNSTEADY
+from latentarm.operators.hand import REACTION_S, UNSTEADY, HandConfig
 from latentarm.operators.linear_guess import LinearGuessConfig
 from latentarm.operators.names import OperatorName
 from latentarm.operators.person import Person
 from latentarm.operators.planning import PlanningConfig
+from latentarm.operators.ring_reading import RingReadingConfig
 
 PEOPLE: Final[dict[OperatorName, Person]] = {
     "greedy": Person(),
     "learning": Person(imagines=LinearGuessConfig()),
+    "reading": Person(imagines=RingReadingConfig(), hand=HandConfig(reaction_s=REACTION_S)),
     "unsteady": Person(hand=UNSTEADY),
     "planning": Person(plans=PlanningConfig()),
 }
 """``greedy`` knows exactly what each input does and looks one step ahead (equation 24). ``learning`` decides
-alike, but has only a linear guess of that, learned while driving. ``unsteady`` is greedy with a reaction time
+alike, but has only a linear guess of that, learned while driving. ``reading`` knows no more at first, and
+reads it off the ring that the page draws, late and with errors. ``unsteady`` is greedy with a reaction time
 and tremor. ``planning`` is greedy and plans up to 4 s ahead where one step leads no nearer."""
 
 

@@ -51,9 +51,12 @@ class HandConfig:
             raise UserError(f"A variation of pushes must be zero or more, and finite, not {self.variation}.")
 
 
-UNSTEADY: Final = HandConfig(reaction_s=0.23, tremor=0.1)
-"""A reaction time of 0.23 s: the mean of 1469 people to a visual stimulus is 231 ms (Woods et al., Front.
-Hum. Neurosci. 9:131, 2015). A tremor of 4 to 12 Hz, the band of essential tremor (Bhatia et al., Mov. Disord.
+REACTION_S: Final = 0.23
+"""Reaction time, s: the mean of 1469 people to a visual stimulus is 231 ms (Woods et al., Front. Hum.
+Neurosci. 9:131, 2015)."""
+
+UNSTEADY: Final = HandConfig(reaction_s=REACTION_S, tremor=0.1)
+"""A usual reaction time. A tremor of 4 to 12 Hz, the band of essential tremor (Bhatia et al., Mov. Disord.
 33:75, 2018). Its size, 10 % of full deflection, is an assumption."""
 
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.rotations import pose_error
+from latentarm.operators.carried import carried
 from latentarm.operators.foresight import Foresight
 from latentarm.operators.imagination import Imagination
 from latentarm.operators.moment import Moment
@@ -167,12 +167,7 @@ class LinearGuess(Imagination):
             horizon_s: float,
         ) -> Pose:
             twist = np.stack([inputs @ self._guess(mode, inputs.shape[1], rng).T for mode in modes])
-            now = self._chain.forward(context.state)
-            turn = Rotation.from_rotvec(horizon_s * twist[..., 3:].reshape(-1, 3)).as_matrix()
-            return Pose(
-                position=now.position + horizon_s * twist[..., :3],
-                rotation=turn.reshape(*twist.shape[:-1], 3, 3) @ now.rotation,
-            )
+            return carried(self._chain.forward(context.state), horizon_s * twist)
 
         return expected
 

@@ -2,4 +2,4 @@
 
 from typing import Literal
 
-OperatorName = Literal["greedy", "learning", "unsteady", "planning"]
+OperatorName = Literal["greedy", "learning", "reading", "unsteady", "planning"]

@@ -21,6 +21,7 @@ from latentarm.operators.operator import Operator
 from latentarm.operators.own_speed import OwnSpeed
 from latentarm.operators.page_rates import PageRates, Screen, Wire
 from latentarm.operators.planning import Planning, PlanningConfig
+from latentarm.operators.ring_reading import RingDecision, RingReading, RingReadingConfig
 from latentarm.robots.robot import Robot
 from latentarm.types import BoolArray, Context, Input, Pose
 
@@ -32,8 +33,8 @@ class Person:
 
     Attributes:
         decides: how they think of one step (equation 24).
-        imagines: where they expect an input to lead: a foresight that never changes, or how they learn a
-            linear guess; None knows the arm and its decoder exactly.
+        imagines: where they expect an input to lead: a foresight that never changes, how they learn a linear
+            guess, or how they read the page's ring; None knows the arm and its decoder exactly.
         plans: how far they plan where one step leads no nearer; None never plans.
         hand: how late and how unsteady their hand is.
         speed: how fast they like to go.
@@ -46,7 +47,7 @@ class Person:
     """
 
     decides: BoltzmannConfig = field(default_factory=BoltzmannConfig)
-    imagines: Foresight | LinearGuessConfig | None = None
+    imagines: Foresight | LinearGuessConfig | RingReadingConfig | None = None
     plans: PlanningConfig | None = None
     hand: HandConfig = field(default_factory=HandConfig)
     speed: OwnSpeed = field(default_factory=OwnSpeed)
@@ -70,7 +71,8 @@ class SimulatedPerson(Operator):
         person: who drives it.
         period_s: time between calls of `act`, s.
         limits: what the loop makes of inputs. They mean no push that it takes for rest, but a tremor may make
-            one so; of its limits on speed only those people know who know the arm.
+            one so; of its limits on speed only those people know who know the arm, or are shown where
+            it leads.
 
     Raises:
         UserError: the period is not positive and finite, or too long for the hand's tremor.
@@ -126,12 +128,16 @@ class SimulatedPerson(Operator):
 def _imagination(robot: Robot, person: Person, period_s: float, limits: LoopLimits) -> Imagination:
     if isinstance(person.imagines, LinearGuessConfig):
         return LinearGuess(robot.chain, person.imagines, period_s)
+    if isinstance(person.imagines, RingReadingConfig):
+        return RingReading(robot.chain, person.imagines, limits)
     return Settled(person.imagines or KnowsTheArm(robot.chain, limits))
 
 
 def _decision(robot: Robot, person: Person, period_s: float, limits: LoopLimits) -> Decision:
-    if person.plans is None:
-        decision: Decision = OneStep(person.decides, period_s, limits.dead_zone)
+    if isinstance(person.imagines, RingReadingConfig):
+        decision: Decision = RingDecision(person.decides, person.imagines, period_s, limits.dead_zone)
+    elif person.plans is None:
+        decision = OneStep(person.decides, period_s, limits.dead_zone)
     else:
         decision = Planning(robot, person.decides, person.plans, period_s, limits)
     return decision if person.lapses is None else Lapsing(decision, person.lapses, period_s)

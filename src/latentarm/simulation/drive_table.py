@@ -30,7 +30,7 @@ COLUMNS: Final[dict[str, str]] = {
     "repeat": "number of the drive to this goal, from 0",
     "seed": "seed of the command; start and inputs depend on seed, goal and repeat alone",
     "controller": "latent, latent_assist, end_effector, two_sticks or retargeting",
-    "operator": "greedy, learning, unsteady or planning; all are simulated",
+    "operator": "greedy, learning, reading, unsteady or planning; all are simulated",
     "success": "whether all waypoints were reached",
     "ended_because": "reached, time_limit, operator_stuck, held_back or safety_stop",
     "ended_in_words": "the same as a sentence",

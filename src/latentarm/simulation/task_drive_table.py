@@ -13,7 +13,7 @@ COLUMNS: Final[dict[str, str]] = {
     "repeat": "number of the drive for this choice, from 0",
     "seed": "seed of the command; things, start and inputs depend on seed, choice and repeat alone",
     "controller": "latent, latent_assist, end_effector, two_sticks or retargeting",
-    "operator": "greedy, learning, unsteady or planning; all are simulated",
+    "operator": "greedy, learning, reading, unsteady or planning; all are simulated",
     "success": "whether all steps were done and nothing went wrong",
     "steps_done": "share of the steps that were done, 0 to 1",
     "not_done": "the first step that was not done, in words",

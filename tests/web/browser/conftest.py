@@ -209,7 +209,8 @@ class Arm:
                 elif message["type"] == "learning":
                     self.learning = message
                 elif message["type"] == "state":
-                    self.ghosts = message["ghosts"] or self.ghosts
+                    if message["ghosts"] and message["ghosts"].pop("ring"):
+                        self.ghosts = message["ghosts"]
                     self.things = message["things"] or self.things
                     self.state = message
 

@@ -12,7 +12,8 @@ import { deflectionWords } from "#pages/inputs/stick.js";
 import { NO_PROFILE, Settings } from "#pages/settings/settings.js";
 import { motionWords } from "#pages/views/directions.js";
 import { isLikeliest } from "#pages/views/likeliest.js";
-import { personalPaths } from "#pages/views/predictions.js";
+import { directionColour } from "#pages/views/colours.js";
+import { personalPaths, personalRing } from "#pages/views/predictions.js";
 import { FakeElement, newBrowser, stateOf, welcomeOf } from "./browser.js";
 
 beforeEach(newBrowser);
@@ -133,6 +134,42 @@ test("a direction that a one-axis run does not have has no path", () => {
 
 test("nothing is predicted before the server has", () => {
   assert.deepEqual(personalPaths(null, [0, 0, 0], (x, y) => [x, y]), { up: null, down: null, left: null, right: null });
+});
+
+/** A ring on which the tool goes where the stick points, 8 directions of it. */
+const RING = Array.from({ length: 8 }, (_, index) => [Math.cos((index * Math.PI) / 4), Math.sin((index * Math.PI) / 4), 0, 1, 0, 0, 0]);
+const leads = (ring) => ring.map(([x, y]) => Math.round(Math.atan2(y, x) / (Math.PI / 4)));
+
+test("the ring goes round the person's own stick", () => {
+  const tool = [0, 0, 0];
+  const ring = (shaped) => leads(personalRing({ ring: RING }, tool, shaped));
+  assert.deepEqual(ring((x, y) => [x, y]), [0, 1, 2, 3, 4, -3, -2, -1]);
+  assert.deepEqual(ring((x, y) => [y, x]), [2, 1, 0, -1, -2, -3, 4, 3]);
+  // Straight lines: what is up for the person is along the base frame's first axis.
+  assert.deepEqual(ring((x, y) => [y, -x]), [-2, -1, 0, 1, 2, 3, 4, -3]);
+});
+
+test("the ring of a person with half the sensitivity is half as wide, about the tool", () => {
+  const ring = personalRing({ ring: RING }, [1, 0, 0], (x, y) => [x / 2, y / 2]);
+  assert.deepEqual(ring[0], [1, 0, 0, 1, 0, 0, 0]);
+  assert.deepEqual(ring[4], [0, RING[4][1] / 2, 0, 1, 0, 0, 0]);
+});
+
+test("there is no ring for a stick of one axis, and none before all of it is known", () => {
+  assert.deepEqual(personalRing({ ring: RING }, [0, 0, 0], (x) => [x]), []);
+  const unknown = { up: [], down: [], left: [], right: [], ring: [] };
+  assert.deepEqual(personalRing(unknown, [0, 0, 0], (x, y) => [x, y]), []);
+  assert.deepEqual(personalPaths(unknown, [0, 0, 0], (x, y) => [x, y]), { up: null, down: null, left: null, right: null });
+});
+
+test("a direction of the stick has the colour of its arrow, or one between those of its two neighbours", () => {
+  const mix = (from, to, percent) => `color-mix(in oklch, var(--ghost-${from}), var(--ghost-${to}) ${percent}%)`;
+  const quarters = [["right", "up"], ["up", "left"], ["left", "down"], ["down", "right"]];
+  quarters.forEach(([from, to], quarter) => {
+    for (const percent of [0, 12.5, 50, 87.5]) {
+      assert.equal(directionColour((quarter + percent / 100) / 4), mix(from, to, percent));
+    }
+  });
 });
 
 /** What is asked of the server where the person's settings name an alignment. */

@@ -13,6 +13,7 @@ from latentarm.control.clock import Clock
 from latentarm.control.loop import ControlLoop
 from latentarm.control.safety.straight_way import StraightWay
 from latentarm.control.safety.zones import zone_of_filter
+from latentarm.control.stick_ring import STRETCHES
 from latentarm.types import StepRecord, Stop
 from latentarm.web.arm_process.drive_setup import PERIOD_S, DriveSetup
 from latentarm.web.arm_process.episodes import Episodes
@@ -156,7 +157,7 @@ class Drive:
             See `change`.
         """
         # The loop begins anew, and would begin in the first mode.
-        self._loop.run(ticks, self._setup.mode_index(self._steering.mode, self._steering.axes))
+        self._loop.run(ticks, self._mode_index)
         return self.change
 
     def _observe(self, record: StepRecord) -> None:
@@ -278,7 +279,7 @@ class Drive:
             self._neutral.demand()
         self._way_back.end()
         self._setup.help.choose(self._steering.help_now)
-        self._step.choose_mode(self._setup.mode_index(mode, self._steering.axes))
+        self._step.choose_mode(self._mode_index)
 
     def _choose_help(self, level: HelpLevel) -> None:
         """A level for now where latent actions are driven, and else for when they will be."""
@@ -341,18 +342,22 @@ class Drive:
                 self._loop.enable()
 
     def _look(self, record: StepRecord) -> None:
-        """Deferrable work: ghosts, one direction a tick, and the loop's statistics."""
+        """Deferrable work: ghosts, one stretch of all directions a tick, and the loop's statistics."""
         steering = self._steering
         phase = steering.tick % _LOOK_EVERY
-        if phase < 4:
+        if phase < STRETCHES:
             # Without a reading nobody knows the gripper, which the decoder may look at.
             if not math.isnan(record.state[0]):
-                mode = self._setup.mode_index(steering.mode, steering.axes)
-                self._ghosts.look(phase, self._step.context(self._observed.q), mode)
+                self._ghosts.look(self._step.context(self._observed.q), self._mode_index)
         elif steering.tick % _STATISTICS_EVERY == _LOOK_EVERY - 1:
             statistics = self._loop.statistics()
             self._late_share = 1.0 - statistics.met_share
             self._late_p99_ms = 1000.0 * statistics.p99_s
+
+    @property
+    def _mode_index(self) -> int:
+        """Which of the controller's modes the person has chosen."""
+        return self._setup.mode_index(self._steering.mode, self._steering.axes)
 
     def _phase(self) -> Phase:
         at_rest = self._step.at_rest
@@ -410,7 +415,7 @@ class Drive:
             gripper=self._observed.gripper,
             task=self._run.state,
             things=self._whereabouts.look(self._steering.tick),
-            ghosts=self._ghosts.newest,
+            ghosts=self._ghosts.newest(self._mode_index),
             belief=tuple(record.belief.tolist()),
             alpha=record.alpha,
             bound_rad=None if math.isnan(record.bound_rad) else record.bound_rad,

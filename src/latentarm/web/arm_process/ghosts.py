@@ -1,6 +1,6 @@
 """What each direction of the stick would do now: the tool's path over the next second."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
@@ -8,27 +8,64 @@ import numpy as np
 from latentarm.assistance.blending import assistive_action, blend
 from latentarm.control.controller import Controller
 from latentarm.control.safety.config import SafetyConfig
+from latentarm.control.stick_ring import AHEAD_S, DIRECTIONS, STRETCHES, full_pushes
 from latentarm.kinematics.obstacles import HalfSpace
+from latentarm.kinematics.pose_rows import stored_rows
 from latentarm.tasks.place import Place
-from latentarm.types import Context, FloatArray
+from latentarm.types import BoolArray, Context, FloatArray
 from latentarm.web.arm_process.help import Help
-from latentarm.web.protocol.report import Ghosts, Point
+from latentarm.web.protocol.orders import HelpLevel
+from latentarm.web.protocol.report import NO_GHOSTS, Ghosts
 
-AHEAD_S: Final = 1.0
-POINTS: Final = 6
-
-_DIRECTIONS: Final = {"up": (1, 1.0), "down": (1, -1.0), "left": (0, -1.0), "right": (0, 1.0)}
-"""Axis and sign of the input."""
+_MAIN: Final = {name: DIRECTIONS * turn // 4 for turn, name in enumerate(("right", "up", "left", "down"))}
+"""Index of the four directions whose whole paths are shown."""
 
 _SAME_M: Final = 1e-9
+_STRETCH_S: Final = AHEAD_S / STRETCHES
+
+
+@final
+@dataclass(frozen=True)
+class Meaning:
+    """What a push of the stick means.
+
+    Attributes:
+        mode: index of the controller's mode.
+        help: how much the robot helps.
+    """
+
+    mode: int
+    help: HelpLevel
+
+
+@final
+@dataclass(eq=False)
+class _Way:
+    """How far the arm has come, in imagination, along every direction.
+
+    Attributes:
+        meaning: of a push.
+        context: of the moment at which it began.
+        q: (K, n), joint positions now, rad.
+        transforms: (K, n, 4, 4), of the links now.
+        heights: (K, capsules, planes), see `GhostPaths._heights`, m.
+        points: where the tool was after each stretch so far, (K, 3), m.
+    """
+
+    meaning: Meaning
+    context: Context
+    q: FloatArray
+    transforms: FloatArray
+    heights: FloatArray
+    points: list[FloatArray]
 
 
 @final
 class GhostPaths:
-    """Looks ahead along the four full deflections, one direction at a time.
+    """Looks ahead along full deflections in every direction at once, one stretch of the way at a time.
 
     The look ahead holds the deflection and the belief, integrates what the controller and the robot's help
-    want in as many steps as there are points, and keeps the limits of joints, speed and of the planes
+    want in as many steps as there are stretches, and keeps the limits of joints, speed and of the planes
     (table, walls) that the arm must not pass. It leaves out ramps, zones, and obstacles that are not planes.
     It is for display only; the safety filters decide.
 
@@ -53,73 +90,78 @@ class GhostPaths:
         planes = [one for one in limits.obstacles if isinstance(one, HalfSpace)]
         self._normals = np.array([plane.normal for plane in planes]).reshape(-1, 3)
         self._offsets = np.array([plane.normal @ plane.point for plane in planes])
-        self._no_heights = np.zeros((0, 0))
         self._goals = np.array([goal.configuration for goal in task.goals])
-        self._found: dict[str, tuple[Point, ...]] = {}
-        self._whole: Ghosts | None = None
+        self._pushes = full_pushes(controller.input_dim)[:DIRECTIONS]
+        self._way: _Way | None = None
+        self._whole: tuple[Meaning, Ghosts] | None = None
 
-    @property
-    def newest(self) -> Ghosts | None:
-        """All four directions, or None until each has been computed once."""
-        return self._whole
-
-    def look(self, direction: int, context: Context, mode: int) -> None:
-        """Look along one direction; with the last of the four, `newest` is renewed.
+    def newest(self, mode: int) -> Ghosts:
+        """Every direction, or none until all have been computed for what a push means now.
 
         Args:
-            direction: 0 to 3.
-            context: of this moment.
             mode: index of the controller's mode.
         """
-        name, (axis, sign) = list(_DIRECTIONS.items())[direction]
-        u = np.zeros(self._controller.input_dim)
-        u[axis] = sign
-        self._found[name] = self._path(u, context, mode)
-        if direction == len(_DIRECTIONS) - 1 and len(self._found) == len(_DIRECTIONS):
-            self._whole = Ghosts(**self._found)
-            self._found = {}
+        if self._whole is None or self._whole[0] != Meaning(mode, self._help.level):
+            return NO_GHOSTS
+        return self._whole[1]
 
-    def _path(self, u: FloatArray, context: Context, mode: int) -> tuple[Point, ...]:
-        dt_s = AHEAD_S / POINTS
-        q = context.state
+    def look(self, context: Context, mode: int) -> None:
+        """Look along the next stretch; after the last one, `newest` is renewed.
+
+        Args:
+            context: of this moment; with the first stretch it is kept for the others.
+            mode: index of the controller's mode.
+        """
+        meaning = Meaning(mode, self._help.level)
+        way = self._way
+        if way is None or way.meaning != meaning:
+            way = self._way = self._begun(meaning, context)
+        tool = self._chain.tool_pose(way.transforms).position
+        here = replace(way.context, state=way.q)
+        reached, transforms = self._moved(way.q, tool, self._wanted(here, mode))
+        heights = self._heights(transforms)
+        lower: BoolArray = (heights < self._clearance) & (heights < way.heights - _SAME_M)
+        free: BoolArray = ~np.logical_or.reduce(lower, axis=(1, 2))
+        way.q = np.where(free[:, None], reached, way.q)
+        way.transforms = np.where(free[:, None, None, None], transforms, way.transforms)
+        way.heights = np.where(free[:, None, None], heights, way.heights)
+        pose = self._chain.tool_pose(way.transforms)
+        way.points.append(pose.position)
+        if len(way.points) == STRETCHES:
+            paths = np.stack(way.points, axis=1)
+            rows = {"ring": stored_rows(pose)} | {name: paths[index] for name, index in _MAIN.items()}
+            found = {name: values.round(4).tolist() for name, values in rows.items()}
+            self._whole = meaning, Ghosts.model_validate(found, strict=False)
+            self._way = None
+
+    def _begun(self, meaning: Meaning, context: Context) -> _Way:
+        q = np.tile(context.state, (len(self._pushes), 1))
         transforms = self._chain.link_transforms(q)
-        at, heights = self._chain.tool_pose(transforms).position, self._heights(transforms)
-        points: list[Point] = []
-        for _ in range(POINTS):
-            wanted = self._wanted(u, replace(context, state=q), mode)
-            reached, transforms = self._moved(q, at, wanted, dt_s)
-            heights_there = self._heights(transforms)
-            if not ((heights_there < self._clearance) & (heights_there < heights - _SAME_M)).any():
-                q, at, heights = reached, self._chain.tool_pose(transforms).position, heights_there
-            points.append((round(float(at[0]), 4), round(float(at[1]), 4), round(float(at[2]), 4)))
-        return tuple(points)
+        return _Way(meaning, context, q, transforms, self._heights(transforms), [])
 
-    def _wanted(self, u: FloatArray, context: Context, mode: int) -> FloatArray:
+    def _wanted(self, context: Context, mode: int) -> FloatArray:
+        """Joint velocities (K, n), rad/s."""
         controller, help_ = self._controller, self._help
-        action = controller.action(controller.latent(u, context, mode), context, mode)
+        action = controller.action(controller.latent(self._pushes, context, mode), context, mode)
         if not help_.on:
             return action
-        alpha = float(help_.alpha(u, context.belief))
+        alpha = help_.alpha(self._pushes, context.belief)
         return blend(action, assistive_action(context.state, context.belief, self._goals), alpha)
 
-    def _moved(
-        self, q: FloatArray, at: FloatArray, wanted: FloatArray, dt_s: float
-    ) -> tuple[FloatArray, FloatArray]:
-        """Joints, (n,), and links, (n, 4, 4), after one step from ``q``, where the tool is ``at``."""
-        velocity = wanted / max(1.0, float((np.abs(wanted) / self._joint_speed).max()))
-        reached = np.clip(q + velocity * dt_s, self._lower, self._upper)
+    def _moved(self, q: FloatArray, at: FloatArray, wanted: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Joints, (K, n), and links, (K, n, 4, 4), after one stretch from ``q``, where the tool is ``at``."""
+        excess = (np.abs(wanted) / self._joint_speed).max(axis=1, keepdims=True)
+        reached = np.clip(q + wanted / np.maximum(excess, 1.0) * _STRETCH_S, self._lower, self._upper)
         transforms = self._chain.link_transforms(reached)
-        way = float(np.linalg.norm(self._chain.tool_pose(transforms).position - at))
-        share = self._tool_speed * dt_s / max(way, _SAME_M)
-        if share >= 1.0:
+        way = np.linalg.norm(self._chain.tool_pose(transforms).position - at, axis=1, keepdims=True)
+        share = np.minimum(self._tool_speed * _STRETCH_S / np.maximum(way, _SAME_M), 1.0)
+        if (share == 1.0).all():
             return reached, transforms
         reached = q + share * (reached - q)
         return reached, self._chain.link_transforms(reached)
 
     def _heights(self, transforms: FloatArray) -> FloatArray:
-        """(capsules, planes), how far each part of the arm is above each plane, m."""
-        if not len(self._normals):
-            return self._no_heights
+        """(K, capsules, planes), how far each part of the arm is above each plane, m."""
         starts, ends = self._capsules.placed(self._chain, transforms)
         lower = np.minimum(starts @ self._normals.T, ends @ self._normals.T)
         return lower - self._offsets - self._capsules.radius[:, None]

@@ -1,6 +1,6 @@
 """What the control process tells the page's server: a report in every tick."""
 
-from typing import Literal, final
+from typing import Final, Literal, final
 
 from pydantic import ValidationError
 
@@ -20,12 +20,23 @@ PoseRow = tuple[float, float, float, float, float, float, float]
 
 @final
 class Ghosts(Message):
-    """Where each full deflection would take the tool over the next second: points, m."""
+    """Where each full deflection would take the tool over the next second: all of it, or nothing at all.
+
+    Attributes:
+        up: points of the path, m; empty where nothing is known yet, as are all the others then.
+        ring: the tool at the end of that second, for directions all round the stick, counter-clockwise from
+            the right.
+    """
 
     up: tuple[Point, ...]
     down: tuple[Point, ...]
     left: tuple[Point, ...]
     right: tuple[Point, ...]
+    ring: tuple[PoseRow, ...]
+
+
+NO_GHOSTS: Final = Ghosts(up=(), down=(), left=(), right=(), ring=())
+"""Nothing is known yet of what the stick does now."""
 
 
 @final
@@ -186,7 +197,8 @@ class ArmState(Message):
         gripper: as it was last read; None if the arm has no gripper, or before the first reading.
         task: how far it has come.
         things: where they are; None in an empty scene, and where they are not told again.
-        ghosts: where each direction would take the tool now; a `State` has None while the last ones hold.
+        ghosts: where each direction would take the tool now; None, only in a `State`, while the last
+            ones hold.
         alpha: how much the robot helps, in [0, 1].
         late_share: share of the control loop's deadlines that were missed.
     """

@@ -51,15 +51,19 @@ class PageMemory:
     """The ghosts and things that a page was last sent, so that it is sent only changes."""
 
     def __init__(self) -> None:
-        self._ghosts: FloatArray | None = None
+        self._ghosts: Ghosts | None = None
         self._things: Things | None = None
 
     def new_ghosts(self, ghosts: Ghosts) -> bool:
-        """Whether any point has moved by more than 1 mm; if so it is remembered as shown."""
-        points = np.array([ghosts.up, ghosts.down, ghosts.left, ghosts.right])
-        if self._ghosts is not None and np.abs(points - self._ghosts).max() < _SAME_M:
+        """Whether any has come or gone, or moved by more than 1 mm; if so they are remembered as shown."""
+        before = self._ghosts
+        if ghosts == before:
             return False
-        self._ghosts = points
+        if before is not None and len(before.ring) == len(ghosts.ring):
+            moved = np.abs(_numbers(ghosts) - _numbers(before))
+            if moved.max(initial=0.0) < _SAME_M:
+                return False
+        self._ghosts = ghosts
         return True
 
     def new_things(self, things: Things) -> bool:
@@ -317,6 +321,11 @@ class States:
             return None
         likeliest = int(np.argmax(report.belief))
         return round(report.bound_rad * self._loaded.goals_m_per_rad[likeliest], 4)
+
+
+def _numbers(ghosts: Ghosts) -> FloatArray:
+    """All of the ring and of the paths, m; and the ring's quaternions."""
+    return np.concatenate([np.ravel(path) for _, path in ghosts])
 
 
 def _rounded(point: tuple[float, float, float]) -> tuple[float, float, float]:

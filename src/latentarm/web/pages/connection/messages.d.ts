@@ -93,6 +93,7 @@ export interface Ghosts {
   down: [number, number, number][];
   left: [number, number, number][];
   right: [number, number, number][];
+  ring: [number, number, number, number, number, number, number][];
 }
 
 export interface GoToPose {

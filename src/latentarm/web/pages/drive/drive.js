@@ -19,6 +19,7 @@ import { attachLatchLimit } from "../inputs/latch_limit.js";
 import { moreChoices } from "../inputs/page_choices.js";
 import { attachScanning, directionChoices } from "../inputs/scanning.js";
 import { modeInput } from "../inputs/shaping.js";
+import { attachRim } from "../inputs/rim.js";
 import { attachStick } from "../inputs/stick.js";
 import { attachTremor } from "../inputs/tremor.js";
 import { byId, setHidden, setText } from "../layout/dom.js";
@@ -28,7 +29,7 @@ import { attachTrialBanner } from "../personalise/trial.js";
 import { attachPractice } from "../practice/attach_practice.js";
 import { attachViews } from "../views/attach_views.js";
 import { motionWords } from "../views/directions.js";
-import { attachPredictions, personalPaths } from "../views/predictions.js";
+import { attachPredictions, personalPaths, personalRing } from "../views/predictions.js";
 import { attachBelief } from "./belief.js";
 import { attachChecklist } from "./checklist.js";
 import { attachLateStops } from "./late_stops.js";
@@ -133,6 +134,7 @@ const gripper = attachGripper({
   hold: byId("gripper-hold"),
 }, connection, input, status.refused);
 attachStick(byId("stick"), byId("stick-value"), input, settings);
+const rim = attachRim(byId("stick"));
 attachDpad(byId("dpad"), byId("dpad-help"), input, settings, status.refused);
 const scanner = attachScanning({
   list: byId("scan"),
@@ -175,7 +177,9 @@ function show() {
   const { pressed } = input;
   const paths = personalPaths(state.ghosts, state.tool, shaped);
   const wanted = wantedThing(welcome, state);
-  const moved = drawing?.show(state, paths, pressed, settings.values, wanted) ?? false;
+  const ring = personalRing(state.ghosts, state.tool, shaped);
+  const moved = drawing?.show(state, { paths, ring }, pressed, settings.values, wanted) ?? false;
+  rim.toggleAttribute("hidden", !settings.values.showGhosts || shaped(1, 0).length < 2);
   belief.show(state);
   if (performance.now() - wordsAt < WORDS_MS) return moved;
   wordsAt = performance.now();

@@ -5,6 +5,7 @@ import { say } from "../layout/words.js";
 import { ask } from "../records/ask.js";
 import { attachViews } from "../views/attach_views.js";
 import { timeWords } from "./drive_words.js";
+import { NOTHING_PREDICTED } from "../views/predictions.js";
 import { Player } from "./player.js";
 
 /** @import {State} from "../connection/messages.js" */
@@ -12,8 +13,6 @@ import { Player } from "./player.js";
 /** @import {Drawing} from "../views/drawing.js" */
 /** @import {Moment} from "./player.js" */
 /** @import {Drive} from "./weeks.js" */
-
-const NO_PATHS = { up: null, down: null, left: null, right: null };
 
 /** @param {Settings} settings */
 export function attachReplay(settings) {
@@ -34,7 +33,7 @@ export function attachReplay(settings) {
     tick += 1;
     const gripper = width_m === null ? null : { width_m, holding: false, closing: null };
     const state = /** @type {State} */ (/** @type {unknown} */ ({ tick, bodies, tool, gripper, things, belief: null, bound_m: null, zone: null }));
-    drawing.show(state, NO_PATHS, [], { ...settings.values, showGhosts: false, showBound: false });
+    drawing.show(state, NOTHING_PREDICTED, [], { ...settings.values, showGhosts: false, showBound: false });
   };
   const show = (/** @type {Moment} */ moment) => {
     newest = moment;

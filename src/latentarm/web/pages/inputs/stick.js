@@ -10,7 +10,7 @@ import { attachHeldPointer } from "./held_pointer.js";
 const SVG = "http://www.w3.org/2000/svg";
 const SIZE = 264;
 /** From the middle to where the input is 1, in the drawing's units. */
-const REACH = 96;
+export const REACH = 96;
 const CELLS = 8;
 
 /**
@@ -120,7 +120,7 @@ function draw(element) {
 }
 
 /** @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
-function part(name, attributes, text = "") {
+export function part(name, attributes, text = "") {
   const made = document.createElementNS(SVG, name);
   for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
   made.textContent = text;

@@ -13,7 +13,7 @@ import { attachPage } from "../layout/page.js";
 import { say, sayNotice } from "../layout/words.js";
 import { attachViews } from "../views/attach_views.js";
 import { motionWords } from "../views/directions.js";
-import { displacement } from "../views/predictions.js";
+import { displacement, NOTHING_PREDICTED } from "../views/predictions.js";
 import { AnswerInput } from "./answer_input.js";
 import { Replay } from "./replay.js";
 import { missedWords, STEPS, stepOf } from "./steps.js";
@@ -206,8 +206,7 @@ function showQuestion() {
 function showArm() {
   if (asked !== -1 || !connection.state) return;
   setText(byId("scene-text"), "");
-  const nothing = { up: null, down: null, left: null, right: null };
-  drawing?.show(connection.state, nothing, [], { ...settings.values, showGhosts: false, showTrail: false, showBound: false });
+  drawing?.show(connection.state, NOTHING_PREDICTED, [], { ...settings.values, showGhosts: false, showTrail: false, showBound: false });
 }
 
 connection.addEventListener("learning", () => {

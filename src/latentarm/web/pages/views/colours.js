@@ -1,9 +1,40 @@
 /** The page's colours, as the style sheet has them now, for what is drawn by other means. */
 
-/** @param {string} name of a custom property, without its dashes @returns {string} */
+/** @import {Direction} from "../inputs/deflection.js" */
+
+/** @type {Direction[]} */
+const ROUND = ["right", "up", "left", "down"];
+
+/**
+ * The colour of a direction of the stick, for a style sheet: between those of the two nearest arrows, by hue.
+ *
+ * @param {number} turn counter-clockwise from the right, as a share of a whole turn, in [0, 1)
+ */
+export function directionColour(turn) {
+  const quarter = Math.floor(4 * turn);
+  const [from, to] = [ROUND[quarter], ROUND[(quarter + 1) % 4]];
+  return `color-mix(in oklch, var(--ghost-${from}), var(--ghost-${to}) ${100 * (4 * turn - quarter)}%)`;
+}
+
+/** The same as `rgb()`, for the canvas. @param {number} turn */
+export function directionPaint(turn) {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 1;
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  context.fillStyle = resolved(directionColour(turn));
+  context.fillRect(0, 0, 1, 1);
+  return `rgb(${context.getImageData(0, 0, 1, 1).data.slice(0, 3).join()})`;
+}
+
+/** @param {string} name of a custom property, without its dashes */
 export function colour(name) {
+  return resolved(`var(--${name})`);
+}
+
+/** @param {string} value of a colour in the style sheet @returns {string} */
+function resolved(value) {
   const probe = document.createElement("i");
-  probe.style.color = `var(--${name})`;
+  probe.style.color = value;
   // Where the system forces its colours on text, all of them would be the same.
   probe.style.setProperty("forced-color-adjust", "none");
   document.body.append(probe);

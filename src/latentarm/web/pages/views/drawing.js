@@ -1,4 +1,4 @@
-/** All that is drawn in three dimensions: the arm in two views, with goals, ghosts, trail and labels. */
+/** All that is drawn in three dimensions: the arm in two views, with goals, ghosts, ring, trail and labels. */
 
 import { THREE } from "../three/index.js";
 import { thingWords, zoneWords } from "../layout/thing_words.js";
@@ -6,6 +6,7 @@ import { say, sayNumber, sayPercent } from "../layout/words.js";
 import { Ghosts } from "./ghosts.js";
 import { Labels } from "./labels.js";
 import { isLikeliest } from "./likeliest.js";
+import { Ring } from "./ring.js";
 import { ArmScene } from "./scene.js";
 import { colourOf, symbolOf } from "./symbols.js";
 import { ToolPaths } from "./tool_paths.js";
@@ -14,9 +15,9 @@ import { Views } from "./views.js";
 /** @import {State} from "../connection/messages.js" */
 /** @import {Direction} from "../inputs/deflection.js" */
 /** @import {Values} from "../settings/settings.js" */
-/** @import {Paths} from "./predictions.js" */
+/** @import {Predicted} from "./predictions.js" */
 
-/** Arrows fade between these distances from what is wanted, m, to this share. */
+/** Arrows and ring fade between these distances from what is wanted, m, to this share. */
 const FADE_M = [0.05, 0.14];
 const FADED = 0.2;
 
@@ -36,6 +37,7 @@ export class Drawing {
     this._views = new Views(elements.canvas, elements, scene);
     this._labels = new Labels(this._views);
     this._ghosts = new Ghosts(scene.scene, this._labels);
+    this._ring = new Ring(scene.scene);
     this._toolPaths = new ToolPaths(scene.scene);
     this._still = matchMedia("(prefers-reduced-motion: reduce)");
     this._tick = -1;
@@ -69,17 +71,17 @@ export class Drawing {
 
   /**
    * @param {State} state
-   * @param {Paths} paths
+   * @param {Predicted} predicted
    * @param {Direction[]} pressed
    * @param {Values} wanted
    * @param {string | null} [thing] what the task is about now
    * @returns {boolean} whether the arm or a thing is somewhere else now
    */
-  show(state, paths, pressed, wanted, thing = null) {
+  show(state, predicted, pressed, wanted, thing = null) {
     // An arm at rest needs no new frame; a press or a new belief none that would be in the way of its motion.
     const pose = JSON.stringify([state.bodies, state.gripper?.width_m]);
     const zone = this._slowing(state.zone);
-    const around = JSON.stringify([state.belief, state.bound_m, paths, pressed, wanted, thing, zone]);
+    const around = JSON.stringify([state.belief, state.bound_m, predicted, pressed, wanted, thing, zone]);
     const moved = pose !== this._pose || state.things !== this._things;
     if (!moved && around === this._around) return false;
     const turned = this._pressed !== pressed.join();
@@ -99,7 +101,9 @@ export class Drawing {
     this._nameGoals(state.belief, tool, thing);
     this._nameThing(thing, tool);
     this._nameZones(zone);
-    this._ghosts.show(paths, pressed, wanted.showGhosts, this._clearOf(tool, thing));
+    const clear = this._clearOf(tool, thing);
+    this._ghosts.show(predicted.paths, pressed, wanted.showGhosts, clear);
+    this._ring.show(predicted.ring, wanted.showGhosts, clear);
     this._lookFrom(wanted.seat);
     if (moved) this._views.invalidate();
     else this._views.invalidateSoon(turned);
@@ -165,6 +169,7 @@ export class Drawing {
   repaint() {
     this._scene.repaint();
     this._ghosts.repaint();
+    this._ring.repaint();
     this._toolPaths.repaint();
     this._views.invalidate();
   }
@@ -211,7 +216,7 @@ export class Drawing {
     });
   }
 
-  /** How much of the arrows is to be seen with the tool there. @param {THREE.Vector3} tool @param {string | null} thing */
+  /** How much of arrows and ring is to be seen with the tool there. @param {THREE.Vector3} tool @param {string | null} thing */
   _clearOf(tool, thing) {
     const places = this._scene.goals.map((_, index) => this._scene.markers.placeOf(index));
     const wanted = thing === null ? null : this._scene.things.placeOf(thing);

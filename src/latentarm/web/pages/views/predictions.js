@@ -9,6 +9,11 @@ import { say } from "../layout/words.js";
 
 /** Points of the tool, m, for each direction; null where nothing is known. @typedef {Record<Direction, number[][] | null>} Paths */
 
+/** The ring has a row for each of so many directions: x, y, z (m) and a quaternion w, x, y, z; none where nothing is known. @typedef {{paths: Paths, ring: number[][]}} Predicted */
+
+/** @type {Predicted} */
+export const NOTHING_PREDICTED = { paths: { up: null, down: null, left: null, right: null }, ring: [] };
+
 /** How each is marked, in the views and in the list. @type {Record<Direction, string>} */
 export const MARKS = { up: "↑", down: "↓", left: "←", right: "→" };
 
@@ -21,15 +26,33 @@ export const MARKS = { up: "↑", down: "↓", left: "←", right: "→" };
  * @returns {Paths}
  */
 export function personalPaths(ghosts, tool, shaped) {
-  /** @type {Paths} */
-  const paths = { up: null, down: null, left: null, right: null };
+  const paths = { ...NOTHING_PREDICTED.paths };
   for (const direction of DIRECTION_NAMES) {
     const [across = 0, along = 0] = shaped(...DIRECTIONS[direction]);
     const size = Math.max(Math.abs(across), Math.abs(along));
     const sent = Math.abs(across) >= Math.abs(along) ? (across > 0 ? "right" : "left") : along > 0 ? "up" : "down";
-    if (ghosts && size > 0) paths[direction] = shortened([tool, ...ghosts[sent]], size);
+    if (ghosts?.[sent].length && size > 0) paths[direction] = shortened([tool, ...ghosts[sent]], size);
   }
   return paths;
+}
+
+/**
+ * The ring for the directions of the person's own stick, counter-clockwise from the right. A stick of one axis has none: its
+ * two arrows say it all.
+ *
+ * @param {State["ghosts"]} ghosts what the server says
+ * @param {number[]} tool where it is now, m
+ * @param {(x: number, y: number) => number[]} shaped from stick to what is sent
+ */
+export function personalRing(ghosts, tool, shaped) {
+  const ring = ghosts?.ring ?? [];
+  const turn = (2 * Math.PI) / ring.length;
+  return shaped(1, 0).length < 2 ? [] : ring.map((_, direction) => {
+    const [across, along] = shaped(Math.cos(direction * turn), Math.sin(direction * turn));
+    const size = Math.min(Math.hypot(across, along), 1);
+    const sent = ring[(Math.round(Math.atan2(along, across) / turn) + ring.length) % ring.length];
+    return [...tool.map((from, axis) => from + size * (sent[axis] - from)), ...sent.slice(3)];
+  });
 }
 
 /** The first share of a path: a smaller input goes less far in the same time. @param {number[][]} path @param {number} share */
