@@ -11,10 +11,10 @@ from latentarm.control.controller import Controller
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.rotations import pose_error
-from latentarm.operators.carried import carried
 from latentarm.operators.foresight import Foresight
 from latentarm.operators.imagination import Imagination
 from latentarm.operators.moment import Moment
+from latentarm.operators.shifted import shifted
 from latentarm.types import Context, FloatArray, Pose
 
 
@@ -167,7 +167,7 @@ class LinearGuess(Imagination):
             horizon_s: float,
         ) -> Pose:
             twist = np.stack([inputs @ self._guess(mode, inputs.shape[1], rng).T for mode in modes])
-            return carried(self._chain.forward(context.state), horizon_s * twist)
+            return shifted(self._chain.forward(context.state), horizon_s * twist)
 
         return expected
 

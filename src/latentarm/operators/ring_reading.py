@@ -14,12 +14,12 @@ from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.rotations import pose_error
 from latentarm.operators.boltzmann import BoltzmannConfig, OneStep
-from latentarm.operators.carried import carried
 from latentarm.operators.decision import Decision
 from latentarm.operators.foresight import Foresight
 from latentarm.operators.imagination import Imagination
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.moment import Moment
+from latentarm.operators.shifted import shifted
 from latentarm.types import Context, FloatArray, Input, IntArray, Pose
 
 
@@ -100,7 +100,7 @@ class RingReading(Imagination):
             share = np.linalg.norm(inputs, axis=1) * horizon_s / AHEAD_S
             drawn = nearest_drawn(inputs)
             ways = np.stack([rings[mode][drawn] for mode in modes]) * share[:, None]
-            return carried(self._chain.forward(context.state), ways)
+            return shifted(self._chain.forward(context.state), ways)
 
         return expected
 

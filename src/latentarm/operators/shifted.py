@@ -5,7 +5,7 @@ from scipy.spatial.transform import Rotation
 from latentarm.types import FloatArray, Pose
 
 
-def carried(pose: Pose, change: FloatArray) -> Pose:
+def shifted(pose: Pose, change: FloatArray) -> Pose:
     """Poses (...) after changes of one pose.
 
     Args:
