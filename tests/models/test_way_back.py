@@ -110,6 +110,17 @@ def test_every_form_of_the_decoder_gives_the_same(model, tmp_path):
         assert torch.autograd.gradcheck(decoded, inputs[:4])
 
 
+def test_a_context_that_is_overwritten_is_seen_anew(model):
+    rng = np.random.default_rng(3)
+    context, z = rng.uniform(-1.0, 1.0, size=(30, 7)), rng.uniform(-1.0, 1.0, size=(30, 2))
+    decoder, here = model.decoder(), np.empty(7)
+    expected = decoder.decode(z, context)
+    for row, push, action in zip(context, z, expected, strict=True):
+        here[:] = row
+        for _ in range(2):
+            np.testing.assert_allclose(decoder.decode(push, here), action, rtol=0, atol=1e-12)
+
+
 def test_its_enclosure_holds_every_input(model):
     rng = np.random.default_rng(2)
     context = rng.uniform(-1.0, 1.0, size=(20, 7))

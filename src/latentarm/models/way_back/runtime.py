@@ -27,7 +27,6 @@ from typing import TYPE_CHECKING, Final, final
 import numpy as np
 
 from latentarm.context import BELIEF, GRIPPER, JOINTS, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
-from latentarm.kinematics.chain import Chain
 from latentarm.models.enclosure import Enclosure
 from latentarm.models.numpy_networks import (
     NORM_FLOOR,
@@ -36,8 +35,7 @@ from latentarm.models.numpy_networks import (
     network_output,
     network_shapes,
 )
-from latentarm.models.saved_chain import chain_of_tensors
-from latentarm.models.tool_contexts import PLACE, places_and_jacobian
+from latentarm.models.tool_contexts import PLACE, ToolGeometry
 from latentarm.types import FloatArray
 
 if TYPE_CHECKING:
@@ -64,19 +62,19 @@ class PullContexts:
     rotations (..., K, 6) in that of the first tool.
 
     Args:
-        chain: the arm.
+        geometry: of the arm.
         layout: of the contexts.
     """
 
-    def __init__(self, chain: Chain, layout: ContextLayout) -> None:
-        self._chain = chain
+    def __init__(self, geometry: ToolGeometry, layout: ContextLayout) -> None:
+        self._geometry = geometry
         self._joints = layout.columns(JOINTS)
         self._things, self._others = pull_columns(layout)
 
     def apply(self, context: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What D sees of contexts (..., c): (..., o), and the weighted Jacobian there (..., 6 k, n)."""
         state = context[..., self._joints]
-        places, jacobian = places_and_jacobian(self._chain, state)
+        places, jacobian = self._geometry(state)
         parts = [state, places]
         if self._things is not None:
             rows = context[..., self._things]
@@ -123,7 +121,7 @@ class WayBack:
 
     def __init__(self, trained: "TrainedModel", seed: int) -> None:
         self._layers = halve_hidden(layers_of(trained, seed, NETWORK))
-        self._contexts = PullContexts(chain_of_tensors(trained.tensors), trained.layout)
+        self._contexts = PullContexts(trained.geometry, trained.layout)
         self._speed, self._length = map(float, trained.tensors[f"{NETWORK}.scale"])
 
     def __call__(self, action: FloatArray, z: FloatArray, context: FloatArray) -> FloatArray:
@@ -167,7 +165,7 @@ class WayBack:
         seen, jacobian = self._contexts.apply(context)
         way = network_output(seen, self._layers)
         length = metric_length(jacobian, way)
-        gain = np.clip(2.0 - length / GATE_M, 0.0, 1.0) / self._length
+        gain = np.minimum(np.maximum(2.0 - length / GATE_M, 0.0), 1.0) / self._length
         return way, length, gain, jacobian
 
 
