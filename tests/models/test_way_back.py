@@ -147,6 +147,15 @@ def test_it_leads_back_from_displaced_held_out_states(shown):
     assert on_the_path.mean() < 0.25 * NOISE_M
 
 
+def test_where_it_leads_from_beside_a_place(model, chain):
+    context = np.random.default_rng(7).uniform(-1.0, 1.0, size=(20, 7))
+    offset = np.array([0.0, 0.03, 0.0])
+    here, there = WayBack(model.trained_, 0).leads(context, offset)
+    taken = here - chain.forward(context).position
+    assert (np.linalg.norm(taken - offset, axis=1) < 0.2 * np.linalg.norm(offset)).mean() > 0.8
+    assert (np.linalg.norm(there - here, axis=1) <= 1.5 * GATE_M).all()
+
+
 def test_a_way_back_that_does_not_help_is_left_out(shown):
     rng = np.random.default_rng(6)
     # Motions without anything in common: what was demonstrated tells nothing of the others.

@@ -121,6 +121,7 @@ class WayBack:
 
     def __init__(self, trained: "TrainedModel", seed: int) -> None:
         self._layers = halve_hidden(layers_of(trained, seed, NETWORK))
+        self._geometry, self._joints = trained.geometry, trained.dimensions.action
         self._contexts = PullContexts(trained.geometry, trained.layout)
         self._speed, self._length = map(float, trained.tensors[f"{NETWORK}.scale"])
 
@@ -159,6 +160,25 @@ class WayBack:
         middle = 0.5 * (enclosure.centre + half)
         further = np.stack([half, middle], axis=-2)
         return Enclosure(middle, np.concatenate([enclosure.spread, further], axis=-2), enclosure.remainder)
+
+    def leads(self, context: FloatArray, offset: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Where the pull leads the first tool from near the place that contexts have it in, for a figure.
+
+        Args:
+            context: (..., c), with all poses in the base frame. Things stay where they are.
+            offset: (..., 3), how far the tool is taken from there, m.
+
+        Returns:
+            Places (..., 3) that are nearly that far away, and those that a full push alone would be pulled to
+            in the time that the demonstrations take for L, m.
+        """
+        state, rest = context[..., : self._joints], context[..., self._joints :]
+        jacobian = self._geometry(state)[1]
+        metric = jacobian.mT @ jacobian + DAMPING_M2 * np.eye(self._joints)
+        state = state + np.linalg.solve(metric, np.matvec(jacobian[..., :3, :].mT, offset)[..., None])[..., 0]
+        way, _, gain, _ = self._pull(np.concatenate([state, rest], axis=-1))
+        here, there = (self._geometry(one)[0][..., :3] for one in (state, state + self._length * gain * way))
+        return here, there
 
     def _pull(self, context: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """D (..., m), rad; its length (..., 1), m; its factor (..., 1), 1/m; ``J_w`` (..., 6 k, n)."""
