@@ -139,11 +139,11 @@ def test_it_leads_back_from_displaced_held_out_states(shown):
     held_out = [shown.episodes[index].state[::4] for index in model.validation_episodes_]
     context = np.concatenate(held_out)
     there = displaced(chain, trained.layout, context, np.zeros((len(context), 0), dtype=bool), rng)
-    way = WayBack(trained, 0)._pull(there.context)[0]
+    way = WayBack(trained, 0).pull(there.context)[0]
     _, jacobian = places_and_jacobian(chain, there.context)
     before, after = (metric_length(jacobian, off).mean() for off in (there.way, there.way - way))
     assert after < 0.8 * before
-    on_the_path = metric_length(places_and_jacobian(chain, context)[1], WayBack(trained, 0)._pull(context)[0])
+    on_the_path = metric_length(places_and_jacobian(chain, context)[1], WayBack(trained, 0).pull(context)[0])
     assert on_the_path.mean() < 0.25 * NOISE_M
 
 

@@ -136,7 +136,7 @@ class WayBack:
         Returns:
             (..., m), rad/s.
         """
-        way, length, gain, jacobian = self._pull(context)
+        way, length, gain, jacobian = self.pull(context)
         fastest = self._speed * np.sqrt(np.vecdot(z, z))[..., None]
         person = np.minimum(fastest, metric_length(jacobian, action))
         led = action + np.minimum(fastest * gain, STRENGTH * person / length) * way
@@ -153,7 +153,7 @@ class WayBack:
             latent_dim: d.
             context: (..., c), with all poses in the base frame.
         """
-        way, length, gain, _ = self._pull(context)
+        way, length, gain, _ = self.pull(context)
         fastest = self._speed * np.sqrt(latent_dim)
         half = 0.5 * fastest * np.minimum(gain, STRENGTH / length) * way
         half = np.broadcast_to(half[..., None, :], enclosure.centre.shape)
@@ -176,11 +176,11 @@ class WayBack:
         jacobian = self._geometry(state)[1]
         metric = jacobian.mT @ jacobian + DAMPING_M2 * np.eye(self._joints)
         state = state + np.linalg.solve(metric, np.matvec(jacobian[..., :3, :].mT, offset)[..., None])[..., 0]
-        way, _, gain, _ = self._pull(np.concatenate([state, rest], axis=-1))
+        way, _, gain, _ = self.pull(np.concatenate([state, rest], axis=-1))
         here, there = (self._geometry(one)[0][..., :3] for one in (state, state + self._length * gain * way))
         return here, there
 
-    def _pull(self, context: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def pull(self, context: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """D (..., m), rad; its length (..., 1), m; its factor (..., 1), 1/m; ``J_w`` (..., 6 k, n)."""
         seen, jacobian = self._contexts.apply(context)
         way = network_output(seen, self._layers)
