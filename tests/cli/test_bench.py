@@ -26,6 +26,10 @@ def test_bench_gives_every_figure_and_equal_losses(monkeypatch: pytest.MonkeyPat
     assert rows["online_step_median_us"].n == many["online_step_median_us"].n == 70
     ratio = many["online_step_median_us"].mean / rows["online_step_median_us"].mean
     assert many["online_step_over_3_goals"].mean == ratio
+    led = {row.measure: row for row in all_rows if row.condition == "way back"}
+    layers = rows["torch_layers_median_us"].mean
+    assert led["online_step_median_us"].n == 70
+    assert led["online_step_over_torch_layers"].mean == led["online_step_median_us"].mean / layers
     plain = {row.measure: row for row in all_rows if row.condition and row.condition.startswith("cAE, 30-30")}
     ratio = 3 * plain["plain_run_s"].mean / plain["fit_of_3_seeds_s"].mean
     assert plain["plain_run_over_fit_per_seed"].mean == ratio

@@ -5,7 +5,7 @@ from figure_faults import faults
 from latentarm.errors import UserError
 from latentarm.metrics.comparison_figure import comparison_figure
 from latentarm.metrics.effects import axis_effects, axis_grid, held_paths
-from latentarm.metrics.latent_effect_figure import latent_effect_figure
+from latentarm.metrics.latent_effect_figure import AWAY_M, latent_effect_figure
 from latentarm.metrics.properties_figure import properties_figure
 from latentarm.style import COLUMN_MM, MM_PER_INCH, save_figure
 from latentarm.types import Row
@@ -81,6 +81,24 @@ def test_the_latent_effect_is_drawn_for_both_ends_of_every_axis(dim, linear_deco
         assert f"$z_{axis} = +1$" in words
         assert f"$z_{axis} = -1$" in words
     assert {"x (m)", "z (m)"} <= set(words)  # y, in which nothing moves, is looked along
+    assert_nothing_is_cut_off(figure)
+
+
+def test_the_way_back_is_drawn_from_all_around_every_start(linear_decoder, gantry):
+    class Straight:
+        def leads(self, context, offset):
+            here = context[..., :3] + offset
+            return here, here - 0.5 * offset
+
+    states = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.5]])
+    decoder = linear_decoder(0.4 * np.eye(3)[:, [0, 2]])
+    figure = latent_effect_figure(decoder, states, gantry, 0.1, "scl", way_back=Straight())
+    arrows = [text for text in figure.axes[0].texts if text.arrow_patch is not None]
+    here, there = (np.array([getattr(one, name) for one in arrows]) for name in ("xyann", "xy"))
+    starts = np.tile(states[:, [0, 2]], (len(arrows) // 2, 1))
+    np.testing.assert_allclose(np.linalg.norm(here - starts, axis=1), AWAY_M)
+    np.testing.assert_allclose(there - starts, 0.5 * (here - starts))
+    assert f"way back from {100 * AWAY_M:g} cm away" in [text.get_text() for text in texts_of(figure)]
     assert_nothing_is_cut_off(figure)
 
 

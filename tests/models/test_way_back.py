@@ -110,6 +110,17 @@ def test_every_form_of_the_decoder_gives_the_same(model, tmp_path):
         assert torch.autograd.gradcheck(decoded, inputs[:4])
 
 
+def test_a_context_that_is_overwritten_is_seen_anew(model):
+    rng = np.random.default_rng(3)
+    context, z = rng.uniform(-1.0, 1.0, size=(30, 7)), rng.uniform(-1.0, 1.0, size=(30, 2))
+    decoder, here = model.decoder(), np.empty(7)
+    expected = decoder.decode(z, context)
+    for row, push, action in zip(context, z, expected, strict=True):
+        here[:] = row
+        for _ in range(2):
+            np.testing.assert_allclose(decoder.decode(push, here), action, rtol=0, atol=1e-12)
+
+
 def test_its_enclosure_holds_every_input(model):
     rng = np.random.default_rng(2)
     context = rng.uniform(-1.0, 1.0, size=(20, 7))
@@ -128,12 +139,21 @@ def test_it_leads_back_from_displaced_held_out_states(shown):
     held_out = [shown.episodes[index].state[::4] for index in model.validation_episodes_]
     context = np.concatenate(held_out)
     there = displaced(chain, trained.layout, context, np.zeros((len(context), 0), dtype=bool), rng)
-    way = WayBack(trained, 0)._pull(there.context)[0]
+    way = WayBack(trained, 0).pull(there.context)[0]
     _, jacobian = places_and_jacobian(chain, there.context)
     before, after = (metric_length(jacobian, off).mean() for off in (there.way, there.way - way))
     assert after < 0.8 * before
-    on_the_path = metric_length(places_and_jacobian(chain, context)[1], WayBack(trained, 0)._pull(context)[0])
+    on_the_path = metric_length(places_and_jacobian(chain, context)[1], WayBack(trained, 0).pull(context)[0])
     assert on_the_path.mean() < 0.25 * NOISE_M
+
+
+def test_where_it_leads_from_beside_a_place(model, chain):
+    context = np.random.default_rng(7).uniform(-1.0, 1.0, size=(20, 7))
+    offset = np.array([0.0, 0.03, 0.0])
+    here, there = WayBack(model.trained_, 0).leads(context, offset)
+    taken = here - chain.forward(context).position
+    assert (np.linalg.norm(taken - offset, axis=1) < 0.2 * np.linalg.norm(offset)).mean() > 0.8
+    assert (np.linalg.norm(there - here, axis=1) <= 1.5 * GATE_M).all()
 
 
 def test_a_way_back_that_does_not_help_is_left_out(shown):

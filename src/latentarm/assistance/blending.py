@@ -156,7 +156,8 @@ def confidence(belief: FloatArray) -> FloatArray:
     count = belief.shape[-1]
     if count == 1:
         return np.ones(belief.shape[:-1])
-    return np.clip((count * belief.max(axis=-1) - 1.0) / (count - 1.0), 0.0, 1.0)
+    sure = (count * np.maximum.reduce(belief, axis=-1) - 1.0) / (count - 1.0)
+    return np.minimum(np.maximum(sure, 0.0), 1.0)
 
 
 def _fade(u: FloatArray, full_at: float) -> FloatArray:

@@ -20,7 +20,11 @@ from latentarm.control.step import Step
 from latentarm.controllers.latent import LatentController
 from latentarm.kinematics.obstacles import Sphere
 from latentarm.models.autoencoders.training import CVAE
+from latentarm.models.decoder import Decoder
+from latentarm.models.saved_chain import chain_tensors
 from latentarm.models.training import epoch_bar
+from latentarm.models.way_back.runtime import pull_shapes
+from latentarm.models.way_back.training import HIDDEN
 from latentarm.runs.checks import check_count, check_seed
 from latentarm.tasks.table_top import TableTop
 from latentarm.types import Demonstrations, Episode, FloatArray, Goal, Input, Row
@@ -44,6 +48,7 @@ TURN_TICKS = 1000
 """Steps before switching to the other number of goals: enough for each to run with a warm cache."""
 
 MANY_GOALS = 50
+WAY_BACK = "way back"
 SPREAD_RAD = 0.1
 """Further goals surround the task's own, so that the arm moves through the same region."""
 
@@ -73,9 +78,11 @@ def run_bench(repeats: int, seed: int, progress: bool, pairs: int = PAIRS) -> li
 
 
 def _time_step(task: TableTop, model: CVAE, repeats: int, seed: int) -> list[Row]:
-    """The whole step with 3 goals and with 50, alternating, and torch's decoder."""
+    """The whole step with 3 goals, with 50 and with a way back, alternating, and torch's decoder."""
     rng = np.random.default_rng(seed)
-    few, many = _TimedStep(task, model, task.goals), _TimedStep(task, model, _many_goals(task, seed))
+    decoder = model.decoder(0)
+    few, many = _TimedStep(task, decoder, task.goals), _TimedStep(task, decoder, _many_goals(task, seed))
+    led = _TimedStep(task, _led_back(task, model, rng), task.goals)
     decode = _torch_decoder(model, task.robot.dof)
     every_tick = range(repeats + WARM_UP)
     inputs = rng.uniform(-1.0, 1.0, (len(every_tick) // INPUT_TICKS + 1, 2))
@@ -87,8 +94,9 @@ def _time_step(task: TableTop, model: CVAE, repeats: int, seed: int) -> list[Row
             state = few.tick(u, tick)
             if tick % TORCH_EVERY == 0:
                 torch_s.append(decode(u, state))
-        for tick in ticks:
-            many.tick(inputs[tick // INPUT_TICKS], tick)
+        for timed in (many, led):
+            for tick in ticks:
+                timed.tick(inputs[tick // INPUT_TICKS], tick)
     torch_us = 1e6 * np.array(torch_s[WARM_UP // TORCH_EVERY :])
     torch_median, layers_median = (float(value) for value in np.median(torch_us, axis=0))
     median, others = few.median_us(), f"{MANY_GOALS} goals"
@@ -100,6 +108,9 @@ def _time_step(task: TableTop, model: CVAE, repeats: int, seed: int) -> list[Row
         _row("online_step_over_torch_layers", "1", median / layers_median, repeats),
         *many.rows(others),
         _row("online_step_over_3_goals", "1", many.median_us() / median, repeats, others),
+        *led.rows(WAY_BACK),
+        _row("online_step_over_torch_layers", "1", led.median_us() / layers_median, repeats, WAY_BACK),
+        _row("online_step_over_no_way_back", "1", led.median_us() / median, repeats, WAY_BACK),
     ]
 
 
@@ -107,13 +118,13 @@ def _time_step(task: TableTop, model: CVAE, repeats: int, seed: int) -> list[Row
 class _TimedStep:
     """The whole step (7 DoF, 2-D z, help, all filters, a table and an obstacle), and how long it took."""
 
-    def __init__(self, task: TableTop, model: CVAE, goals: Sequence[Goal]) -> None:
+    def __init__(self, task: TableTop, decoder: Decoder, goals: Sequence[Goal]) -> None:
         dt_s = 1.0 / RATE_HZ
         configurations = np.stack([goal.configuration for goal in goals])
         obstacle = Sphere("cup", np.array([0.35, 0.45, 0.2]), 0.06)
         self._step = Step(
             task.robot,
-            LatentController(model.decoder(0)),
+            LatentController(decoder),
             SafetyConfig(obstacles=(*task.obstacles, obstacle)),
             goals=goals,
             # The belief updates in every step; the bound, computed 20 times a second, shows in p99.
@@ -158,6 +169,18 @@ class _TimedStep:
 
     def _after_warm_up_us(self) -> FloatArray:
         return 1e6 * np.array(self._took_s[WARM_UP:])
+
+
+def _led_back(task: TableTop, model: CVAE, rng: np.random.Generator) -> Decoder:
+    """The model's decoder with an untrained way back: how long that takes does not depend on its weights."""
+    trained, chain = model.trained_, task.robot.chain
+    dimensions = replace(trained.dimensions, tools=len(chain.tools), way_back=HIDDEN)
+    drawn = {
+        name: np.abs(rng.normal(0.0, 0.05, shape))
+        for name, shape in pull_shapes(dimensions, trained.layout).items()
+    }
+    tensors = {**trained.tensors, **chain_tensors(chain), **drawn}
+    return Decoder(replace(trained, dimensions=dimensions, tensors=tensors))
 
 
 def _many_goals(task: TableTop, seed: int) -> list[Goal]:

@@ -157,7 +157,7 @@ class Chain:
         if self._slides:
             jacobian[..., :3, :] = np.where(self.slide, axes.mT, jacobian[..., :3, :])
             jacobian[..., 3:, :] *= ~self.slide
-        if not mask.all():
+        if mask is not None:
             jacobian *= mask
         return jacobian
 
@@ -229,8 +229,10 @@ class Chain:
         return np.vstack([self.moves, np.zeros((1, self.dof))]).astype(np.float64)
 
     @cached_property
-    def _tool_moves(self) -> tuple[FloatArray, ...]:
-        return tuple(self._moves_or_base[tool.link] for tool in self.tools)
+    def _tool_moves(self) -> tuple[FloatArray | None, ...]:
+        """(n,) for each tool, which joints move it, as factors; None where all do."""
+        moves = (self._moves_or_base[tool.link] for tool in self.tools)
+        return tuple(None if row.all() else row for row in moves)
 
     @cached_property
     def axis_and_anchor(self) -> FloatArray:

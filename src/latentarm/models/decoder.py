@@ -22,17 +22,18 @@ class Decoder:
         latent_dim: d.
         context_dim: c.
         action_dim: m.
+        way_back: what leads back to the demonstrations; None without it.
     """
 
     __slots__ = (
         "_frame",
         "_runtime",
-        "_way_back",
         "action_dim",
         "context_dim",
         "kind",
         "latent_dim",
         "layout",
+        "way_back",
     )
 
     def __init__(self, trained: TrainedModel, seed: int = 0) -> None:
@@ -53,7 +54,7 @@ class Decoder:
         self.context_dim = trained.dimensions.context
         self.action_dim = trained.dimensions.action
         self._runtime = trained.kind.runtime(trained, seed)
-        self._way_back = WayBack(trained, seed) if trained.dimensions.way_back else None
+        self.way_back = WayBack(trained, seed) if trained.dimensions.way_back else None
 
     def decode(self, z: FloatArray, context: FloatArray) -> FloatArray:
         """Joint velocities of latent actions in contexts.
@@ -66,7 +67,7 @@ class Decoder:
             (..., m), rad/s.
         """
         action = self._runtime(z, context if self._frame is None else self._frame.apply(context))
-        return action if self._way_back is None else self._way_back(action, z, context)
+        return action if self.way_back is None else self.way_back(action, z, context)
 
     def enclose(self, context: FloatArray, fineness: int = 1) -> Enclosure | None:
         """A proven enclosure of `decode` over all latent actions in [-1, 1]^d; None where none is known.
@@ -77,6 +78,6 @@ class Decoder:
         """
         framed = context if self._frame is None else self._frame.apply(context)
         found = self._runtime.enclose(framed, fineness)
-        if found is None or self._way_back is None:
+        if found is None or self.way_back is None:
             return found
-        return self._way_back.enclosed(found, self.latent_dim, context)
+        return self.way_back.enclosed(found, self.latent_dim, context)

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, final
 
 from latentarm.context import ContextLayout
@@ -11,7 +12,7 @@ from latentarm.models.enclosure import Enclosure
 from latentarm.models.numpy_networks import network_shapes
 from latentarm.models.saved_chain import chain_of_tensors, chain_shapes
 from latentarm.models.scaling import Normaliser
-from latentarm.models.tool_contexts import ToolContexts, tool_shapes
+from latentarm.models.tool_contexts import ToolContexts, ToolGeometry, tool_shapes
 from latentarm.models.tool_frame import ToolFrame
 from latentarm.style import Look
 from latentarm.types import BoolArray, FloatArray, IntArray
@@ -191,7 +192,14 @@ class TrainedModel:
             return self.tool_contexts
         return Normaliser(self.tensors["context.centre"], self.tensors["context.scale"])
 
-    @property
+    @cached_property
+    def geometry(self) -> ToolGeometry:
+        """The geometry of the arm, which all that decodes shares."""
+        if self.kind.sees_tools:
+            return self.tool_contexts.geometry
+        return ToolGeometry(chain_of_tensors(self.tensors))
+
+    @cached_property
     def tool_contexts(self) -> ToolContexts:
         """`contexts` of a model that looks at the tools.
 

@@ -152,7 +152,7 @@ class ToolContexts:
             (..., c + 9 k + 12 k n), laid out as in `ToolSizes`.
         """
         sizes = self.sizes
-        places, jacobian = places_and_jacobian(self.chain, context[..., : sizes.joints])
+        places, jacobian = self.geometry(context[..., : sizes.joints])
         metric = jacobian.mT @ jacobian + self.damping * np.eye(sizes.joints)
         lift = np.asarray(np.linalg.solve(metric, jacobian.mT), dtype=np.float64)
         lead = context.shape[:-1]
@@ -168,7 +168,12 @@ class ToolContexts:
 
     def jacobian(self, state: FloatArray) -> FloatArray:
         """``J_w`` alone at states (..., n): (..., 6 k, n)."""
-        return places_and_jacobian(self.chain, state)[1]
+        return self.geometry(state)[1]
+
+    @cached_property
+    def geometry(self) -> "ToolGeometry":
+        """`places_and_jacobian` of the arm."""
+        return ToolGeometry(self.chain)
 
     def action_normaliser(self, context: FloatArray, action: FloatArray) -> Normaliser:
         """One scale for all joints, so that the fastest tools, outliers aside, have the speed 1.
@@ -205,6 +210,34 @@ def places_and_jacobian(chain: Chain, state: FloatArray) -> tuple[FloatArray, Fl
         pose = chain.tool_pose(transforms, tool)
         places.append(pose_rows(pose))
         jacobians.append(chain.jacobian_at(transforms, pose, tool))
-    jacobian = np.concatenate(jacobians, axis=-2)
+    only = len(places) == 1
+    jacobian = jacobians[0] if only else np.concatenate(jacobians, axis=-2)
     jacobian *= twist_weight(len(chain.tools))[:, None]
-    return np.concatenate(places, axis=-1), jacobian
+    return places[0] if only else np.concatenate(places, axis=-1), jacobian
+
+
+@final
+class ToolGeometry:
+    """`places_and_jacobian` of one arm, computed once for a single state that is asked about repeatedly.
+
+    Args:
+        chain: the arm.
+    """
+
+    __slots__ = ("_chain", "_last")
+
+    def __init__(self, chain: Chain) -> None:
+        self._chain = chain
+        self._last: tuple[bytes, tuple[FloatArray, FloatArray]] | None = None
+
+    def __call__(self, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """See `places_and_jacobian`; read-only for a single state (n,)."""
+        if state.ndim > 1:
+            return places_and_jacobian(self._chain, state)
+        asked, last = state.tobytes(), self._last
+        if last is None or last[0] != asked:
+            found = places_and_jacobian(self._chain, state)
+            for array in found:
+                array.flags.writeable = False
+            self._last = last = asked, found
+        return last[1]

@@ -307,5 +307,7 @@ def _draw(name: str, decoder: Decoder, measured: _Measured, robot: Robot, out: P
     effects = axis_effects([decoder], measured.probe.states, grid, chain, step_s)[0]
     save_figure(properties_figure(effects, grid, name), out / "consistency.png")
     behind = None if measured.path is None else chain.forward(measured.path).position
-    figure = latent_effect_figure(decoder, measured.starts, chain, step_s, name, behind)
+    figure = latent_effect_figure(
+        decoder, measured.starts, chain, step_s, name, behind, way_back=decoder.way_back
+    )
     save_figure(figure, out / "latent_axes.png")

@@ -27,7 +27,6 @@ from typing import TYPE_CHECKING, Final, final
 import numpy as np
 
 from latentarm.context import BELIEF, GRIPPER, JOINTS, OBJECT, OBJECTS, OBJECTS_IN_TOOL, ContextLayout
-from latentarm.kinematics.chain import Chain
 from latentarm.models.enclosure import Enclosure
 from latentarm.models.numpy_networks import (
     NORM_FLOOR,
@@ -36,8 +35,7 @@ from latentarm.models.numpy_networks import (
     network_output,
     network_shapes,
 )
-from latentarm.models.saved_chain import chain_of_tensors
-from latentarm.models.tool_contexts import PLACE, places_and_jacobian
+from latentarm.models.tool_contexts import PLACE, ToolGeometry
 from latentarm.types import FloatArray
 
 if TYPE_CHECKING:
@@ -64,19 +62,19 @@ class PullContexts:
     rotations (..., K, 6) in that of the first tool.
 
     Args:
-        chain: the arm.
+        geometry: of the arm.
         layout: of the contexts.
     """
 
-    def __init__(self, chain: Chain, layout: ContextLayout) -> None:
-        self._chain = chain
+    def __init__(self, geometry: ToolGeometry, layout: ContextLayout) -> None:
+        self._geometry = geometry
         self._joints = layout.columns(JOINTS)
         self._things, self._others = pull_columns(layout)
 
     def apply(self, context: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What D sees of contexts (..., c): (..., o), and the weighted Jacobian there (..., 6 k, n)."""
         state = context[..., self._joints]
-        places, jacobian = places_and_jacobian(self._chain, state)
+        places, jacobian = self._geometry(state)
         parts = [state, places]
         if self._things is not None:
             rows = context[..., self._things]
@@ -123,7 +121,8 @@ class WayBack:
 
     def __init__(self, trained: "TrainedModel", seed: int) -> None:
         self._layers = halve_hidden(layers_of(trained, seed, NETWORK))
-        self._contexts = PullContexts(chain_of_tensors(trained.tensors), trained.layout)
+        self._geometry, self._joints = trained.geometry, trained.dimensions.action
+        self._contexts = PullContexts(trained.geometry, trained.layout)
         self._speed, self._length = map(float, trained.tensors[f"{NETWORK}.scale"])
 
     def __call__(self, action: FloatArray, z: FloatArray, context: FloatArray) -> FloatArray:
@@ -137,7 +136,7 @@ class WayBack:
         Returns:
             (..., m), rad/s.
         """
-        way, length, gain, jacobian = self._pull(context)
+        way, length, gain, jacobian = self.pull(context)
         fastest = self._speed * np.sqrt(np.vecdot(z, z))[..., None]
         person = np.minimum(fastest, metric_length(jacobian, action))
         led = action + np.minimum(fastest * gain, STRENGTH * person / length) * way
@@ -154,7 +153,7 @@ class WayBack:
             latent_dim: d.
             context: (..., c), with all poses in the base frame.
         """
-        way, length, gain, _ = self._pull(context)
+        way, length, gain, _ = self.pull(context)
         fastest = self._speed * np.sqrt(latent_dim)
         half = 0.5 * fastest * np.minimum(gain, STRENGTH / length) * way
         half = np.broadcast_to(half[..., None, :], enclosure.centre.shape)
@@ -162,12 +161,31 @@ class WayBack:
         further = np.stack([half, middle], axis=-2)
         return Enclosure(middle, np.concatenate([enclosure.spread, further], axis=-2), enclosure.remainder)
 
-    def _pull(self, context: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def leads(self, context: FloatArray, offset: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Where the pull leads the first tool from near the place that contexts have it in, for a figure.
+
+        Args:
+            context: (..., c), with all poses in the base frame. Things stay where they are.
+            offset: (..., 3), how far the tool is taken from there, m.
+
+        Returns:
+            Places (..., 3) that are nearly that far away, and those that a full push alone would be pulled to
+            in the time that the demonstrations take for L, m.
+        """
+        state, rest = context[..., : self._joints], context[..., self._joints :]
+        jacobian = self._geometry(state)[1]
+        metric = jacobian.mT @ jacobian + DAMPING_M2 * np.eye(self._joints)
+        state = state + np.linalg.solve(metric, np.matvec(jacobian[..., :3, :].mT, offset)[..., None])[..., 0]
+        way, _, gain, _ = self.pull(np.concatenate([state, rest], axis=-1))
+        here, there = (self._geometry(one)[0][..., :3] for one in (state, state + self._length * gain * way))
+        return here, there
+
+    def pull(self, context: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """D (..., m), rad; its length (..., 1), m; its factor (..., 1), 1/m; ``J_w`` (..., 6 k, n)."""
         seen, jacobian = self._contexts.apply(context)
         way = network_output(seen, self._layers)
         length = metric_length(jacobian, way)
-        gain = np.clip(2.0 - length / GATE_M, 0.0, 1.0) / self._length
+        gain = np.minimum(np.maximum(2.0 - length / GATE_M, 0.0), 1.0) / self._length
         return way, length, gain, jacobian
 
 

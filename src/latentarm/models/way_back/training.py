@@ -17,7 +17,7 @@ from latentarm.models.kind import TrainedModel
 from latentarm.models.networks import Networks, mlp
 from latentarm.models.numpy_networks import network_shapes
 from latentarm.models.scaling import LEAST_SCALE, SPAN_QUANTILE, STILL, UNSEEN, Normaliser, context_normaliser
-from latentarm.models.tool_contexts import PLACE, TWIST, places_and_jacobian, twist_weight
+from latentarm.models.tool_contexts import PLACE, TWIST, ToolGeometry, places_and_jacobian, twist_weight
 from latentarm.models.training import Report, TrainingConfig, TrainingResult, train
 from latentarm.models.way_back.runtime import DAMPING_M2, NETWORK, PullContexts, metric_length
 from latentarm.types import BoolArray, FloatArray, Pairs
@@ -122,7 +122,7 @@ def with_way_back(
     layout, seeds = trained.layout, trained.summary.seeds
     outside = np.isin(pairs.episode, trained.summary.validation_episodes)
     rng = np.random.default_rng([data_seed, 3])
-    contexts = PullContexts(chain, layout)
+    contexts = PullContexts(ToolGeometry(chain), layout)
     inside = _examples(chain, layout, pairs, ~outside, rng)
     judged = _examples(chain, layout, pairs, outside, rng)
     seen, weight = _shown(contexts, inside)
