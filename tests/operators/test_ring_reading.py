@@ -9,11 +9,11 @@ from latentarm.control.stick_ring import AHEAD_S, DIRECTIONS, full_pushes
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.errors import UserError
 from latentarm.operators.boltzmann import BoltzmannConfig
-from latentarm.operators.carried import carried
 from latentarm.operators.catalogue import PEOPLE
 from latentarm.operators.loop_limits import LoopLimits
 from latentarm.operators.person import Person, SimulatedPerson
 from latentarm.operators.ring_reading import RingReading, RingReadingConfig, nearest_drawn
+from latentarm.operators.shifted import shifted
 from latentarm.robots.catalogue import load_robot
 from latentarm.types import Context
 
@@ -30,7 +30,7 @@ SEES_WELL = Person(
 
 def away(*change):
     """A target so far from the tool, m and rad."""
-    return carried(PANDA.chain.forward(PANDA.home), np.array(change))
+    return shifted(PANDA.chain.forward(PANDA.home), np.array(change))
 
 
 def first_push(person, target, controller=LINES, robot=PANDA, seed=0):

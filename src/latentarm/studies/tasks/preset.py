@@ -58,7 +58,7 @@ class Preset:
     hidden: tuple[int, ...] = (64, 64)
     state_noise_rad: float = 0.01
     way_back_m: float = 0.06
-    people: tuple[OperatorName, ...] = ("planning", "greedy", "unsteady", "learning")
+    people: tuple[OperatorName, ...] = ("planning", "greedy", "unsteady", "reading", "learning")
 
     def __post_init__(self) -> None:
         for person in self.people:
@@ -82,7 +82,7 @@ class Preset:
 
 PRESETS: Final[dict[str, Preset]] = {
     "paper": Preset("paper"),
-    "small": Preset("small", runs=2, demonstrations=40, seeds=2),
+    "small": Preset("small", runs=2, demonstrations=40, models=("homogeneous", "low_turning"), seeds=1),
     "smoke": Preset("smoke", runs=2, demonstrations=6, seeds=1, epochs=6, people=("planning",)),
 }
 
