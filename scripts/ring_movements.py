@@ -86,13 +86,16 @@ def logged(clone: Path) -> FloatArray:
 
 @dataclass(frozen=True)
 class Figures:
-    """What is fitted: the study's device at full deflection, m/s; medians over people; a spread."""
+    """What is fitted: the study's device at full deflection, m/s; medians over people; a spread.
+
+    Where nothing is given, the people are those of before.
+    """
 
     full_m_s: float
-    push_variation: float = SPREADS["push_variation"].middle
-    decision_s: float = SPREADS["decision_s"].middle
-    learning: float = SPREADS["learning"].middle
-    own_speed_width: float = SPREADS["own_speed"].width
+    push_variation: float = 0.15
+    decision_s: float = 0.5
+    learning: float = 0.2
+    own_speed_width: float = 0.2
 
     def person(self, drawn: Traits) -> Traits:
         """Who keeps their place among all people in every trait."""
