@@ -1,8 +1,9 @@
-"""Write the tables of docs/simulated_people.md: what the simulated people are like, and their calibration.
+"""Write the tables of docs/simulated_people.md: the simulated people, their calibration, and held-out people.
 
 python scripts/people_tables.py
 """
 
+import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -11,6 +12,8 @@ from latentarm.operators.calibration import PROVENANCE
 from latentarm.operators.population import MIRRORED, TRAITS
 
 PAGE: Final = Path(__file__).parents[1] / "docs" / "simulated_people.md"
+LOGS: Final = Path(__file__).with_name("people_from_logs.json")
+"""Written by `people_from_logs.py`."""
 
 
 def main() -> None:
@@ -20,7 +23,7 @@ def main() -> None:
 
 def written(page: str) -> str:
     """The page with its tables anew."""
-    for name, table in (("traits", traits()), ("calibration", calibration())):
+    for name, table in (("traits", traits()), ("calibration", calibration()), ("held out", held_out())):
         begin, end = f"<!-- {name}: written by scripts/people_tables.py -->", f"<!-- {name}: end -->"
         before, rest = page.split(begin)
         page = f"{before}{begin}\n{table}\n{end}{rest.split(end)[1]}"
@@ -63,6 +66,34 @@ def calibration() -> str:
     ]
     lines = ["| simulated | published, of people | before | after |", "| --- | --- | ---: | ---: |"]
     lines += [f"| {name} | {aim or '–'} | {of(before)} | {of(after)} |" for name, aim, of in rows]
+    return "\n".join(lines)
+
+
+def held_out() -> str:
+    """How well held-out persons are predicted."""
+    found = json.loads(LOGS.read_text(encoding="utf-8"))["held_out"]
+    names = {
+        "fitted_persons": "the other half of the persons themselves",
+        "line": "the same, times and errors by a line over the index of difficulty",
+        "simulated_before": "simulated people, not fitted to these persons",
+        "simulated_after": "simulated people fitted to the other half",
+    }
+    measures = ("time", "error", "corrections")
+    lines = [
+        "| predicted by | "
+        + " | ".join(f"{one}, nats" for one in measures)
+        + " | all, nats | "
+        + " | ".join(f"{one}, in 50 / 90 %" for one in measures)
+        + " | persons' times, in 50 / 90 % |",
+        "| --- |" + " ---: |" * 8,
+    ]
+    for name, meaning in names.items():
+        one = found[name]
+        nats = [f"{value:.2f}" for value in (*one["nats"], sum(one["nats"]))]
+        inside = zip(one["covered_0.5"], one["covered_0.9"], strict=True)
+        shares = [f"{100 * half:.0f} / {100 * most:.0f} %" for half, most in inside]
+        persons = f"{one['persons_0.5']} / {one['persons_0.9']} of 12"
+        lines.append(f"| {meaning} | " + " | ".join([*nats, *shares, persons]) + " |")
     return "\n".join(lines)
 
 
