@@ -1,8 +1,8 @@
-"""What was fitted of the simulated people, to mode switching and to public logs of people alone."""
+"""What was fitted of the simulated people, to mode switching and to movements along one axis alone."""
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any, Final, final
 
@@ -30,6 +30,9 @@ class Calibration:
             raise UserError("The figures of a calibration must be positive.")
 
 
+BEFORE: Final = Calibration(push_variation=0.1, switch_s=0.8)
+"""Before anything was fitted: chosen, and the time of a switch is that of the other simulated people."""
+
 _FROZEN: Final[dict[str, Any]] = json.loads(
     (files("latentarm.operators") / "calibration.json").read_text(encoding="utf-8")
 )
@@ -38,8 +41,4 @@ PROVENANCE: Final[Mapping[str, Any]] = _FROZEN.pop("provenance")
 """How `CALIBRATED` was fitted: the command, the seed, what was aimed at, and all figures before and after."""
 
 CALIBRATED: Final = Calibration(**_FROZEN)
-"""Frozen before any study is run with these people; see `scripts/people_from_logs.py` for the variation of
-pushes and `scripts/calibrate_population.py` for the time of a mode switch."""
-
-BEFORE: Final = replace(CALIBRATED, switch_s=0.8)
-"""Before the time of a switch was fitted: it is that of the other simulated people."""
+"""Frozen before any latent action was driven by these people; see `scripts/calibrate_population.py`."""

@@ -21,10 +21,6 @@ MIRRORED: Final = 0.2
 Munneke, Cogn. Res. Princ. Implic., 2025); how many of them is chosen."""
 
 
-LOGS: Final = "fitted to movements of 12 people with a Falcon (Pan et al., HRI 2025)"
-"""Where medians come from that `scripts/people_from_logs.py` fits."""
-
-
 @final
 @dataclass(frozen=True)
 class TraitSource:
@@ -76,8 +72,8 @@ def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
             "SD of a push, share of its length",
             "",
             LogNormal(variation, 0.25, 0.5 * variation, 2.0 * variation),
-            f"median {LOGS}; spread chosen. That it goes with the push: Harris and Wolpert, Nature 394:780,"
-            " 1998",
+            "median calibrated; spread chosen. That it goes with the push: Harris and Wolpert, Nature"
+            " 394:780, 1998",
         ),
         TraitSource(
             "rationality",
@@ -105,8 +101,9 @@ def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
             "decision_s",
             "time between decisions, first trial",
             "s",
-            LogNormal(0.245, 0.15, 0.147, 0.441),
-            f"median {LOGS}; spread chosen",
+            LogNormal(0.5, 0.15, 0.3, 0.9),
+            "people correct their course twice a second at best (Loram et al., J. Physiol. 589:307, 2011);"
+            " spread chosen",
         ),
         TraitSource(
             "switch_s",
@@ -142,8 +139,8 @@ def trait_sources(calibration: Calibration) -> tuple[TraitSource, ...]:
             "learning",
             "exponent of the power law of practice",
             "",
-            LogNormal(0.14, 0.4, 0.035, 0.42),
-            f"the law is Newell and Rosenbloom's (1981); median {LOGS}; spread chosen",
+            LogNormal(0.2, 0.4, 0.05, 0.6),
+            "the law is Newell and Rosenbloom's (1981); the exponent is chosen",
         ),
         TraitSource(
             "own_speed",
