@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from latentarm.controllers.axis_modes import TWO_STICKS
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
+from latentarm.controllers.learned_orientation import LearnedOrientationController, OrientationMap
 from latentarm.controllers.retargeting import RetargetingController
 from latentarm.robots.catalogue import load_robot
 from latentarm.types import Context
@@ -14,7 +15,9 @@ from latentarm.types import Context
 BELIEF = np.array([0.5, 0.3, 0.2])
 
 
-@pytest.fixture(params=["state_decoder", "belief_decoder", "panda", "planar", "two_sticks", "retargeting"])
+@pytest.fixture(
+    params=["state_decoder", "belief_decoder", "panda", "planar", "two_sticks", "retargeting", "oriented"]
+)
 def steered(request, panda):
     """A controller and its robot."""
     if request.param.endswith("decoder"):
@@ -23,6 +26,9 @@ def steered(request, panda):
         return EndEffectorController(panda, modes=TWO_STICKS), panda
     if request.param == "retargeting":
         return RetargetingController(panda), panda
+    if request.param == "oriented":
+        layer = np.eye(3, 6), np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+        return LearnedOrientationController(panda, OrientationMap((), False, (layer,))), panda
     robot = panda if request.param == "panda" else load_robot("planar")
     return EndEffectorController(robot), robot
 

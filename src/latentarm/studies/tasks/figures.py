@@ -56,6 +56,7 @@ def success_figure(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> 
                 marker=look.marker,
                 markerfacecolor=look.colour if what.way_back else "white",
                 markersize=2.6 if what.name == UNAWARE else 4.2,
+                markeredgewidth=1.8 if what.way_back else 0.9,
                 linestyle="none",
                 label=what.label,
             )

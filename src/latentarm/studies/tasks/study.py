@@ -128,7 +128,7 @@ def _report(request: Request[Preset], measured: Measured) -> Report:
         figures=figures,
         documents={"runs.json": runs_as_json(by_task), "verdict.json": verdict.as_json()},
         timings=_timings(measured),
-        tables=[*summary_tables(rows, by_task), f"Default by the rule: {verdict.sentence}."],
+        tables=[*summary_tables(by_task), f"Default by the rule: {verdict.sentence}."],
     )
 
 

@@ -30,13 +30,11 @@ SHOWN: Final = (
 )
 """Measures in the page's table, after how many runs succeeded."""
 
-GLANCE: Final = ("steps_done", "time_s", "input_magnitude")
-"""Measures in a terminal's table."""
-
 
 def success_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
     """How many runs of one task succeeded: what moves the arm down, people across."""
-    return _by_person(runs, lambda condition: _succeeded(runs[condition]))
+    head, *lines = _by_person(runs, lambda condition: _succeeded(runs[condition]))
+    return markdown_table(head, lines)
 
 
 def time_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
@@ -53,18 +51,19 @@ def time_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
         beside = f" ({median(ratios):.2f})" if ratios else ""
         return f"{median(times):.0f}{beside}" if times else ABSENT
 
-    return _by_person(runs, text)
+    head, *lines = _by_person(runs, text)
+    return markdown_table(head, lines)
 
 
-def _by_person(runs: Mapping[Condition, Sequence[Run]], text: Callable[[Condition], str]) -> str:
-    """A table of one text for each condition; the demonstrator is left out."""
+def _by_person(runs: Mapping[Condition, Sequence[Run]], text: Callable[[Condition], str]) -> list[list[str]]:
+    """Head and lines of one text for each condition; the demonstrator is left out."""
     driven = [condition for condition in runs if condition.person is not None]
     people = dict.fromkeys(condition.person for condition in driven)
     lines = [
-        [what.label, *(text(what.by(person)) if what.by(person) in runs else None for person in people)]
+        [what.label, *(text(what.by(person)) if what.by(person) in runs else ABSENT for person in people)]
         for what in dict.fromkeys(condition.by(None) for condition in driven)
     ]
-    return markdown_table(["simulated", *map(str, people)], lines)
+    return [["simulated", *map(str, people)], *lines]
 
 
 def measure_table(rows: Sequence[Row], runs: Mapping[Condition, Sequence[Run]], task: str) -> str:
@@ -104,23 +103,19 @@ def failure_table(runs: Mapping[Condition, Sequence[Run]]) -> str:
     return markdown_table(["person", "ended in step", "why", *(what.label for what in moves)], lines)
 
 
-def summary_tables(
-    rows: Sequence[Row], by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]
-) -> list[Table]:
-    """A table per task, conditions down."""
-    return [_summary(rows, runs, task) for task, runs in by_task.items()]
-
-
-def _summary(rows: Sequence[Row], runs: Mapping[Condition, Sequence[Run]], task: str) -> Table:
-    found = _found(rows, task)
-    title = f"{look_of(task).label}, simulated"
-    table = Table("mean ± SD", title=title, title_justify="left", box=SIMPLE_HEAD)
-    for name in ("succeeded", *map(_name, GLANCE)):
-        table.add_column(name, justify="right")
-    for condition, of in runs.items():
-        who = "" if condition.person is None else f", {condition.person}"
-        table.add_row(condition.label + who, *_line(_of(found, condition), of, GLANCE))
-    return table
+def summary_tables(by_task: Mapping[str, Mapping[Condition, Sequence[Run]]]) -> list[Table]:
+    """How many runs succeeded: a table per task, what moves the arm down, people across."""
+    tables: list[Table] = []
+    for task, runs in by_task.items():
+        (first, *people), *lines = _by_person(runs, lambda condition, runs=runs: _succeeded(runs[condition]))
+        title = f"{look_of(task).label}, runs that succeeded, simulated"
+        table = Table(first, title=title, title_justify="left", box=SIMPLE_HEAD)
+        for person in people:
+            table.add_column(person, justify="right")
+        for line in lines:
+            table.add_row(*line)
+        tables.append(table)
+    return tables
 
 
 Found = Mapping[tuple[str | None, str | None], Mapping[str, Row]]
