@@ -89,7 +89,7 @@ class Hover(Task):
 
 def main(run: Path, person: OperatorName) -> None:
     """Drive, and print a line for each arbitration."""
-    controller = latent_controller(run, None, TABLE.robot)
+    controller = latent_controller(run, None, TABLE.robot, None)
     for name, arbitration in WAYS.items():
         way = None if arbitration is None else blending(arbitration)
         known = [

@@ -10,7 +10,7 @@ from tyro.conf import Positional, arg
 from latentarm.arms.catalogue import check_simulated
 from latentarm.assistance.catalogue import AssistanceName
 from latentarm.commands.choices import BeliefName, TaskName
-from latentarm.commands.options import Arm, EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seed
+from latentarm.commands.options import Arm, EndEffector, Jobs, Json, LimitsFile, MovedDataset, Seated, Seed
 from latentarm.errors import UserError
 from latentarm.operators.names import OperatorName
 from latentarm.runs.checks import check_count, check_positive, check_seed
@@ -55,9 +55,8 @@ class DriveOptions:
     arm: Arm = None
     end_effector: EndEffector = None
     limits: LimitsFile = None
-    profile: Annotated[
-        str | None, arg(metavar="NAME", help="Profile made by `latentarm align`; z = u without one.")
-    ] = None
+    profile: Annotated[str | None, arg(metavar="NAME", help="Profile made by `latentarm align`.")] = None
+    seat: Seated = "facing"
     drives: Annotated[int, arg(help="Drives for each goal.")] = 3
     operator: Annotated[
         OperatorName | None,

@@ -101,6 +101,7 @@ class Steering:
             "end_effector": robot.chain.tools[0].name,
             "limit_sources": asdict(robot.limits.sources) | {"tool_speed": robot.tool_speed_source},
             "profile": config.profile,
+            "seat": config.seat,
             "drives_per_goal": config.drives,
             "seed": config.seed,
             "operator": "simulated",
@@ -147,4 +148,4 @@ def _controller(config: DriveOptions, robot: Robot) -> Controller:
         return RetargetingController(robot)
     if config.run is None:
         raise UserError("Latent actions need a trained run: name one, as in `latentarm drive RUN`.")
-    return latent_controller(config.run, config.profile, robot)
+    return latent_controller(config.run, config.profile, robot, config.seat)

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
+from latentarm.alignment.frame import Seat
 from latentarm.arms.catalogue import ARMS
 
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]
@@ -43,6 +44,13 @@ EndEffector = Annotated[
 LimitsFile = Annotated[
     Path | None,
     arg(metavar="FILE", help="TOML or YAML file that states the robot's limits, see docs/arms.md."),
+]
+Seated = Annotated[
+    Seat | None,
+    arg(
+        help="Where a person without a profile sits. The stick is turned so that Right leads right and Up up"
+        " or away, as the page shows the arm from there; None leaves it as the model learned it, z = u."
+    ),
 ]
 Datasets = Annotated[
     tuple[Path, ...],

@@ -10,7 +10,16 @@ from tyro.conf import Positional, UseAppendAction, arg
 
 from latentarm.commands.choices import TaskName
 from latentarm.commands.configuration import write_options
-from latentarm.commands.options import AnyArm, EndEffector, JointSpeed, Json, LimitsFile, LinkSpeed, Seed
+from latentarm.commands.options import (
+    AnyArm,
+    EndEffector,
+    JointSpeed,
+    Json,
+    LimitsFile,
+    LinkSpeed,
+    Seated,
+    Seed,
+)
 from latentarm.commands.output import draws_blocks, say
 from latentarm.errors import UserError
 
@@ -24,9 +33,8 @@ def teleop(
         str, arg(help="The address to serve; from other machines people need a link that works once.")
     ] = "127.0.0.1",
     port: Annotated[int, arg(help="Port; 0 takes any free one.")] = 8460,
-    profile: Annotated[
-        str | None, arg(metavar="NAME", help="Profile made by `latentarm align`; z = u without one.")
-    ] = None,
+    profile: Annotated[str | None, arg(metavar="NAME", help="Profile made by `latentarm align`.")] = None,
+    seat: Seated = "facing",
     certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
     arm: AnyArm = None,
@@ -117,6 +125,7 @@ def teleop(
         keep_out=stated.keep_out,
         speeds=speeds,
         incidents=incidents,
+        seat=seat,
     )
     config = TeleopConfig(spec, host, port, certfile, keyfile, pin, cameras)
     serve(config, partial(say, json=json), ready, draws=draws_blocks())

@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import final
 
 from latentarm.alignment.contract import Alignment, identity
+from latentarm.alignment.frame import Seat, StickFrame
+from latentarm.alignment.frame_file import load_frame
 from latentarm.alignment.profile import load_profile
 from latentarm.context import BELIEF, GRIPPER, ContextLayout, context_vector
 from latentarm.control.controller import Controller
@@ -68,12 +70,12 @@ class LatentController(Controller):
         return self._decoder.decode(z, self._vector(context))
 
     def speed_bound(self, context: Context, mode: int) -> float | None:
-        """That of the decoder's enclosure; None with an alignment, whose z may lie outside [-1, 1]^d.
+        """That of the decoder's enclosure; None with a person's alignment, whose z may leave [-1, 1]^d.
 
         Raises:
             UserError: the decoder was trained for another arm or another number of goals.
         """
-        if self._alignment is not identity:
+        if self._alignment is not identity and not isinstance(self._alignment, StickFrame):
             return None
         enclosure = self._decoder.enclose(self._vector(context))
         return None if enclosure is None else float(enclosure.largest())
@@ -88,13 +90,15 @@ class LatentController(Controller):
         return vector
 
 
-def latent_controller(run: Path, profile: str | None, robot: Robot) -> LatentController:
+def latent_controller(run: Path, profile: str | None, robot: Robot, seat: Seat | None) -> LatentController:
     """What steers by a run's latent actions.
 
     Args:
         run: the run's folder.
-        profile: name of the person whose alignment stands between input and latent action; z = u where None.
+        profile: name of the person whose alignment stands between input and latent action, or None.
         robot: the arm.
+        seat: where a person without a profile sits, for whom the run's `StickFrame` turns the stick; z = u
+            where None, and where the run keeps no frame.
 
     Raises:
         UserError: the run has no such profile, its model is broken, or it is for another arm.
@@ -105,7 +109,10 @@ def latent_controller(run: Path, profile: str | None, robot: Robot) -> LatentCon
         raise UserError(
             f"{run} was trained for {decoder.action_dim} joints and the robot {robot.name} has {robot.dof}."
         )
-    return LatentController(decoder, identity if person is None else person.alignment(decoder, robot.chain))
+    if person is not None:
+        return LatentController(decoder, person.alignment(decoder, robot.chain))
+    frame = None if seat is None else load_frame(run, 0, seat, robot.chain)
+    return LatentController(decoder, frame or identity)
 
 
 def _misfit(layout: ContextLayout, context: Context) -> str:

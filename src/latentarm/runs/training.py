@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from latentarm.alignment.frame_file import save_frames
 from latentarm.assistance.annotation import prepared
 from latentarm.assistance.entropy import GoalEntropy
 from latentarm.context import JOINTS, Named, feature_names
@@ -160,6 +161,9 @@ def train_run(config: TrainConfig, report: Report | None = None) -> Training:
         rng = np.random.default_rng([ALIGN_STREAM, config.seed])
         samples = take_samples(model, demonstrations, training, held_out, robot.chain, rng)
         facts["samples"] = save_samples(config.out, samples)
+        if samples.motions is not None and model.latent_dim == 2:
+            decoders = [model.decoder(seed) for seed in range(model.seeds)]
+            facts["frame"] = save_frames(config.out, decoders, robot.chain, samples.motions.context)
         routes = _routes(robot, select_episodes(demonstrations, held_out), config.context)
         run = replace(run, robot_model=_copy_of(robot, config.out), **routes)
     facts |= run_facts(run)

@@ -176,7 +176,8 @@ test("a direction of the stick has the colour of its arrow, or one between those
 function profilesAsked(profile, state, welcome = welcomeOf({ profiles: ["ada"] })) {
   const sent = [];
   const connection = Object.assign(new EventTarget(), {
-    state: stateOf(state), welcome, driving: true, engaged: false, send: (message) => sent.push(message.name),
+    state: stateOf(state), welcome, driving: true, engaged: false,
+    send: ({ name }) => name === connection.state.profile || sent.push(name),
   });
   const settings = new Settings();
   settings.change({ profile });
@@ -195,4 +196,28 @@ test("no alignment is asked for without a choice, where it is on already, is not
   assert.deepEqual(profilesAsked("ada", { profile: "ada" }), []);
   assert.deepEqual(profilesAsked("gone", {}), []);
   assert.deepEqual(profilesAsked("ada", { profile: ".trial" }), []);
+});
+
+test("where the person sits is said once, when it changes, and when they drive again", () => {
+  const sent = [];
+  const connection = Object.assign(new EventTarget(), {
+    state: stateOf({ profile: "bea" }), welcome: welcomeOf({ profiles: ["bea"] }), driving: true, engaged: false,
+    send: (message) => sent.push(message),
+  });
+  const settings = new Settings();
+  attachProfileChoice(connection, settings);
+  const said = () => {
+    for (let times = 0; times < 3; times += 1) connection.dispatchEvent(new Event("state"));
+    return sent.splice(0);
+  };
+  assert.deepEqual(said(), [{ type: "profile", name: "bea", seat: "facing" }]);
+  connection.engaged = true;
+  settings.change({ seat: "behind" });
+  assert.deepEqual(said(), []);
+  connection.engaged = false;
+  assert.deepEqual(said(), [{ type: "profile", name: "bea", seat: "behind" }]);
+  connection.driving = false;
+  assert.deepEqual(said(), []);
+  connection.driving = true;
+  assert.deepEqual(said(), [{ type: "profile", name: "bea", seat: "behind" }]);
 });

@@ -223,6 +223,7 @@ class Drive:
         self._note_until_s = self._clock.now_s() + NOTE_S
 
     def _carry_out(self, order: Order, record: StepRecord) -> None:
+        spec = self._setup.spec
         match order:
             case Enable(driver=driver, stops=stops):
                 # An Enable from before the newest Stop is ignored, whichever arrives first.
@@ -254,7 +255,7 @@ class Drive:
             case Reconnect():
                 if self._standing.connect_again() == "anew":
                     self._change_to(order)
-            case ChooseProfile(name=name) if name == self._setup.spec.profile:
+            case ChooseProfile() if (order.name, spec.seated(order.seat)) == (spec.profile, spec.seat):
                 pass
             case BeginTask(choice=int(choice)) if not 0 <= choice < len(self._setup.todo.choices):
                 pass

@@ -7,6 +7,7 @@ from typing import Final, final
 
 import numpy as np
 
+from latentarm.alignment.frame import Seat
 from latentarm.arms.address import is_address
 from latentarm.arms.catalogue import check_named
 from latentarm.arms.contract import Arm, SceneArm
@@ -71,7 +72,7 @@ class Spec:
 
     Attributes:
         run: a trained run, or None for end-effector control alone at the table-top task.
-        profile: the person whose alignment is used; z = u where None.
+        profile: the person whose alignment is used, or None.
         seed: of where the arm starts and where things stand.
         out: folder for recordings.
         journal: how much room a recording may take.
@@ -85,6 +86,7 @@ class Spec:
         keep_out: what it must keep clear of, besides what the task says.
         speeds: how fast it may move anywhere.
         incidents: whether what the arm is told is kept for a while, see `latentarm.web.arm_process.incident`.
+        seat: where a person without a profile sits, see `latent_controller`; None for z = u.
 
     Raises:
         UserError: the seed is out of range, or a profile is named without a run.
@@ -104,6 +106,7 @@ class Spec:
     keep_out: tuple[Obstacle, ...] = ()
     speeds: Speeds = field(default_factory=Speeds)
     incidents: bool = True
+    seat: Seat | None = "facing"
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
@@ -112,6 +115,10 @@ class Spec:
             raise UserError(
                 "A profile belongs to a run: name one, as in `latentarm teleop RUN --profile NAME`."
             )
+
+    def seated(self, seat: Seat | None) -> Seat | None:
+        """What ``seat`` becomes where a person says where they sit, or None says nothing; z = u stays."""
+        return self.seat and (seat or self.seat)
 
 
 @final
@@ -277,21 +284,22 @@ class DriveSetup:
         )
 
 
-def with_profile(setup: DriveSetup, profile: str | None) -> DriveSetup:
+def with_profile(setup: DriveSetup, profile: str | None, seat: Seat | None) -> DriveSetup:
     """The same setup with another person's alignment; neither dataset nor robot is read again.
 
     Args:
         setup: what is driven.
-        profile: whose alignment; z = u where None.
+        profile: whose alignment, or None.
+        seat: see `Spec`.
 
     Raises:
         UserError: no run is driven, or the profile or the model cannot be used.
     """
-    spec = replace(setup.spec, profile=profile)
+    spec = replace(setup.spec, profile=profile, seat=seat)
     if spec.run is None:
         return setup
     robot = setup.task.robot
-    latent = latent_controller(spec.run, profile, robot)
+    latent = latent_controller(spec.run, profile, robot, seat)
     return replace(setup, spec=spec, controller=JoinedController([latent, EndEffectorController(robot)]))
 
 
@@ -310,7 +318,7 @@ def load_setup(spec: Spec) -> DriveSetup:
     else:
         begun = begin(run, name, arm, spec.choice, spec.robot, np.random.default_rng(spec.seed))
     task = begun.place
-    latent = None if spec.run is None else latent_controller(spec.run, spec.profile, task.robot)
+    latent = None if spec.run is None else latent_controller(spec.run, spec.profile, task.robot, spec.seat)
     if task.robot.dof > MOST_JOINTS or len(task.goals) > MOST_GOALS:
         raise UserError(
             f"{spec.run} has {task.robot.dof} joints and {len(task.goals)} goals: the page drives"

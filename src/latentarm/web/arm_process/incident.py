@@ -15,6 +15,7 @@ import numpy as np
 from threadpoolctl import threadpool_info
 
 from latentarm import __version__
+from latentarm.alignment.frame_file import FRAME_NAME
 from latentarm.alignment.profile import folder_of
 from latentarm.control.call_log import MOST_FILE_BYTES, CallLog
 from latentarm.control.exact_json import of_json, to_json
@@ -135,6 +136,7 @@ def _head(setup: DriveSetup) -> list[dict[str, Any]]:
     copied: dict[str, Path] = {} if limits is None else {f"{_LIMITS}{limits.suffix}": limits}
     if spec.run is not None:
         kept = [spec.run / CONFIG_NAME, spec.run / WEIGHTS_NAME, *(spec.run / ROBOT).glob("*")]
+        kept += spec.run.glob(FRAME_NAME)
         if spec.profile is not None:
             kept += folder_of(spec.run, spec.profile).glob("*")
         copied |= {f"{_RUN}/{file.relative_to(spec.run).as_posix()}": file for file in kept}

@@ -107,8 +107,8 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
                         case BeginTask() as order:
                             setup, arm, note = _begun_again(setup, arm, order, clock)
                             steering.run = None
-                        case ChooseProfile(name=name):
-                            setup, note = _loaded(partial(_other_profile, setup, name), setup)
+                        case ChooseProfile() as order:
+                            setup, note = _loaded(partial(_other_profile, setup, order), setup)
                         case ChooseRun(run=run):
                             spec = replace(setup.spec, run=Path(run), profile=None, choice=0)
                             before = arm
@@ -125,8 +125,8 @@ def run_control(spec: Spec, channel: Channel, server: int) -> None:
             writer.close()
 
 
-def _other_profile(setup: DriveSetup, name: str | None) -> DriveSetup:
-    other = with_profile(setup, name)
+def _other_profile(setup: DriveSetup, order: ChooseProfile) -> DriveSetup:
+    other = with_profile(setup, order.name, setup.spec.seated(order.seat))
     other.step()
     return other
 

@@ -4,6 +4,7 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter, ValidationError
 
+from latentarm.alignment.frame import Seat
 from latentarm.types import GripperAsk
 from latentarm.web.protocol.notice import Message
 
@@ -113,10 +114,16 @@ class ChooseHelp(Message):
 
 @final
 class ChooseProfile(Message):
-    """Take another person's alignment, or None for z = u; only while the arm stands disengaged."""
+    """Take another person's alignment, or None for none; only while the arm stands disengaged.
+
+    Attributes:
+        name: of their profile.
+        seat: where they sit; None for where the person before sat.
+    """
 
     order: Literal["profile"] = "profile"
     name: str | None
+    seat: Seat | None = None
 
 
 @final

@@ -8,6 +8,7 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter
 
+from latentarm.alignment.frame import Seat
 from latentarm.types import GripperAsk
 from latentarm.web.protocol.copilot_messages import CopilotMessage
 from latentarm.web.protocol.learning_messages import CancelTraining, PickRun, Train
@@ -110,10 +111,16 @@ class HelpFromRobot(Message):
 
 @final
 class Profile(Message):
-    """Use a person's alignment, or null for none; while the arm is not enabled."""
+    """Use a person's alignment, or null for none; while the arm is not enabled.
+
+    Attributes:
+        name: of their profile.
+        seat: where they sit, which turns the stick of those without a profile.
+    """
 
     type: Literal["profile"]
     name: Annotated[str, Field(max_length=64)] | None
+    seat: Seat | None = None
 
 
 @final

@@ -272,8 +272,8 @@ class DriveSocket:
                 copilot = self._sessions.named(self._sessions.copilot.page)
                 if self._sessions.copilot.end() and copilot is not None:
                     self._copilot_changed("copilot_ended", copilot)
-            case Profile(name=name):
-                self._control.order(ChooseProfile(name=name))
+            case Profile(name=name, seat=seat):
+                self._control.order(ChooseProfile(name=name, seat=seat))
             case RecordEpisode(on=on, task=task, by_hand=by_hand):
                 self._control.order(Record(on=on, task=task, person=_recorded_as(page), by_hand=by_hand))
             case GuideArm(on=True) if self._states.loading or self._learning.personalising.standstill:

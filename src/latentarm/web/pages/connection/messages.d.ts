@@ -235,6 +235,7 @@ export interface PressStop {
 export interface Profile {
   type: "profile";
   name: string | null;
+  seat?: "facing" | "behind" | null;
 }
 
 export interface QuestionBefore {

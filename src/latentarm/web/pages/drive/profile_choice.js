@@ -7,7 +7,8 @@ import { NO_PROFILE } from "../settings/settings.js";
 /** @import {Settings} from "../settings/settings.js" */
 
 /**
- * Asks for it once they drive and the arm is not enabled, once for each choice. Without a choice the server's stays.
+ * Asks for it and says where they sit once they drive and the arm is not enabled, once for each choice. Without a choice of an
+ * alignment the server's stays.
  *
  * @param {Connection} connection
  * @param {Settings} settings
@@ -17,13 +18,16 @@ export function attachProfileChoice(connection, settings) {
 
   const choose = () => {
     const { state, welcome } = connection;
-    const { profile } = settings.values;
-    const known = profile === NO_PROFILE || welcome?.profiles.includes(profile);
+    const { profile, seat } = settings.values;
+    if (!connection.driving) asked = "";
     // An older choice does not replace what is being tried.
-    if (!state || !known || !connection.driving || connection.engaged || profile === asked || state.profile === TRIAL) return;
-    asked = profile;
-    const name = profile === NO_PROFILE ? null : profile;
-    if (name !== state.profile) connection.send({ type: "profile", name });
+    if (!state || !connection.driving || connection.engaged || state.profile === TRIAL) return;
+    const known = profile === NO_PROFILE || welcome?.profiles.includes(profile);
+    const choice = JSON.stringify([known && profile, seat]);
+    if (choice === asked) return;
+    asked = choice;
+    const chosen = profile === NO_PROFILE ? null : profile;
+    connection.send({ type: "profile", name: known ? chosen : state.profile, seat });
   };
   connection.addEventListener("state", choose);
   settings.addEventListener("change", choose);
