@@ -1,10 +1,14 @@
 """What the control process does with inputs and orders, in simulated time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from latentarm.control.journal import read_journal
+from latentarm.types import Context
 from latentarm.web.arm_process.drive import Drive
+from latentarm.web.arm_process.drive_setup import with_profile
 from latentarm.web.arm_process.page_inputs import LATCH_MAX_S
 from latentarm.web.arm_process.steering import Steering
 from latentarm.web.protocol.notice import Notice
@@ -279,7 +283,10 @@ def test_an_orphan_brings_the_arm_to_rest_and_ends(desk):
     assert desk.drive.change is None
 
 
-@pytest.mark.parametrize("order", [Reset(), ChooseProfile(name="ada"), ChooseRun(run="other")])
+@pytest.mark.parametrize(
+    "order",
+    [Reset(), ChooseProfile(name="ada"), ChooseProfile(name=None, seat="behind"), ChooseRun(run="other")],
+)
 def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
     def tick(now_s):
         enabled_at(desk, now_s)
@@ -298,6 +305,30 @@ def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
     assert "stop_first" in {report.note.code for report in desk.reports if report.note is not None}
     # Nothing more is said until it is there, and that is said.
     assert [report.loading for report in desk.reports[-2:]] == [False, True]
+
+
+@pytest.mark.parametrize(("started", "seat"), [("facing", "facing"), ("behind", None), (None, "behind")])
+def test_the_stick_stays_for_the_same_seat_and_where_it_is_never_turned(setup, desk_of, started, seat):
+    with desk_of(replace(setup, spec=replace(setup.spec, seat=started))) as desk:
+
+        def tick(now_s):
+            enabled_at(desk, now_s)
+            desk.give(0.0, 0.0)
+            if abs(now_s - 0.5) < 0.005:
+                desk.order(ChooseProfile(name=None, seat=seat))
+
+        desk.each_tick = tick
+        desk.run(1.0)
+        assert desk.drive.change is None
+        assert not any(report.note for report in desk.reports[-20:])
+
+
+def test_another_seat_turns_the_stick(setup):
+    u, here = np.array([1.0, 0.0]), Context(setup.start, np.empty(0))
+    facing, behind = (
+        with_profile(setup, None, seat).controller.latent(u, here, 0) for seat in ("facing", "behind")
+    )
+    assert np.abs(facing - behind).max() > 0.5
 
 
 def test_an_episode_ends_before_the_arm_is_put_back(desk):

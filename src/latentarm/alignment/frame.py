@@ -44,7 +44,7 @@ ROUGHNESS: Final = 0.01
 CONTEXTS: Final = 500
 CENTRES: Final = 32
 PUSHES: Final = 16
-STEPS: Final = 100
+STEPS: Final = 20
 """Contexts that are looked at, places about which the turn may change, directions of the stick, and steps of
 the fit; of the first two at most so many."""
 
@@ -90,11 +90,11 @@ class StickFrame:
 
 
 def fit_frame(decoder: Decoder, chain: Chain, contexts: FloatArray, seat: Seat) -> StickFrame:
-    """Turn and mirror the stick so that a push leads, in the first view of the page, where it points.
+    """Turn and mirror the stick so that a push leads where it points: right and up or away.
 
-    Seen in the view, pushes e in a context lead to velocities v(e), in units of the tools' root mean square
-    speed there. The turn and the mirror maximise the mean of ``v(R M u) · u`` over all directions of u and
-    all contexts, so places count little where the decoder hardly moves the tool in the view.
+    Along these two directions, pushes e in a context lead to velocities v(e), in units of the tools' root
+    mean square speed there. The turn and the mirror maximise the mean of ``v(R M u) · u`` over all directions
+    of u and all contexts, so places count little where the decoder hardly moves the tool along either.
 
     Args:
         decoder: phi, of two axes.
@@ -109,7 +109,8 @@ def fit_frame(decoder: Decoder, chain: Chain, contexts: FloatArray, seat: Seat) 
     action = decoder.decode(pushes, contexts[:, None])
     twist = np.matvec(tool_jacobian(chain, transforms)[:, None], action)
     size = np.sqrt(np.square(twist).sum(axis=-1).mean(axis=-1))[:, None, None]
-    seen = twist[..., :3] @ view(transforms, seat).T / np.maximum(size, 1e-9)
+    velocity = twist[..., :3] / np.maximum(size, 1e-9)
+    seen = velocity @ right_and_up(velocity.reshape(-1, 3), view(transforms, seat)).T
     gain = 2 / PUSHES * np.einsum("nki,nkj->nij", seen, np.broadcast_to(pushes, seen.shape))
     place = pose_vectors_at(chain, transforms)
     fits: list[tuple[float, Meaning]] = []
@@ -118,6 +119,21 @@ def fit_frame(decoder: Decoder, chain: Chain, contexts: FloatArray, seat: Seat) 
         even, odd = gain[:, 0, 0] + up * gain[:, 1, 1], gain[:, 0, 1] - up * gain[:, 1, 0]
         fits.append(_fit(place, even, odd, np.diag([1.0, up])))
     return StickFrame(max(fits, key=lambda fit: fit[0])[1], chain)
+
+
+def right_and_up(velocity: FloatArray, view: FloatArray) -> FloatArray:
+    """What the axes of the stick should lead along, (2, 3), unit vectors of the base frame.
+
+    The first is right. The second is that direction across it along which a tool moves most, be it up or away,
+    and up in the view.
+
+    Args:
+        velocity: (N, 3), of a tool.
+        view: see `view`.
+    """
+    across = np.stack([view[1], np.cross(*view)])
+    up = np.linalg.svd(velocity @ across.T, full_matrices=False)[2][0] @ across
+    return np.stack([view[0], up if up @ view[1] >= 0 else -up])
 
 
 def view(transforms: FloatArray, seat: Seat) -> FloatArray:
