@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import latentarm.web.pages
 from latentarm.alignment.contract import identity
-from latentarm.alignment.frame import CAMERAS, FLAT, STEEPEST_RAD_M, StickFrame, fit_frame, view
+from latentarm.alignment.frame import CAMERAS, FLAT, STEEPEST_RAD_M, StickFrame, fit_frame, right_and_up, view
 from latentarm.alignment.frame_file import FRAME_NAME, load_frame, save_frames
 from latentarm.alignment.meaning import rotations
 from latentarm.alignment.poses import pose_vectors
@@ -72,6 +72,15 @@ def test_a_person_behind_the_arm_has_other_directions(slides):
     decoder = Turned(lambda context: 0.0 * context[..., 0])
     frame = fit_frame(decoder, slides.chain, spread(), "behind")
     assert (led(decoder, frame, spread(), np.array([1.0, 0.0]))[:, 0] < -0.8).all()
+
+
+@pytest.mark.parametrize(("seat", "away"), [("facing", [-1.0, 0.0, 0.0]), ("behind", [0.88, 0.48, 0.0])])
+def test_up_leads_up_or_away_whichever_the_tool_moves_along(panda, seat, away):
+    seen = view(panda.chain.link_transforms(panda.home[None]), seat)
+    moves = np.random.default_rng(0).normal(size=(200, 3))
+    over_the_table, upright = moves * [1.0, 1.0, 0.01], moves * [0.01, 1.0, 1.0]
+    np.testing.assert_allclose(right_and_up(over_the_table, seen)[1], away, atol=0.1)
+    assert right_and_up(upright, seen)[1] @ [0.0, 0.0, 1.0] > 0.8
 
 
 def test_a_flat_arm_is_seen_from_above(arm):
