@@ -1,9 +1,9 @@
 """How simulated newcomers do with z = u, with the stick's frame, and after two and ten answers.
 
 A newcomer expects Right to lead right, and Up to lead up or away, whichever the demonstrations mostly do, in
-their own directions (turned a little; for one person in five the second axis is upside down), and learns from what they
-see. They drive at the table of the demo; at a task of the study of alignments only the error is measured.
-Each drive is kept in a file and is not driven again. For example:
+their own directions (turned a little; for one person in five the second axis is upside down), and learns from
+what they see. They drive at the table of the demo; at a task of the study of alignments only the error is
+measured. What was measured is kept in a file and is not measured again. For example:
 python scripts/stick_frame.py table_top plane --models cvae homogeneous --people 10 --out stick_frame
 """
 
@@ -142,7 +142,7 @@ def measure(task: str, model: str, asked: argparse.Namespace) -> None:
             key = f"{person.number} {name}"
             if key not in kept:
                 kept[key] = {"error": relative_alignment_error(alignment, decoder, scene.chain, truth)}
-                if task == TABLE:
+                if task == TABLE and not asked.errors_only:
                     goal = person.number % len(place.goals)
                     _, manner, rng = plan[goal * asked.people + person.number]
                     who = person.newcomer(meaning.usual, 0)
@@ -151,8 +151,9 @@ def measure(task: str, model: str, asked: argparse.Namespace) -> None:
                     time_s = figures.time_s if figures.success else LIMIT_S
                     kept[key] |= {"done": figures.success, "time_s": time_s}
                 path.write_text(json.dumps(kept, indent=1))
-            conditions.setdefault(name, []).append(kept[key])
-    for name, of in conditions.items():
+            for group in ("everybody", "upside down" if person.mirrored else "upright"):
+                conditions.setdefault(f"{group}, {name}", []).append(kept[key])
+    for name, of in sorted(conditions.items()):
         print(f"{task}, {model}, {name}, {len(of)} people:", end="")
         for figure in of[0]:
             values = [one[figure] for one in of]
@@ -165,6 +166,7 @@ if __name__ == "__main__":
     parser.add_argument("tasks", nargs="+", choices=[TABLE, "plane", "pour", "reach_and_pour"])
     parser.add_argument("--models", nargs="+", default=["cvae", "homogeneous"])
     parser.add_argument("--people", type=int, default=10)
+    parser.add_argument("--errors-only", action="store_true", help="nobody drives")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("stick_frame"))
     options = parser.parse_args()

@@ -283,10 +283,7 @@ def test_an_orphan_brings_the_arm_to_rest_and_ends(desk):
     assert desk.drive.change is None
 
 
-@pytest.mark.parametrize(
-    "order",
-    [Reset(), ChooseProfile(name="ada"), ChooseProfile(name=None, seat="behind"), ChooseRun(run="other")],
-)
+@pytest.mark.parametrize("order", [Reset(), ChooseProfile(name="ada"), ChooseRun(run="other")])
 def test_what_changes_the_setting_waits_for_a_stopped_arm(desk, order):
     def tick(now_s):
         enabled_at(desk, now_s)
@@ -321,6 +318,24 @@ def test_the_stick_stays_for_the_same_seat_and_where_it_is_never_turned(setup, d
         desk.run(1.0)
         assert desk.drive.change is None
         assert not any(report.note for report in desk.reports[-20:])
+
+
+def test_another_seat_waits_for_a_stopped_arm(setup, desk_of):
+    order = ChooseProfile(name=None, seat="behind")
+    with desk_of(replace(setup, spec=replace(setup.spec, seat="facing"))) as desk:
+
+        def tick(now_s):
+            enabled_at(desk, now_s)
+            desk.give(0.0, 0.0)
+            if min(abs(now_s - 0.5), abs(now_s - 1.0)) < 0.005:
+                desk.order(order)
+            if abs(now_s - 0.7) < 0.005:
+                desk.channel.stop.write(b"Stop.")
+
+        desk.each_tick = tick
+        desk.drive.run()
+        assert desk.clock.now_s() > 0.99
+        assert desk.drive.change == order
 
 
 def test_another_seat_turns_the_stick(setup):

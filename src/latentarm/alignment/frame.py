@@ -124,8 +124,8 @@ def fit_frame(decoder: Decoder, chain: Chain, contexts: FloatArray, seat: Seat) 
 def right_and_up(velocity: FloatArray, view: FloatArray) -> FloatArray:
     """What the axes of the stick should lead along, (2, 3), unit vectors of the base frame.
 
-    The first is right. The second is that direction across it along which a tool moves most, be it up or away,
-    and up in the view.
+    The first is right. The second is that direction across it along which a tool moves most, be it up or
+    away, with the sign that is up in the view.
 
     Args:
         velocity: (N, 3), of a tool.

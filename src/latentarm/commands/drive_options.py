@@ -56,7 +56,7 @@ class DriveOptions:
     end_effector: EndEffector = None
     limits: LimitsFile = None
     profile: Annotated[str | None, arg(metavar="NAME", help="Profile made by `latentarm align`.")] = None
-    seat: Seated = "facing"
+    seat: Seated = None
     drives: Annotated[int, arg(help="Drives for each goal.")] = 3
     operator: Annotated[
         OperatorName | None,

@@ -34,7 +34,7 @@ def teleop(
     ] = "127.0.0.1",
     port: Annotated[int, arg(help="Port; 0 takes any free one.")] = 8460,
     profile: Annotated[str | None, arg(metavar="NAME", help="Profile made by `latentarm align`.")] = None,
-    seat: Seated = "facing",
+    seat: Seated = None,
     certfile: Annotated[Path | None, arg(metavar="PEM", help="Certificate for TLS.")] = None,
     keyfile: Annotated[Path | None, arg(metavar="PEM", help="Its private key.")] = None,
     arm: AnyArm = None,

@@ -106,7 +106,7 @@ class Spec:
     keep_out: tuple[Obstacle, ...] = ()
     speeds: Speeds = field(default_factory=Speeds)
     incidents: bool = True
-    seat: Seat | None = "facing"
+    seat: Seat | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed < SEEDS:
