@@ -48,8 +48,8 @@ LimitsFile = Annotated[
 Seated = Annotated[
     Seat | None,
     arg(
-        help="Where a person without a profile sits, as the page's first view shows the arm: the stick is turned"
-        " so that Right leads right and Up leads up or away. None leaves it as the model learned it, z = u."
+        help="Where a person without a profile sits: the stick is turned so that Right leads right and Up up"
+        " or away in the page's first view. None leaves it as the model learned it, z = u."
     ),
 ]
 Datasets = Annotated[
