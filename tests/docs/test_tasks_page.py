@@ -15,6 +15,7 @@ from latentarm.tasks.eating.stabbing import LIFTED_M as STABBED_M
 from latentarm.tasks.eating.table import MARSHMALLOW
 from latentarm.tasks.predicates import Holding, Poured, Pressed, Spilled, Stabbed, Swept
 from latentarm.tasks.serving.cup_steps import LIFTED_M as TAKEN_M
+from latentarm.tasks.steps import FINE_M, FINE_RAD, PATIENCE_S
 
 PAGE = (ROOT / "docs/tasks.md").read_text()
 FIGURE = re.compile(r"(\d+(?:\.\d+)?) ?(cm|mm|N|%|°|rad|s)(?!\w)")
@@ -92,4 +93,5 @@ def test_what_holds_food_and_what_parts_it_is_as_the_page_says():
 
 def test_a_drive_ends_and_a_stopped_arm_goes_on_when_the_page_says():
     prose = "\n".join(line for line in section("How a task is done").splitlines() if line[:1] != "|")
-    assert stated(prose) == {(STUCK_S, "s"), (REARM_S, "s")}
+    fine = {(1000 * FINE_M, "mm"), (FINE_RAD, "rad")}
+    assert stated(prose) == {(STUCK_S, "s"), (REARM_S, "s"), (PATIENCE_S, "s"), *fine}
