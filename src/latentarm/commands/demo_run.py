@@ -14,6 +14,7 @@ from latentarm.assistance.assistance import AssistanceRule
 from latentarm.assistance.blending import FixedAlpha
 from latentarm.assistance.goal_blending import blending
 from latentarm.commands.demo_page import FILM, film, held_in_words, page
+from latentarm.context import JOINTS, OBJECTS_IN_TOOL
 from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
@@ -49,6 +50,10 @@ if TYPE_CHECKING:
 
 MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae")))
 """The default model and the paper's."""
+
+CONTEXT: Final[Mapping[str, tuple[str, ...]]] = {DEFAULT_MODEL: (JOINTS, OBJECTS_IN_TOOL), "cvae": (JOINTS,)}
+WAY_BACK_M: Final[Mapping[str, float]] = {DEFAULT_MODEL: 0.06, "cvae": 0.0}
+"""What each model sees, and the length of its way back, m: the cVAE is as in the paper, without one."""
 
 HIDDEN: Final = (64, 64)
 BATCH_SIZE: Final = 256
@@ -204,6 +209,8 @@ def _learn(call: _Learning) -> list[Row]:
         seed=config.seed,
         state_noise_rad=STATE_NOISE_RAD,
         epochs=call.epochs,
+        context=CONTEXT[call.model],
+        way_back_m=WAY_BACK_M[call.model],
         hidden=HIDDEN,
         batch_size=BATCH_SIZE,
         task=TASK.name,
