@@ -137,13 +137,19 @@ def icing(name: str, x: float, y: float) -> Thing:
 
 
 def _steps(rice: Interior) -> tuple[TaskStep, ...]:
-    enter, leave = -0.035, 0.035
+    # Nearer to the base the tilted fork brings the arm to its limits.
+    enter, leave = -0.025, 0.045
+    swept = Swept(MARSHMALLOW, "icing", WET, SWEEP_M)
     low = MARSHMALLOW_HALF_M + 0.006
     over_it = partial(carried_over, food=MARSHMALLOW)
     through = (
         Waypoint(partial(over_it, thing="icing", height_m=0.07, tilt_rad=SCOOP_RAD, out_m=enter)),
         Waypoint(partial(over_it, thing="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=enter), speed=0.6),
-        Waypoint(partial(over_it, thing="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=leave), speed=0.6),
+        Waypoint(
+            partial(over_it, thing="icing", height_m=low, tilt_rad=SCOOP_RAD, out_m=leave),
+            speed=0.6,
+            until=swept,
+        ),
         Waypoint(partial(over_it, thing="icing", height_m=0.08, tilt_rad=SCOOP_RAD, out_m=leave)),
     )
     into = (
@@ -159,7 +165,6 @@ def _steps(rice: Interior) -> tuple[TaskStep, ...]:
     centre = np.array([*OWN_M, STAND_M + MARSHMALLOW_HALF_M])
     laid = Placed(MARSHMALLOW, centre, np.array([0.8 * SMALL_M, 0.8 * SMALL_M, 0.015]), let_go=False)
     iced = CarriedOver(MARSHMALLOW, "icing", ICING_RADIUS_M)
-    swept = Swept(MARSHMALLOW, "icing", WET, SWEEP_M)
     with_it = partial(TaskStep, holds=MARSHMALLOW)
     dipped = Interior(rice.radius_m, rice.bottom_m, rice.bottom_m + 0.025)
     return (
