@@ -21,10 +21,11 @@ from latentarm.simulation.film import Camera, Film, strip
 from latentarm.simulation.task_drive import TaskSetup, drive_task
 from latentarm.studies.streams import generator
 from latentarm.studies.tasks.cell import ShownCell, TrainingCell, show, train, training_set
+from latentarm.studies.tasks.condition import Condition
 from latentarm.studies.tasks.kept import MODELS
 from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm.studies.tasks.rows import STUDY
-from latentarm.studies.tasks.runs import Condition, Driver, choice_of, decoders_of, kept_in
+from latentarm.studies.tasks.runs import Driver, choice_of, decoders_of, kept_in
 from latentarm.style import save_figure
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task
 from latentarm.untrusted.documents import read_object

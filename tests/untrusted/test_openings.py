@@ -51,6 +51,7 @@ ALLOWED = {
     "demonstrations/npz_file.py": {"archive.open"},  # a member of an archive that was opened within bounds
     "web/records/exchange.py": {"archive.open"},  # the same
     "runs/results_folder.py": {"json.loads"},  # what it has just written
+    "runs/source.py": {"path.read_bytes"},  # part of the package
     "web/server/assets.py": {"path.read_bytes"},  # part of the package, or of NiceGUI
     "web/words/catalogue.py": {"file.read_text", "json.loads"},  # part of the package
     "operators/calibration.py": {

@@ -5,20 +5,18 @@ push and the opposite push stay what the decoder makes of them.
 """
 
 from dataclasses import dataclass
-from typing import Final, Literal, final
+from typing import Final, final
 
 import numpy as np
 
 from latentarm.alignment.meaning import Meaning, rotations
 from latentarm.alignment.poses import pose_vectors, pose_vectors_at
+from latentarm.alignment.seat import Seat
 from latentarm.alignment.twists import tool_jacobian
 from latentarm.errors import UserError
 from latentarm.kinematics.chain import Chain
 from latentarm.models.decoder import Decoder
 from latentarm.types import FloatArray
-
-Seat = Literal["facing", "behind"]
-"""Where a person sits: facing the arm or behind it."""
 
 CAMERAS: Final[dict[Seat, tuple[float, float, float]]] = {
     "facing": (1.0, 0.0, 0.42),

@@ -8,9 +8,10 @@ from typing import Final, get_args
 import numpy as np
 from safetensors.numpy import save
 
-from latentarm.alignment.frame import CENTRES, LENGTH_M, Seat, StickFrame, fit_frame
+from latentarm.alignment.frame import CENTRES, LENGTH_M, StickFrame, fit_frame
 from latentarm.alignment.meaning import Meaning
 from latentarm.alignment.poses import POSE_SIZE
+from latentarm.alignment.seat import Seat
 from latentarm.errors import UserError
 from latentarm.files import written_whole
 from latentarm.kinematics.chain import Chain

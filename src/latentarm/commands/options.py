@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import arg
 
-from latentarm.alignment.frame import Seat
+from latentarm.alignment.seat import Seat
 from latentarm.arms.catalogue import ARMS
 
 Json = Annotated[bool, arg(help="Print one JSON document on standard output and nothing else there.")]

@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import final
 
 from latentarm.alignment.contract import Alignment, identity
-from latentarm.alignment.frame import Seat, StickFrame
+from latentarm.alignment.frame import StickFrame
 from latentarm.alignment.frame_file import load_frame
 from latentarm.alignment.profile import load_profile
+from latentarm.alignment.seat import Seat
 from latentarm.context import BELIEF, GRIPPER, ContextLayout, context_vector
 from latentarm.control.controller import Controller
 from latentarm.demonstrations.gripper import ACTION_GRIPPER, GRIPPER_WIDTH

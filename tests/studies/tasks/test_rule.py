@@ -2,8 +2,9 @@
 
 import pytest
 
+from latentarm.studies.tasks.condition import Condition
 from latentarm.studies.tasks.rule import LEAST, PEOPLE, PRACTISED, SWITCHED, decide
-from latentarm.studies.tasks.runs import Condition, Run
+from latentarm.studies.tasks.runs import Run
 
 TASKS = ("entree", "pour")
 SLOW, FAST, LONG = (Condition("joints", name) for name in ("cae", "cvae", "homogeneous"))

@@ -16,19 +16,12 @@ from latentarm.models.saving import load_decoder
 from latentarm.runs.results_folder import CONFIG
 from latentarm.studies.study import ALWAYS_MADE, Request, again, run_study
 from latentarm.studies.tasks.cell import Driven, show, training_set
+from latentarm.studies.tasks.condition import DEMONSTRATOR, ORIENTED, SWITCHING, Condition
 from latentarm.studies.tasks.figures import success_figure
 from latentarm.studies.tasks.kept import MODELS
 from latentarm.studies.tasks.preset import PRESETS, Preset
 from latentarm.studies.tasks.rows import rows_of, runs_as_json
-from latentarm.studies.tasks.runs import (
-    DEMONSTRATOR,
-    ORIENTED,
-    SWITCHING,
-    Condition,
-    Run,
-    kept_in,
-    time_ratios,
-)
+from latentarm.studies.tasks.runs import Run, kept_in, time_ratios
 from latentarm.studies.tasks.study import STUDY
 from latentarm.studies.tasks.tables import failure_table, measure_table, success_table, time_table
 from latentarm.tasks.catalogue import SCENE_TASKS, make_scene_task

@@ -16,17 +16,10 @@ from latentarm.simulation.demonstrate import dataset_of, demonstrate_once
 from latentarm.simulation.task_drive import TaskSetup, drive_task
 from latentarm.studies.fitting import fit_model, validation_episodes
 from latentarm.studies.streams import generator, integer, sequence
+from latentarm.studies.tasks.condition import Condition
 from latentarm.studies.tasks.moved import task_of
 from latentarm.studies.tasks.preset import CONTEXTS, Preset, Stream
-from latentarm.studies.tasks.runs import (
-    Condition,
-    Driver,
-    Run,
-    choice_of,
-    decoders_of,
-    driven_run,
-    shown_run,
-)
+from latentarm.studies.tasks.runs import Driver, Run, choice_of, decoders_of, driven_run, shown_run
 from latentarm.types import Demonstrations, Episode
 
 

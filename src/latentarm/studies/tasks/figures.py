@@ -7,7 +7,8 @@ import numpy as np
 
 from latentarm.metrics.looks import look_of
 from latentarm.studies.drawing import name_series, title
-from latentarm.studies.tasks.runs import Condition, Run
+from latentarm.studies.tasks.condition import Condition
+from latentarm.studies.tasks.runs import Run
 from latentarm.style import FONT_SIZE, SMALL_FONT_SIZE, TWO_COLUMNS_MM, new_figure, tidy
 
 if TYPE_CHECKING:

@@ -23,8 +23,9 @@ from latentarm.models.saving import CONFIG_LIMIT, CONFIG_NAME, read_model, read_
 from latentarm.runs.results_folder import write_json
 from latentarm.studies.study import Keep
 from latentarm.studies.tasks.cell import DriveCell, Driven, Shown, ShownCell, Trained, TrainingCell
+from latentarm.studies.tasks.condition import ORIENTED
 from latentarm.studies.tasks.orientation import OrientationCell, Oriented
-from latentarm.studies.tasks.runs import ORIENTED, Run, kept_in
+from latentarm.studies.tasks.runs import Run, kept_in
 from latentarm.types import Episode, FloatArray
 
 RUNS: Final = "runs"

@@ -17,9 +17,10 @@ from latentarm.demonstrations.things import ENVIRONMENT
 from latentarm.kinematics.chain import Chain
 from latentarm.kinematics.pose_rows import STORED, seen_rows
 from latentarm.studies.streams import generator, integer, sequence
+from latentarm.studies.tasks.condition import ORIENTED, Condition
 from latentarm.studies.tasks.moved import task_of
 from latentarm.studies.tasks.preset import Preset, Stream
-from latentarm.studies.tasks.runs import ORIENTED, Condition, Driver
+from latentarm.studies.tasks.runs import Driver
 from latentarm.types import Demonstrations, FloatArray
 
 NOISE_M: Final = 0.02

@@ -8,7 +8,7 @@ from typing import Final, cast, final
 from latentarm.errors import UserError
 from latentarm.models.catalogue import DEFAULT_MODEL
 from latentarm.operators.catalogue import PEOPLE, OperatorName
-from latentarm.studies.tasks.runs import Condition
+from latentarm.studies.tasks.condition import Condition
 
 CONTEXTS: Final[Mapping[str, tuple[str, ...]]] = {
     "joints": ("joints",),

@@ -7,8 +7,9 @@ from typing import Final, final
 from latentarm.metrics.summary import Subject, summarise
 from latentarm.metrics.task_drives import task_drive_rows
 from latentarm.studies.tasks.cell import Driven, Shown, Trained
+from latentarm.studies.tasks.condition import DEMONSTRATOR, Condition
 from latentarm.studies.tasks.preset import Stream
-from latentarm.studies.tasks.runs import DEMONSTRATOR, Condition, Run
+from latentarm.studies.tasks.runs import Run
 from latentarm.types import Row
 
 STUDY: Final = "tasks"

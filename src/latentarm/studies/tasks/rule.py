@@ -8,7 +8,8 @@ from typing import Final, final
 from scipy.stats import fisher_exact
 
 from latentarm.studies.page import listed, markdown_table
-from latentarm.studies.tasks.runs import SWITCHING, Condition, Run, time_ratios
+from latentarm.studies.tasks.condition import SWITCHING, Condition
+from latentarm.studies.tasks.runs import Run, time_ratios
 from latentarm.tasks.catalogue import SCENE_TASKS
 
 PRACTISED: Final = ("planning", "greedy", "unsteady")

@@ -1,69 +1,23 @@
 """One run of a task with things, by the scripted demonstrator or by a simulated person who drives."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from math import isfinite
-from typing import Final, final
+from typing import final
 
 from latentarm.control.controller import Controller
 from latentarm.controllers.end_effector import EndEffectorController
 from latentarm.controllers.latent import LatentController
 from latentarm.controllers.learned_orientation import LearnedOrientationController, OrientationMap
-from latentarm.metrics.looks import look_of
 from latentarm.metrics.task_drives import TaskDrive
 from latentarm.models.decoder import Decoder
 from latentarm.models.kind import TrainedModel
 from latentarm.robots.robot import Robot
 from latentarm.simulation.demonstrate import Demonstration
 from latentarm.simulation.task_drive import TaskTrace
+from latentarm.studies.tasks.condition import Condition
 from latentarm.tasks.scene_task import SceneTask
 from latentarm.tasks.steps import TaskStep
-
-DEMONSTRATOR: Final = "demonstrator"
-SWITCHING: Final = "end_effector"
-ORIENTED: Final = "learned_orientation"
-
-
-@final
-@dataclass(frozen=True)
-class Condition:
-    """What moves the arm, and who steers it.
-
-    Attributes:
-        name: `DEMONSTRATOR`, `SWITCHING`, `ORIENTED`, or for a model what its decoder sees, a name of
-            `CONTEXTS`.
-        model: a name of `latentarm.models.catalogue.KINDS`, or None.
-        way_back: whether the model has a way back.
-        person: a simulated person by name; None for the demonstrator, and for what all people steer with.
-    """
-
-    name: str
-    model: str | None = None
-    way_back: bool = False
-    person: str | None = None
-
-    def by(self, person: str | None) -> "Condition":
-        """The same with another person."""
-        return replace(self, person=person)
-
-    @property
-    def label(self) -> str:
-        """How tables and figures call what moves the arm."""
-        if self.model is None:
-            return look_of(self.name).label
-        return f"{look_of(self.model).label}{' + way back' if self.way_back else ''}, {self.name}"
-
-    @property
-    def row(self) -> str:
-        """The condition of a row, whose model stands beside it."""
-        return ", ".join(filter(None, (self.name, "way back" if self.way_back else "", self.person)))
-
-    @property
-    def folder(self) -> str:
-        """The name of its folder, among those of a task."""
-        return f"{self.model or ''}{'_way_back' if self.way_back else ''}_{self.name}".strip("_").replace(
-            " ", "_"
-        )
 
 
 @final

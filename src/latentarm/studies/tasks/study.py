@@ -26,6 +26,7 @@ from latentarm.studies.tasks.cell import (
     train,
     training_set,
 )
+from latentarm.studies.tasks.condition import DEMONSTRATOR, SWITCHING, Condition
 from latentarm.studies.tasks.figures import success_figure
 from latentarm.studies.tasks.kept import (
     KEEP_DRIVES,
@@ -41,7 +42,7 @@ from latentarm.studies.tasks.preset import PRESETS, Preset, Stream
 from latentarm.studies.tasks.rows import STUDY as NAME
 from latentarm.studies.tasks.rows import Measured, rows_of, runs_as_json
 from latentarm.studies.tasks.rule import Verdict, decide
-from latentarm.studies.tasks.runs import DEMONSTRATOR, SWITCHING, Condition, Driver, Run
+from latentarm.studies.tasks.runs import Driver, Run
 from latentarm.studies.tasks.tables import (
     failure_table,
     measure_table,

@@ -12,7 +12,8 @@ from latentarm.metrics.looks import look_of
 from latentarm.metrics.measures import label_of, unit_of
 from latentarm.metrics.table import ABSENT, format_figure
 from latentarm.studies.page import markdown_table
-from latentarm.studies.tasks.runs import SWITCHING, Condition, Run, step_names, time_ratios
+from latentarm.studies.tasks.condition import SWITCHING, Condition
+from latentarm.studies.tasks.runs import Run, step_names, time_ratios
 from latentarm.types import Row
 
 SUCCESS: Final = "success_rate"

@@ -4,7 +4,7 @@ from typing import Annotated, Final, Literal, final
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from latentarm.alignment.frame import Seat
+from latentarm.alignment.seat import Seat
 from latentarm.types import GripperAsk
 from latentarm.web.protocol.notice import Message
 
