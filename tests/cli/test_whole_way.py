@@ -107,6 +107,8 @@ def test_the_same_seed_gives_the_same_figures(run: Run, eat: Path) -> None:
     assert figures(outs[0]) == figures(outs[1])
 
 
+# These few demonstrations teach no way back, and the demo says so.
+@pytest.mark.filterwarnings("ignore:.*The way back brings held-out demonstrations no nearer")
 def test_demo_writes_a_page_with_figures(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from latentarm.commands import demo_run
     from latentarm.commands.demo import DemoOptions
