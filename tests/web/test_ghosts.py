@@ -11,7 +11,8 @@ from latentarm.types import Context, Input
 from latentarm.web.arm_process.drive_setup import PERIOD_S
 from latentarm.web.arm_process.ghosts import GhostPaths
 from latentarm.web.protocol.orders import ChooseHelp, ChooseMode
-from latentarm.web.protocol.report import NO_GHOSTS
+from latentarm.web.protocol.report import NO_GHOSTS, Ghosts
+from latentarm.web.server.states import PageMemory
 
 ROUND = {"right": 0, "up": DIRECTIONS // 4, "left": DIRECTIONS // 2, "down": 3 * DIRECTIONS // 4}
 
@@ -138,3 +139,20 @@ def test_no_report_shows_the_ring_of_the_mode_or_help_before(desk, order):
     assert 0 < known < 20
     for ghosts in after[known:]:
         np.testing.assert_allclose(ghosts.ring, after[-1].ring, atol=5e-3)
+
+
+def test_an_orientation_is_the_same_whichever_sign_its_quaternion_has():
+    """That of a tool that points down has no real part to tell the sign by."""
+
+    def shown(shift_m, sign):
+        row = (0.5 + shift_m, 0.0, 0.3, *(sign * np.array([1e-4, 1.0, 0.0, 0.0])))
+        path = ((0.5 + shift_m, 0.0, 0.3),) * 6
+        return Ghosts(up=path, down=path, left=path, right=path, ring=(tuple(map(float, row)),) * 32)
+
+    memory = PageMemory()
+    assert memory.new_ghosts(shown(0.0, 1.0))
+    assert not memory.new_ghosts(shown(0.0, -1.0))
+    assert not memory.new_ghosts(shown(0.0005, -1.0))
+    assert memory.new_ghosts(shown(0.002, 1.0))
+    assert memory.new_ghosts(NO_GHOSTS)
+    assert not memory.new_ghosts(NO_GHOSTS)

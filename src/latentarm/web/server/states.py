@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, final
 import numpy as np
 
 from latentarm.errors import UserError
-from latentarm.types import FloatArray
+from latentarm.kinematics.pose_rows import STORED
 from latentarm.untrusted.terminal import one_line
 from latentarm.web.protocol.copilot_messages import CopilotState, Person
 from latentarm.web.protocol.notice import Notice, notice_of
@@ -59,10 +59,8 @@ class PageMemory:
         before = self._ghosts
         if ghosts == before:
             return False
-        if before is not None and len(before.ring) == len(ghosts.ring):
-            moved = np.abs(_numbers(ghosts) - _numbers(before))
-            if moved.max(initial=0.0) < _SAME_M:
-                return False
+        if before is not None and len(before.ring) == len(ghosts.ring) and _moved(before, ghosts) < _SAME_M:
+            return False
         self._ghosts = ghosts
         return True
 
@@ -323,9 +321,18 @@ class States:
         return round(report.bound_rad * self._loaded.goals_m_per_rad[likeliest], 4)
 
 
-def _numbers(ghosts: Ghosts) -> FloatArray:
-    """All of the ring and of the paths, m; and the ring's quaternions."""
-    return np.concatenate([np.ravel(path) for _, path in ghosts])
+def _moved(before: Ghosts, after: Ghosts) -> float:
+    """The largest change of any number: of the paths and the ring, m, and of the ring's quaternions.
+
+    Two quaternions of opposite signs are one orientation: that of a tool that points down often changes sign.
+    """
+    ring, there = (np.reshape(one.ring, (-1, STORED)) for one in (before, after))
+    sign = np.where(np.vecdot(ring[:, 3:], there[:, 3:]) < 0.0, -1.0, 1.0)[:, None]
+    changes = [ring[:, :3] - there[:, :3], ring[:, 3:] - sign * there[:, 3:]]
+    changes += [
+        np.subtract(getattr(before, name), getattr(after, name)) for name in ("up", "down", "left", "right")
+    ]
+    return max(float(np.abs(change).max(initial=0.0)) for change in changes)
 
 
 def _rounded(point: tuple[float, float, float]) -> tuple[float, float, float]:
