@@ -5,6 +5,7 @@ import json
 import time
 import urllib.error
 import urllib.request
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -150,8 +151,12 @@ def test_ghosts_are_sent_again_only_when_they_have_moved(site):
             socket.send(HELLO)
             heard = [json.loads(socket.recv()) for _ in range(15)]
             states = [message for message in heard if message["type"] == "state"]
-            assert states[0]["ghosts"] is not None
-            assert all(state["ghosts"] is None for state in states[1:])
+            sent = [state["ghosts"] for state in states if state["ghosts"] is not None]
+            assert states[0]["ghosts"] is sent[0]
+            # An arm that still comes to rest from an earlier test leads elsewhere once more.
+            assert len(sent) <= 2 < len(states)
+            for before, after in pairwise(np.array(one["ring"]) for one in sent):
+                assert np.abs(np.abs(after) - np.abs(before)).max() > 0.9e-3
 
 
 def test_the_arm_goes_back_to_its_start_when_it_is_not_enabled(site, setup):
