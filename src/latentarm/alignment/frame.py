@@ -43,8 +43,7 @@ CONTEXTS: Final = 500
 CENTRES: Final = 32
 PUSHES: Final = 16
 STEPS: Final = 20
-"""Contexts that are looked at, places about which the turn may change, directions of the stick, and steps of
-the fit; of the first two at most so many."""
+"""Sizes of the fit: most contexts, most kernel centres, directions of the stick, and iterations."""
 
 
 @final
@@ -96,7 +95,7 @@ def fit_frame(decoder: Decoder, chain: Chain, contexts: FloatArray, seat: Seat) 
 
     Args:
         decoder: phi, of two axes.
-        chain: the arm; its first tool is looked at.
+        chain: the arm; only its first tool counts.
         contexts: (N, c), demonstrated; the first `CONTEXTS` count.
         seat: where the person sits.
     """
@@ -120,7 +119,7 @@ def fit_frame(decoder: Decoder, chain: Chain, contexts: FloatArray, seat: Seat) 
 
 
 def right_and_up(velocity: FloatArray, view: FloatArray) -> FloatArray:
-    """What the axes of the stick should lead along, (2, 3), unit vectors of the base frame.
+    """Directions that the axes of the stick should follow, (2, 3), unit vectors of the base frame.
 
     The first is right. The second is that direction across it along which a tool moves most, be it up or
     away, with the sign that is up in the view.

@@ -53,7 +53,7 @@ MODELS: Final = tuple(dict.fromkeys((DEFAULT_MODEL, "cvae")))
 
 CONTEXT: Final[Mapping[str, tuple[str, ...]]] = {DEFAULT_MODEL: (JOINTS, OBJECTS_IN_TOOL), "cvae": (JOINTS,)}
 WAY_BACK_M: Final[Mapping[str, float]] = {DEFAULT_MODEL: 0.06, "cvae": 0.0}
-"""What each model sees, and the length of its way back, m: the cVAE is as in the paper, without one."""
+"""Length of each model's way back, m; the cVAE has none, as in the paper."""
 
 HIDDEN: Final = (64, 64)
 BATCH_SIZE: Final = 256

@@ -28,7 +28,7 @@ GAIN_PER_S: Final = 4.0
 
 
 def features(position: FloatArray, objects: FloatArray, gripper: FloatArray) -> FloatArray:
-    """What an orientation depends on, (..., 3 + 3 K + g).
+    """Inputs of the orientation network, (..., 3 + 3 K + g).
 
     Args:
         position: (..., 3), of the tool, m.

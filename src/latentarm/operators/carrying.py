@@ -1,4 +1,4 @@
-"""What a simulated person expects of things that the tool holds: they move with it."""
+"""Simulated people expect things that the tool holds to move with it."""
 
 from dataclasses import replace
 

@@ -66,7 +66,7 @@ class RingReading(Imagination):
     their own for 32 directions would tear it apart, and the best of them would be chosen for its error.
 
     Args:
-        chain: the arm; its first tool is looked at.
+        chain: the arm; only its first tool counts.
         config: how they read.
         limits: how the loop slows the arm down, which the ring shows too.
     """
@@ -142,7 +142,7 @@ class RingDecision(Decision):
 
     @property
     def holding(self) -> bool:
-        """Whether they read, or wait for a mode."""
+        """True while they read, or wait for a mode."""
         return self._one_step.holding
 
     def decide(

@@ -207,7 +207,7 @@ def _given(
     controller: Controller,
     rng: np.random.Generator,
 ) -> Input:
-    """What the person does: push the stick towards the waypoint, and let go where the gripper is to act."""
+    """The person's input: a push towards the waypoint, or rest while the gripper acts."""
     waypoint = progress.waypoint
     if waypoint is None or progress.asks is not None:
         return Input(np.zeros(controller.input_dim), gripper=progress.asks)
